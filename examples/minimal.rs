@@ -119,6 +119,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         closed: true,
         opacity: Opacity::Opaque,
         bounds: Aabb::of(positions.iter().copied()),
+        version: None,
     }]; // shadows
     let mask = Mask::new(&device, SIZE); // shadows
     let receivers = Receivers {
@@ -137,7 +138,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }; // shadows
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
     let gpu = Gpu::new(&device, &queue); // shadows
-    let mut shadow = TechniqueKind::Pcss.create(&gpu)?; // shadows
+    let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // shadows
     let work = shadow.prepare(&frame)?; // shadows
 
     let globals =

@@ -1,13 +1,9 @@
 //! What shadows cost, for whoever wants to see it.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
-
-use crate::casters::CasterStore;
-use crate::draw::Shadows;
-use crate::lights::ShadowLights;
 
 /// What the last frame's shadows were of, and what they cost the processor. A resource of the main world.
 #[derive(Resource, Clone, Debug, Default)]
@@ -32,32 +28,21 @@ pub struct Counts {
 impl ShadowCounts {
     /// Those of the last frame.
     pub fn get(&self) -> Counts {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        *self.lock()
+    }
+
+    /// The last frame's, to be changed.
+    pub(crate) fn lock(&self) -> MutexGuard<'_, Counts> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Adds the time since a moment.
     pub(crate) fn spend(&self, since: Instant) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).processor_time += since.elapsed();
+        self.lock().processor_time += since.elapsed();
     }
 
     /// A frame begins.
     pub(crate) fn begin(&self) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).processor_time = Duration::ZERO;
-    }
-}
-
-/// Counts what the frame had.
-pub fn count(
-    counts: Res<ShadowCounts>,
-    lights: Res<ShadowLights>,
-    casters: Option<Res<CasterStore>>,
-    shadows: Option<Res<Shadows>>,
-) {
-    let mut counts = counts.0.lock().unwrap_or_else(PoisonError::into_inner);
-    counts.lights = lights.lights.len();
-    counts.casters = casters.as_ref().map_or(0, |casters| casters.set.len());
-    if let (Some(casters), Some(shadows)) = (casters, shadows) {
-        counts.objects_made = shadows.gpu.objects_made().total();
-        counts.memory_bytes = casters.set.memory_bytes() + shadows.memory_bytes();
+        self.lock().processor_time = Duration::ZERO;
     }
 }

@@ -18,7 +18,7 @@ use bevy::render::view::ExtractedView;
 use crate::casters::CasterStore;
 use crate::convert::mat4;
 use crate::counts::ShadowCounts;
-use crate::lights::{LightLayers, MaskLayers, ShadowLight, ShadowLights};
+use crate::lights::{DefaultSettings, LightLayers, MaskLayers, ShadowLight, ShadowLights};
 use crate::masks::{KeptGroup, MaskWriter, ScratchMask, ViewMasks};
 use crate::normals::{NormalDeriver, NormalSources, Normals};
 use crate::seen::{Seen, SeenGatherer};
@@ -60,22 +60,6 @@ struct State {
     shadow: AnyShadow,
     settings: SoftShadows,
     seen: u64,
-}
-
-/// What holds where lights have no settings of their own.
-#[derive(Resource, Clone, Default)]
-pub struct DefaultSettings {
-    /// For all views.
-    pub everywhere: SoftShadows,
-    /// For single views.
-    pub of_views: EntityHashMap<SoftShadows>,
-}
-
-impl DefaultSettings {
-    /// What a light's shadows are made by in a view.
-    pub fn of<'a>(&'a self, light: &'a ShadowLight, view: Entity) -> &'a SoftShadows {
-        light.settings.as_ref().or_else(|| self.of_views.get(&view)).unwrap_or(&self.everywhere)
-    }
 }
 
 /// What a view's lights are drawn with.

@@ -20,8 +20,10 @@
 //! prepass and the casters' meshes, and Bevy's lighting is multiplied by it. The README says where its limits are.
 #![forbid(unsafe_code)]
 
+mod bind_masks;
 mod casters;
 mod convert;
+mod counting;
 mod counts;
 mod device;
 mod draw;

@@ -11,7 +11,6 @@ use bevy::render::sync_world::RenderEntity;
 
 use crate::casters::ExtractedCasters;
 use crate::convert::vec3;
-use crate::draw::DefaultSettings;
 use crate::layers::layer_bits;
 use crate::patch::Patch;
 use crate::settings::{BevyMaps, NoSoftShadows, SoftShadows};
@@ -45,6 +44,22 @@ impl ShadowLight {
             BevyMaps::Never => false,
         };
         self.own_bias.filter(|_| is_drawn)
+    }
+}
+
+/// What holds where lights have no settings of their own.
+#[derive(Resource, Clone, Default)]
+pub struct DefaultSettings {
+    /// For all views.
+    pub everywhere: SoftShadows,
+    /// For single views.
+    pub of_views: EntityHashMap<SoftShadows>,
+}
+
+impl DefaultSettings {
+    /// What a light's shadows are made by in a view.
+    pub fn of<'a>(&'a self, light: &'a ShadowLight, view: Entity) -> &'a SoftShadows {
+        light.settings.as_ref().or_else(|| self.of_views.get(&view)).unwrap_or(&self.everywhere)
     }
 }
 

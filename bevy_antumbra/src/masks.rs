@@ -8,15 +8,7 @@
 //! from the last layer back, for the shader does not know how many maps there are.
 
 use antumbra::{Mask, MaskChannels};
-use bevy::core_pipeline::prepass::DepthPrepass;
-use bevy::pbr::ViewShadowBindings;
-use bevy::prelude::*;
 use bevy::render::render_resource::TextureView;
-use bevy::render::view::{ExtractedView, Msaa};
-
-use crate::draw::Shadows;
-use crate::lights::MaskLayers;
-use crate::warnings::Warnings;
 
 /// What the array is made of; the library's masks are of as many bits, and Bevy's maps are of it too.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -24,43 +16,43 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// A view's masks: slots of all lights, one behind the other. Of a view of several samples a pixel first the depths of its
 /// two pictures, then of each mask that of the one and that of the other.
 pub struct ViewMasks {
-    shape: Shape,
+    pub shape: Shape,
     layers: Vec<wgpu::TextureView>,
     /// All layers, for Bevy.
-    array: TextureView,
+    pub array: TextureView,
     /// Bevy's maps, which lie in the first layers too.
-    maps: Option<Maps>,
+    pub maps: Option<Maps>,
     /// The frame in which the view was last there.
     pub seen: u64,
 }
 
 /// What an array is made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Shape {
+pub struct Shape {
     /// The view.
-    size_px: glam::UVec2,
-    samples: u32,
+    pub size_px: glam::UVec2,
+    pub samples: u32,
     /// A mask's; the view is cut into such.
-    tile_px: glam::UVec2,
-    map_count: u32,
+    pub tile_px: glam::UVec2,
+    pub map_count: u32,
     /// Of each picture.
-    mask_count: u32,
-    most_layers: u32,
+    pub mask_count: u32,
+    pub most_layers: u32,
 }
 
 /// Bevy's own maps.
-struct Maps {
-    texture: wgpu::Texture,
+pub struct Maps {
+    pub texture: wgpu::Texture,
     group: wgpu::BindGroup,
 }
 
 impl Shape {
     /// Layers of one slot, along both sides of the view.
-    fn tiles(&self) -> glam::UVec2 {
+    pub fn tiles(&self) -> glam::UVec2 {
         (self.size_px + self.tile_px - 1) / self.tile_px
     }
 
-    fn slot_count(&self) -> u32 {
+    pub fn slot_count(&self) -> u32 {
         if self.samples > 1 { 2 + 2 * self.mask_count } else { self.mask_count }
     }
 
@@ -70,7 +62,7 @@ impl Shape {
     }
 
     /// Whether there is room for another's masks.
-    fn serves(&self, other: &Self) -> bool {
+    pub fn serves(&self, other: &Self) -> bool {
         self.mask_count >= other.mask_count && Self { mask_count: other.mask_count, ..*self } == *other
     }
 
@@ -86,7 +78,7 @@ impl Shape {
 }
 
 impl ViewMasks {
-    fn new(device: &wgpu::Device, shape: Shape) -> Self {
+    pub fn new(device: &wgpu::Device, shape: Shape) -> Self {
         let layer_count = shape.layer_count();
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("bevy_antumbra masks"),
@@ -201,7 +193,7 @@ impl MaskWriter {
         })
     }
 
-    fn maps(&self, texture: &wgpu::Texture) -> Maps {
+    pub fn maps(&self, texture: &wgpu::Texture) -> Maps {
         let view = texture.create_view(&wgpu::TextureViewDescriptor {
             label: Some("bevy_antumbra maps"),
             dimension: Some(wgpu::TextureViewDimension::D2Array),
@@ -332,69 +324,6 @@ fn pipeline(
         multiview_mask: None,
         cache: None,
     })
-}
-
-/// Puts each view's masks where Bevy's own maps would be bound. After Bevy has made those, and before its bind groups.
-pub fn bind_masks(
-    shadows: Option<ResMut<Shadows>>,
-    layers: Res<MaskLayers>,
-    mut warnings: ResMut<Warnings>,
-    mut views: Query<(Entity, &ExtractedView, &mut ViewShadowBindings, Has<DepthPrepass>, &Msaa)>,
-) {
-    let Some(mut shadows) = shadows else { return };
-    let shadows = &mut *shadows;
-    shadows.frame += 1;
-    if layers.count == 0 {
-        return;
-    }
-    for (entity, view, mut bindings, has_depth, msaa) in &mut views {
-        let samples = msaa.samples();
-        let has_masks = has_depth && matches!(samples, 1 | 4);
-        if !has_masks {
-            let what = if has_depth { "2 or 8 samples a pixel" } else { "no DepthPrepass" };
-            let remedy = if has_depth { "Msaa::Sample4 or Msaa::Off" } else { "one" };
-            warnings.say(format!("a camera has {what} and so no soft shadows: give it {remedy}"));
-        }
-        let size_px = glam::UVec2::new(view.viewport.z, view.viewport.w);
-        // Without a prepass the shader looks for no masks; of samples that are not known it does, and is to find none.
-        if !has_depth || (!has_masks && !layers.are_beside_maps) || size_px.min_element() == 0 {
-            continue;
-        }
-        let device = shadows.gpu.device();
-        let maps: Option<&wgpu::Texture> = layers.are_beside_maps.then_some(&*bindings.directional_light_depth_texture);
-        let shape = Shape {
-            size_px,
-            samples,
-            tile_px: maps.map_or(size_px, |maps| glam::UVec2::new(maps.width(), maps.height())),
-            map_count: maps.map_or(0, wgpu::Texture::depth_or_array_layers),
-            mask_count: if has_masks { layers.count } else { 0 },
-            most_layers: device.limits().max_texture_array_layers,
-        };
-        let mut masks = match shadows.views.remove(&entity).filter(|masks| masks.shape.serves(&shape)) {
-            Some(masks) => masks,
-            // Lights come and go: some layers to spare.
-            None => {
-                let mask_count = shape.mask_count.next_multiple_of(4).min(crate::lights::MAX_LAYERS);
-                ViewMasks::new(device, Shape { mask_count, ..shape })
-            }
-        };
-        let shape = masks.shape;
-        if shape.map_count + shape.slot_count() * shape.tiles().element_product() > shape.most_layers {
-            warnings.say(format!(
-                "the device has {} layers, too few for the masks of all lights beside Bevy's own maps: larger maps                  (DirectionalLightShadowMap) take fewer layers",
-                shape.most_layers
-            ));
-        }
-        masks.maps = match (maps, masks.maps.take()) {
-            (Some(texture), Some(kept)) if kept.texture == *texture => Some(kept),
-            (Some(texture), _) => Some(shadows.writer.maps(texture)),
-            (None, _) => None,
-        };
-        bindings.directional_light_depth_texture_view = masks.array.clone();
-        shadows.views.insert(entity, ViewMasks { seen: shadows.frame, ..masks });
-    }
-    let frame = shadows.frame;
-    shadows.views.retain(|_, masks| masks.seen + 8 > frame);
 }
 
 #[cfg(test)]

@@ -13,15 +13,16 @@ use bevy::render::renderer::RenderGraph;
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderStartup, RenderSystems};
 
-use crate::casters::materials::OwnSurfaces;
+use crate::bind_masks::bind_masks;
+use crate::casters::surface::OwnSurfaces;
 use crate::casters::{
     CasterStore, ExtractedCasters, MorphBoxes, extract_casters, measure_morphs, sync_casters, update_casters,
 };
-use crate::counts::{ShadowCounts, count};
+use crate::counting::count;
+use crate::counts::ShadowCounts;
 use crate::device::init_device;
-use crate::draw::{DefaultSettings, draw_masks, fetch_seen};
-use crate::lights::{ColoredLights, MaskLayers, ShadowLights, claim_lights, extract_lights};
-use crate::masks::bind_masks;
+use crate::draw::{draw_masks, fetch_seen};
+use crate::lights::{ColoredLights, DefaultSettings, MaskLayers, ShadowLights, claim_lights, extract_lights};
 use crate::patch::{self, Patch};
 use crate::settings::{
     BevyMaps, NoSoftShadows, ShadowDenoise, ShadowParameter, ShadowQuality, ShadowTechnique, ShadowValue, SoftShadows,

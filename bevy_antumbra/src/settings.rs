@@ -265,10 +265,11 @@ techniques! {
     Hard,
     /// One map, edges of one width.
     Pcf,
-    /// Percentage-closer soft shadows, with blockers of three layers: the default, good for most scenes.
-    #[default]
+    /// Percentage-closer soft shadows, with blockers of three layers.
     Pcss,
-    /// Rays through the layers of the light map: occluders side by side and one behind another, each with its own penumbra.
+    /// Rays through three layers of the light map: occluders side by side and one behind another, each with its own penumbra. The
+    /// default, good for most scenes.
+    #[default]
     Smrt,
     /// Percentage-closer soft shadows over the pixel's footprint too.
     PcssAnisotropic,
@@ -304,6 +305,8 @@ techniques! {
     Reprojection,
     /// Fragment reprojection from several layers.
     ReprojectionLayered,
+    /// Rays through trees over the casters' triangles: as true as it has rays, coloured shadows too; noise where these are few.
+    RayTraced,
     /// Exact hard shadows.
     AliasFree,
     /// Exact soft shadows for the samples it has, coloured ones too; slow where casters have many triangles.
@@ -318,7 +321,7 @@ impl ShadowTechnique {
 
     /// Whether it makes coloured shadows of coloured casters; the others count such as opaque from half on.
     pub(crate) fn knows_color(self) -> bool {
-        matches!(self, Self::AliasFree | Self::MultiLayer | Self::MultiView | Self::SampleBased)
+        matches!(self, Self::AliasFree | Self::MultiLayer | Self::MultiView | Self::RayTraced | Self::SampleBased)
     }
 }
 

@@ -5,6 +5,15 @@ use std::process::Command;
 
 use crate::shell::{find, run, succeeds};
 
+/// What to do where what a check needs is not installed and cannot be.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Missing {
+    /// Say that the check was skipped.
+    Skip,
+    /// Fail.
+    Fail,
+}
+
 /// Something that a machine may lack.
 pub struct Need {
     /// What it is, and what needs it.

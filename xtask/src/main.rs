@@ -21,7 +21,7 @@ mod web;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use test::Missing;
+use machine::Missing;
 
 const USAGE: &str = "\
 Development commands of Antumbra.
@@ -99,7 +99,7 @@ fn main() -> ExitCode {
         "bevy" => bevy::run(rest),
         "demo" => demo::run(rest),
         "test" => test::run(rest, Missing::Skip),
-        "ci" => test::run(rest, test::Missing::Fail),
+        "ci" => test::run(rest, Missing::Fail),
         "book" => book::run(rest),
         "docs" => book::write_generated_parts(),
         "shaders" => link_shaders(),

@@ -4,18 +4,10 @@ use std::ffi::OsStr;
 use std::time::Instant;
 
 use crate::driver::{self, Driver};
+use crate::machine::{self, Missing};
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
-use crate::{bevy, families, find_mutants, machine, packages, wasm, web};
-
-/// What to do where what a check needs is not installed and cannot be.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Missing {
-    /// Say that the check was skipped.
-    Skip,
-    /// Fail.
-    Fail,
-}
+use crate::{bevy, families, find_mutants, packages, wasm, web};
 
 /// How much is tested.
 #[derive(Clone, Copy, Debug, PartialEq)]

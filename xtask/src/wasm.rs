@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use crate::machine::{self, Need};
+use crate::machine::{self, Missing, Need};
 use crate::shell::{self, cargo, find, succeeds};
-use crate::test::Missing;
 
 /// What browsers run.
 pub const TARGET: &str = "wasm32-unknown-unknown";

@@ -10,10 +10,9 @@ use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::prelude::*;
 use bevy::render::Extract;
 
-use super::materials::OwnSurfaces;
 use super::mesh::MeshBoxes;
 use super::morph::MorphBoxes;
-use super::surface::{CasterSurface, is_seen_without_mask};
+use super::surface::{CasterSurface, OwnSurfaces, is_seen_without_mask};
 use crate::convert::{affine, mat4, moved, vec3};
 use crate::layers::layer_bits;
 use crate::patch::Patch;

@@ -2,13 +2,12 @@
 
 use std::marker::PhantomData;
 
-use bevy::ecs::entity::EntityHashMap;
 use bevy::pbr::{ExtendedMaterial, MaterialExtension};
 use bevy::prelude::*;
 use bevy::render::{Extract, ExtractSchedule, RenderApp};
 
 use super::extract::extract_casters;
-use super::surface::{CasterSurface, is_transparent};
+use super::surface::{CasterSurface, OwnSurface, OwnSurfaces, is_transparent};
 
 /// A material that says what it does to light that meets it. Those that do not, cast as opaque, whatever they discard.
 ///
@@ -66,19 +65,6 @@ impl<M: CasterMaterial> Plugin for CasterMaterialPlugin<M> {
             .init_resource::<OwnSurfaces>()
             .add_systems(ExtractSchedule, extract_surfaces::<M>.before(extract_casters));
     }
-}
-
-/// Surfaces of this frame's entities with users' own materials.
-#[derive(Resource, Default)]
-pub struct OwnSurfaces(pub EntityHashMap<OwnSurface>);
-
-/// What a user's own material says.
-#[derive(Clone, Debug, Default)]
-pub struct OwnSurface {
-    /// `None` of those that cast nothing, or do not yet.
-    pub casts: Option<CasterSurface>,
-    /// Is not in the depth prepass.
-    pub is_transparent: bool,
 }
 
 fn extract_surfaces<M: CasterMaterial>(

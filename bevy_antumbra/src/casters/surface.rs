@@ -3,6 +3,7 @@
 use antumbra::SurfaceCoverage;
 use antumbra::casters::{Surface, Texture};
 use bevy::asset::AssetId;
+use bevy::ecs::entity::EntityHashMap;
 use bevy::image::Image;
 use bevy::mesh::UvChannel;
 use bevy::prelude::*;
@@ -156,4 +157,17 @@ pub(crate) fn is_seen_without_mask(material: &StandardMaterial) -> bool {
 /// Whether surfaces of a mode are drawn after all others, and not into the depth prepass.
 pub(crate) fn is_transparent(mode: AlphaMode) -> bool {
     matches!(mode, AlphaMode::Blend | AlphaMode::Premultiplied | AlphaMode::Multiply | AlphaMode::Add)
+}
+
+/// Surfaces of this frame's entities with users' own materials.
+#[derive(Resource, Default)]
+pub struct OwnSurfaces(pub EntityHashMap<OwnSurface>);
+
+/// What a user's own material says.
+#[derive(Clone, Debug, Default)]
+pub struct OwnSurface {
+    /// `None` of those that cast nothing, or do not yet.
+    pub casts: Option<CasterSurface>,
+    /// Is not in the depth prepass.
+    pub is_transparent: bool,
 }

@@ -11,7 +11,7 @@ use antumbra_lab::sweep::Shard;
 use clap::{Args, Parser, Subcommand};
 use glam::UVec2;
 
-use crate::commands::techniques_help;
+use crate::technique_text::techniques_help;
 use crate::values::{self, Setting};
 
 /// Real-time soft shadows, and the laboratory that tells which technique suits a scene.
@@ -123,7 +123,7 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub view: ViewArgs,
     /// The shadow technique, and how much it may spend: pcss, pcss:fast; or a preset file: advice.toml
-    #[arg(long, value_name = "NAME[:QUALITY]", default_value = "pcss", value_parser = values::technique)]
+    #[arg(long, value_name = "NAME[:QUALITY]", default_value = "smrt", value_parser = values::technique)]
     pub technique: values::Technique,
     /// Sets a parameter of the technique; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = values::setting)]
@@ -212,7 +212,7 @@ pub struct WindowArgs {
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
     /// The shadow technique, and how much it may spend: pcss, pcss:fast; or a preset file: advice.toml
-    #[arg(long, value_name = "NAME[:QUALITY]", default_value = "pcss", value_parser = values::technique)]
+    #[arg(long, value_name = "NAME[:QUALITY]", default_value = "smrt", value_parser = values::technique)]
     pub technique: values::Technique,
     /// Another technique, at the right of a divider
     #[arg(long, value_name = "NAME[:QUALITY]", value_parser = values::technique)]

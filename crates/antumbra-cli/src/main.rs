@@ -9,6 +9,7 @@ mod progress;
 mod stdout;
 mod suggest;
 mod table;
+mod technique_text;
 mod values;
 
 use std::io::Write;

@@ -32,11 +32,13 @@
 //! - [`reproduce`] — the papers' tables and figures beside ours.
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
 
+mod adapter_info;
 pub mod advise;
 mod antialiasing;
 pub mod bench;
 pub mod color_maps;
 pub mod compare;
+mod date;
 pub mod device;
 pub mod error;
 pub mod image_io;

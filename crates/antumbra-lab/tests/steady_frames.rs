@@ -261,8 +261,13 @@ fn shadows(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)], count: usi
     (0..count).map(make).collect()
 }
 
-const KINDS: [TechniqueKind; 4] =
-    [TechniqueKind::Pcss, TechniqueKind::Essm, TechniqueKind::MultiLayer, TechniqueKind::SampleBased];
+const KINDS: [TechniqueKind; 5] = [
+    TechniqueKind::Pcss,
+    TechniqueKind::Essm,
+    TechniqueKind::MultiLayer,
+    TechniqueKind::RayTraced,
+    TechniqueKind::SampleBased,
+];
 
 #[test]
 fn steady_frames_make_nothing() {

@@ -17,7 +17,8 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use web_time::Instant;
 
 use crate::file_dialog::{Chosen, FileDialog};
-use crate::loader::{Loaded, Loader, Opened, Wanted, one_line, read_setup, write_setup, write_whole};
+use crate::loader::{Loaded, Loader, Opened, Wanted, read_setup, write_setup, write_whole};
+use crate::message::one_line;
 use crate::options::ViewerOptions;
 use crate::poser::Poser;
 use crate::renderer::{Compile, MapChoices, Renderer, Wake};
@@ -139,7 +140,7 @@ impl App {
             adapter: format!("{} ({})", info.name, info.backend),
             renderer: Renderer::new(&gpu, Compile::Aside(wake.clone())),
             render_state,
-            state: State::new(TechniqueKind::Pcss, TechniqueKind::Hard),
+            state: State::new(TechniqueKind::Smrt, TechniqueKind::Hard),
             texture: None,
             size_px: UVec2::ZERO,
             unframed: None,

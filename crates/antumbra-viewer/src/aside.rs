@@ -1,5 +1,10 @@
 //! Work that the window need not wait for: on a thread; in a browser, whose pages have one, between two frames.
 
+use std::sync::Arc;
+
+/// Callback from any thread, called when there is something new to show.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
 /// Does work aside.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn aside(work: impl FnOnce() + Send + 'static) {

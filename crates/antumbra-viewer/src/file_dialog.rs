@@ -5,7 +5,7 @@
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use crate::renderer::Wake;
+use crate::aside::Wake;
 
 /// What was chosen.
 #[derive(Debug)]

@@ -16,9 +16,12 @@ mod app;
 mod aside;
 pub mod camera;
 mod device;
+#[cfg(target_arch = "wasm32")]
+mod download;
 mod file_dialog;
 pub mod loader;
 pub mod masks;
+mod message;
 pub mod options;
 mod poser;
 pub mod renderer;

@@ -8,8 +8,8 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use antumbra_scene::{Animations, Framing, Ground, LoadOptions, Scene, Setup, load_animated};
 use glam::Vec3;
 
-use crate::aside::aside;
-use crate::renderer::Wake;
+use crate::aside::{Wake, aside};
+use crate::message::one_line;
 
 /// A scene that was loaded.
 #[derive(Debug)]
@@ -228,12 +228,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
 /// One line.
 #[cfg(target_arch = "wasm32")]
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    crate::web::download(path, bytes).ok_or_else(|| format!("{}: the browser takes no download", path.display()))
-}
-
-/// A message without line breaks.
-pub fn one_line(message: &str) -> String {
-    message.split_whitespace().collect::<Vec<_>>().join(" ")
+    crate::download::download(path, bytes).ok_or_else(|| format!("{}: the browser takes no download", path.display()))
 }
 
 #[cfg(test)]

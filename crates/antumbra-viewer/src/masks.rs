@@ -10,7 +10,7 @@ use antumbra_scene::{LoadOptions, load};
 use glam::UVec2;
 
 use crate::device::device_descriptor;
-use crate::loader::one_line;
+use crate::message::one_line;
 use crate::renderer::{Compile, Renderer};
 use crate::state::{Side, State};
 

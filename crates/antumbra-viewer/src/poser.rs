@@ -7,9 +7,8 @@ use std::sync::mpsc::{Receiver, channel};
 use antumbra_scene::{Animations, Scene};
 use glam::Vec3;
 
-use crate::aside::aside;
-use crate::loader::one_line;
-use crate::renderer::Wake;
+use crate::aside::{Wake, aside};
+use crate::message::one_line;
 
 /// Poses one scene.
 #[derive(Debug)]

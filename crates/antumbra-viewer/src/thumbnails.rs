@@ -10,8 +10,7 @@ use antumbra_reference::{ReceiverPoint, Tracer, VisibilityOptions};
 use antumbra_scene::{LoadOptions, Scene, Setup, load, srgb_from_linear};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::aside::aside;
-use crate::renderer::Wake;
+use crate::aside::{Wake, aside};
 
 /// A thumbnail's size, pixels.
 pub const SIZE_PX: UVec2 = UVec2::new(96, 60);

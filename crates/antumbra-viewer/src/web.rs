@@ -1,6 +1,5 @@
 //! The viewer on a page: on a canvas, by the browser's WebGPU.
 
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -88,17 +87,4 @@ pub async fn work_done(queue: &wgpu::Queue) {
 fn message_of(error: &JsValue) -> String {
     let text = error.as_string().or_else(|| error.dyn_ref::<js_sys::Error>().map(|error| error.message().into()));
     text.unwrap_or_else(|| format!("{error:?}"))
-}
-
-/// Lets the browser keep a file, under the last part of `path`. `None` where it cannot.
-pub(crate) fn download(path: &Path, bytes: &[u8]) -> Option<()> {
-    let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(bytes));
-    let blob = web_sys::Blob::new_with_u8_array_sequence(&parts).ok()?;
-    let address = web_sys::Url::create_object_url_with_blob(&blob).ok()?;
-    let document = web_sys::window()?.document()?;
-    let anchor = document.create_element("a").ok()?.dyn_into::<web_sys::HtmlAnchorElement>().ok()?;
-    anchor.set_href(&address);
-    anchor.set_download(&path.file_name()?.to_string_lossy());
-    anchor.click();
-    web_sys::Url::revoke_object_url(&address).ok()
 }

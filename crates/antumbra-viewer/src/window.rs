@@ -9,7 +9,8 @@ use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
 use crate::app::{App, Ended, Kept, Outcome};
 use crate::device::device_descriptor;
-use crate::loader::{one_line, read_setup};
+use crate::loader::read_setup;
+use crate::message::one_line;
 use crate::options::{ViewerError, ViewerOptions};
 
 /// The environment variable that names the adapter when the options do not.

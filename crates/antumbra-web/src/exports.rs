@@ -9,7 +9,7 @@ use glam::{UVec2, Vec3};
 use wasm_bindgen::prelude::*;
 
 /// What the viewer starts with where the address does not say.
-const FIRST_TECHNIQUE: TechniqueKind = TechniqueKind::Pcss;
+const FIRST_TECHNIQUE: TechniqueKind = TechniqueKind::Smrt;
 
 /// The viewer on a canvas.
 #[wasm_bindgen]

@@ -43,7 +43,7 @@
 //! pages, in [`techniques`], says so at length. Conventions (spaces, units, depth) are stated once, in [`contract`].
 //!
 //! Families of techniques are features of the crate, all on by default: `single_map`, `filterable`, `summed`, `multi_layer`,
-//! `light_views`, `receiver_lists`. A host that wants one compiles one.
+//! `light_views`, `ray_traced`, `receiver_lists`. A host that wants one compiles one.
 //!
 //! A technique chosen while the program runs makes an [`AnyShadow`]; one known at compile time a [`Shadow`] with its own
 //! parameter struct.
@@ -54,6 +54,7 @@
         feature = "filterable",
         feature = "light_views",
         feature = "multi_layer",
+        feature = "ray_traced",
         feature = "receiver_lists",
         feature = "single_map",
         feature = "summed",
@@ -65,13 +66,14 @@
     feature = "filterable",
     feature = "light_views",
     feature = "multi_layer",
+    feature = "ray_traced",
     feature = "receiver_lists",
     feature = "single_map",
     feature = "summed",
 )))]
 compile_error!(
     "antumbra has no technique: choose at least one of its features `filterable`, `light_views`, `multi_layer`, \
-    `receiver_lists`, `single_map`, `summed`"
+    `ray_traced`, `receiver_lists`, `single_map`, `summed`"
 );
 
 pub mod casters;
@@ -92,7 +94,7 @@ pub use antumbra_light::ShadowDistance;
 pub use casters::CasterSet;
 pub use contract::{
     Denoise, DepthConvention, DepthMapCaster, DrawnLists, DrawnMap, Error, Mask, MaskChannels, MaskPlace, MeshCaster,
-    Opacity, Overflow, Quality, Receivers, SurfaceCoverage, SurfaceTexture,
+    MeshVersion, Opacity, Overflow, Quality, Receivers, SurfaceCoverage, SurfaceTexture,
 };
 pub use frame::split_receivers::SplitReceivers;
 #[doc(hidden)]

@@ -18,6 +18,8 @@ shaders! {
     DENOISE_OVER_TIME = "frame/denoise/over_time";
     /// Denoising: planes fitted to the neighbours.
     DENOISE_OVER_PIXELS = "frame/denoise/over_pixels";
+    /// Smoothing of noisy visibility over pixels.
+    SMOOTHING_SMOOTH = "frame/smoothing/smooth";
     /// Masks of fewer bits than techniques write.
     NARROW_MASK_DRAW = "frame/narrow_mask/draw";
     /// Receivers of a multisampled depth buffer.
@@ -184,6 +186,38 @@ shaders! {
     /// What regions of influence are made of.
     #[cfg(test)]
     VIEW_SAMPLES_REGION_PROBE = "techniques/receiver_lists/region_probe";
+    /// `ray_traced`: triangles' boxes.
+    RAY_GATHER = "techniques/ray_traced/mesh/gather";
+    /// Triangles kept in their tree's order.
+    RAY_PLACE = "techniques/ray_traced/mesh/place";
+    /// That order.
+    RAY_RECALL = "techniques/ray_traced/mesh/recall";
+    /// Instances, their inverses and boxes.
+    RAY_INSTANCES = "techniques/ray_traced/top/instances";
+    /// Trees: items in the order of their numbers.
+    TREE_NUMBER = "techniques/ray_traced/tree/number";
+    /// Trees: boxes of eight boxes.
+    TREE_PYRAMID = "techniques/ray_traced/tree/pyramid";
+    /// Trees: their own boxes.
+    TREE_FRAMES = "techniques/ray_traced/tree/frames";
+    /// Trees: Morton codes.
+    TREE_CODES = "techniques/ray_traced/tree/codes";
+    /// Trees: digits of codes, counted.
+    TREE_SORT_COUNT = "techniques/ray_traced/tree/sort_count";
+    /// Trees: items sorted by a digit.
+    TREE_SORT_SCATTER = "techniques/ray_traced/tree/sort_scatter";
+    /// Trees: nodes' items and parents.
+    TREE_HIERARCHY = "techniques/ray_traced/tree/hierarchy";
+    /// Trees: how many leaves there would be.
+    TREE_TALLY = "techniques/ray_traced/tree/tally";
+    /// Trees: where leaves begin.
+    TREE_MARK = "techniques/ray_traced/tree/mark";
+    /// Trees: nodes in their order.
+    TREE_WORDS = "techniques/ray_traced/tree/words";
+    /// Trees: nodes' boxes.
+    TREE_FIT = "techniques/ray_traced/tree/fit";
+    /// `ray_traced`: segments to the light.
+    RAY_TRACE = "techniques/ray_traced/trace";
     /// `lvsm`: two moments of each layer.
     LVSM_ENCODE = "techniques/filterable/lvsm/encode";
     /// The same of a multisampled map.

@@ -8,23 +8,17 @@
 //! the work, so frames may be recorded one after the other and submitted together: submit in the order of recording.
 
 use std::fmt;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use antumbra_light::{Aabb, Light, ShadowDistance};
-use glam::{Mat4, UVec2, Vec3};
-
-use crate::contract::{
-    CastersKey, Denoise, DepthConvention, DrawnLists, DrawnMap, Error, MaskChannels, MaskPlace, Overflow, ParamError,
-    ParamSpec, ParamValue, Params, PreparedFrame, Quality,
-};
-use crate::frame::denoise::Denoiser;
+use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
+use crate::frame::denoise::{Denoiser, PreparedDenoise};
 use crate::frame::narrow_mask::NarrowMask;
-use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
+use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
 
 mod anchored;
+mod any;
 mod frame;
+mod frame_key;
 mod parted;
 #[cfg(test)]
 mod tests;
@@ -33,9 +27,11 @@ mod warm_up;
 
 use anchored::{Anchored, anchor_of};
 use frame::FrameCasters;
-use parted::{PartWork, Parted};
+use frame_key::FrameKey;
+use parted::{Parted, PartedPasses};
 use validate::Validator;
 
+pub use any::AnyShadow;
 pub use frame::{Casters, Frame};
 pub use warm_up::WarmUp;
 
@@ -56,58 +52,11 @@ pub struct Shadow<T: Technique> {
     narrow: Option<NarrowMask>,
     denoiser: Option<Denoiser>,
     keep: Keep,
-    /// The last frame failed or was never recorded: what it had made ready is not to be relied on.
-    is_stale: bool,
-    /// Commands of an earlier frame were never submitted: what they would have drawn is not there.
-    are_dropped: Arc<AtomicBool>,
-    /// Frames prepared since the first of what the mask holds.
-    still_frames: u32,
-    /// What the mask holds, where that can be told.
-    drawn: Option<FrameKey<T::Params>>,
-}
-
-/// What tells a frame from others.
-#[derive(Debug, PartialEq)]
-struct FrameKey<P> {
-    params: P,
-    denoise: Option<Denoise>,
-    light: Light,
-    casters: CastersKey,
-    mask: (wgpu::Texture, MaskPlace, MaskChannels),
-    size_px: UVec2,
-    origin_px: UVec2,
-    depth: wgpu::TextureView,
-    depth_convention: DepthConvention,
-    camera: [Mat4; 2],
-    normals: Option<wgpu::TextureView>,
-    bounds: Option<Aabb>,
-    points: [Vec<Vec3>; 2],
-    shadow_distance: Option<ShadowDistance>,
-    version: u64,
-}
-
-impl<P: Params> FrameKey<P> {
-    /// `None` where the host does not say when depth or casters change.
-    fn of(params: &P, denoise: Option<&Denoise>, frame: &Frame<'_>, casters: Option<CastersKey>) -> Option<Self> {
-        let receivers = &frame.receivers;
-        Some(Self {
-            casters: casters?,
-            version: receivers.version?,
-            params: params.clone(),
-            denoise: denoise.cloned(),
-            light: frame.light.for_shadows(),
-            mask: (frame.mask.texture().clone(), frame.mask.place(), frame.mask.channels()),
-            size_px: receivers.size_px,
-            origin_px: receivers.origin_px,
-            depth: receivers.depth.clone(),
-            depth_convention: receivers.depth_convention,
-            camera: [receivers.view_from_world, receivers.clip_from_view],
-            normals: receivers.normals.cloned(),
-            bounds: receivers.bounds,
-            points: [receivers.hull, receivers.seen].map(<[Vec3]>::to_vec),
-            shadow_distance: receivers.shadow_distance,
-        })
-    }
+    /// What the mask holds, where the last frame was recorded and no commands were dropped.
+    mask: Content<FrameKey<T::Params>>,
+    /// A frame that failed or was never recorded leaves a state that is not to be relied on.
+    is_recorded: bool,
+    commands: Commands,
 }
 
 impl<T: Technique> fmt::Debug for Shadow<T> {
@@ -140,10 +89,9 @@ impl<T: Technique> Shadow<T> {
             narrow: None,
             denoiser: None,
             keep: Keep::default(),
-            is_stale: false,
-            are_dropped: Arc::default(),
-            still_frames: 0,
-            drawn: None,
+            mask: Content::default(),
+            is_recorded: true,
+            commands: Commands::default(),
         })
     }
 
@@ -158,14 +106,17 @@ impl<T: Technique> Shadow<T> {
             Casters::Set { set, layers } => Some(set.key(layers)),
             Casters::Meshes(_) | Casters::DepthMap(_) => None,
         };
-        let are_dropped = self.are_dropped.swap(false, Ordering::AcqRel);
-        let key = FrameKey::of(&self.params, self.denoise.as_ref(), frame, casters);
-        let is_same = !(self.is_stale || are_dropped) && key.is_some() && key == self.drawn;
-        if is_same && self.is_settled() {
-            return Ok(Prepared { work: self, frame: *frame, passes: None });
+        let is_lost = self.commands.take_dropped() || !self.is_recorded;
+        if is_lost {
+            self.mask = Content::default();
         }
-        self.drawn = None;
-        if std::mem::replace(&mut self.is_stale, true) || are_dropped {
+        let key = FrameKey::of(&self.params, self.denoise.as_ref(), frame, casters);
+        let is_same = self.mask.is_of(key.as_ref());
+        if is_same && self.is_settled() {
+            return Ok(Prepared { frame: *frame, work: Box::new(FrameWork { shadow: self, passes: None }) });
+        }
+        self.is_recorded = false;
+        if is_lost {
             self.technique = T::new(&self.gpu)?;
             self.parted = None;
             self.denoiser = None;
@@ -177,46 +128,65 @@ impl<T: Technique> Shadow<T> {
         let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), casters)
             .anchored(anchor_of(frame))
             .of_noise_frame(self.denoiser.as_ref().map_or(0, Denoiser::noise_frame));
-        let outcome = self.prepare_on(&stage, frame, is_same);
+        let outcome = self.prepare_passes(&stage, frame, is_same);
         let uploads;
         (self.keep, uploads) = stage.finish();
-        let (casters, parts) = outcome?;
-        self.drawn = key;
-        self.still_frames = if is_same { self.still_frames.saturating_add(1) } else { 0 };
-        Ok(Prepared { work: self, frame: *frame, passes: Some(Passes { casters, parts, uploads }) })
+        let passes = Some((uploads, outcome?));
+        self.mask.ask(key);
+        Ok(Prepared { frame: *frame, work: Box::new(FrameWork { shadow: self, passes }) })
     }
 
-    /// Makes ready on a stage: the casters of a set, and the work of parts where the light is covered in such.
-    fn prepare_on<'a>(
+    /// Prepares a frame's stages, from the host's mask back to the light: each writes the mask that the one before it reads.
+    fn prepare_passes<'a>(
         &mut self,
         stage: &Stage<'_>,
         frame: &Frame<'a>,
         is_same: bool,
-    ) -> Result<CastersAndParts<'a>, Error> {
-        let of_frame = FrameCasters::of(&frame.casters)?;
-        let host = frame.prepared(&of_frame);
+    ) -> Result<Passes<'a, T::Prepared>, Error> {
+        let casters = FrameCasters::of(&frame.casters)?;
+        let host = frame.prepared(&casters);
         self.narrow =
             NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, self.narrow.take()));
-        let mask = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
-        if self.denoise.is_some() {
-            self.denoiser.get_or_insert_with(|| Denoiser::new(stage)).prepare_noisy(stage, mask);
-        }
-        let wide = PreparedFrame { mask, ..host };
-        let in_world = of_frame.meshes();
+        let wide = PreparedFrame { mask: self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide), ..host };
+
+        let in_world = casters.meshes();
         let anchored = Anchored::is_needed(stage.anchor(), &wide, in_world)
             .then(|| Anchored::new(stage.anchor(), &wide, in_world));
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
-        let near = anchored.as_ref().map_or(in_world, Anchored::meshes);
-        if let (Some(denoise), Some(denoiser)) = (&self.denoise, &mut self.denoiser) {
-            denoiser.prepare(stage, [&host, &wide], denoise, is_same);
+        let meshes = anchored.as_ref().map_or(in_world, Anchored::meshes).unwrap_or_default();
+
+        let denoise = self.denoise.as_ref().map(|settings| {
+            let denoiser = self.denoiser.get_or_insert_with(|| Denoiser::new(stage));
+            denoiser.prepare(stage, [&host, &wide], settings, is_same)
+        });
+        let noisy = PreparedFrame { mask: denoise.as_ref().map_or(wide.mask, |denoise| &denoise.noisy), ..wide };
+
+        let light = match Parted::prepare(&mut self.parted, stage, &noisy, meshes, &self.params)? {
+            Some(parts) => LightPasses::Parts(Box::new(parts)),
+            None => LightPasses::Whole(self.technique.prepare(stage, &noisy, &self.params)?),
+        };
+        Ok(Passes { casters, light, denoise })
+    }
+
+    /// Records a frame's stages, in the order of the data: the technique, denoising, conversion of the mask.
+    fn record_passes(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>, passes: Passes<'_, T::Prepared>) {
+        let Passes { casters, light, denoise } = passes;
+        let smooth = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+        let mask = denoise.as_ref().map_or(smooth, |denoise| &denoise.noisy);
+        let noisy = PreparedFrame { mask, ..frame.prepared(&casters) };
+        match (light, &self.parted) {
+            (LightPasses::Whole(technique), _) => self.technique.record(recorder, &noisy, &technique),
+            (LightPasses::Parts(parts), Some(parted)) => {
+                parted.record(recorder, &noisy, *parts, || self.commands.end());
+            }
+            (LightPasses::Parts(_), None) => {}
         }
-        let noisy = self.denoiser.as_ref().and_then(Denoiser::noisy);
-        let wide = PreparedFrame { mask: noisy.unwrap_or(wide.mask), ..wide };
-        let parts = Parted::prepare(&mut self.parted, stage, &wide, near.unwrap_or_default(), &self.params)?;
-        if parts.is_none() {
-            self.technique.prepare(stage, &wide, &self.params)?;
+        if let Some(denoise) = &denoise {
+            denoise.record(recorder);
         }
-        Ok((of_frame, parts))
+        if let Some(narrow) = &self.narrow {
+            narrow.record(recorder, frame.mask);
+        }
     }
 
     fn is_settled(&self) -> bool {
@@ -226,8 +196,8 @@ impl<T: Technique> Shadow<T> {
             return false;
         }
         match self.parts_in_use() {
-            Some(parted) => parted.is_settled(&self.params, self.still_frames),
-            None => self.technique.is_settled(&self.params, self.still_frames),
+            Some(parted) => parted.is_settled(&self.params, self.mask.repeats()),
+            None => self.technique.is_settled(&self.params, self.mask.repeats()),
         }
     }
 
@@ -278,24 +248,27 @@ impl<T: Technique> Shadow<T> {
     }
 }
 
-/// The casters as they are drawn, and the parts of a light that is cut into such.
-type CastersAndParts<'a> = (FrameCasters<'a>, Option<Vec<PartWork<'a>>>);
-
-/// A frame of one light, ready to be recorded.
-#[must_use = "nothing is drawn before it is recorded"]
-pub struct Prepared<'a> {
-    work: &'a mut dyn Work,
-    frame: Frame<'a>,
-    /// None where the mask holds the frame.
-    passes: Option<Passes<'a>>,
+/// Passes of one frame; `P` is the technique's.
+struct Passes<'a, P> {
+    casters: FrameCasters<'a>,
+    light: LightPasses<'a, P>,
+    /// Where the mask is denoised.
+    denoise: Option<PreparedDenoise>,
 }
 
-/// What a frame's passes are recorded with.
-struct Passes<'a> {
-    casters: FrameCasters<'a>,
-    /// Of a light that is covered in parts.
-    parts: Option<Vec<PartWork<'a>>>,
-    uploads: StagedUploads,
+/// Passes from the light to its mask.
+enum LightPasses<'a, P> {
+    /// One view covers what the light reaches.
+    Whole(P),
+    /// Several do, each with a mask that is joined to the light's.
+    Parts(Box<PartedPasses<'a, P>>),
+}
+
+/// A frame of one light, ready to be recorded. It goes before what the frame borrows: declare a list of them after their casters.
+#[must_use = "nothing is drawn before it is recorded"]
+pub struct Prepared<'a> {
+    frame: Frame<'a>,
+    work: Box<dyn Work + 'a>,
 }
 
 impl fmt::Debug for Prepared<'_> {
@@ -312,186 +285,31 @@ impl Prepared<'_> {
 
     /// Records the frame's uploads and passes: none where the mask holds just this frame.
     pub fn record(self, recorder: &mut Recorder<'_>) {
-        let Some(Passes { casters, parts, uploads }) = self.passes else { return };
-        recorder.upload(uploads, self.work.commands_end());
-        self.work.record(recorder, &self.frame.prepared(&casters), parts);
+        self.work.record(recorder, &self.frame);
     }
 }
 
-/// A state of whatever technique, for [`Prepared`].
+/// A frame's work by whatever technique.
 trait Work: wgpu::WasmNotSendSync {
     fn overflow(&self) -> Option<Overflow>;
-    fn commands_end(&self) -> CommandsEnd;
-    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, parts: Option<Vec<PartWork<'_>>>);
+    fn record(self: Box<Self>, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
 }
 
-impl<T: Technique> Work for Shadow<T> {
-    fn commands_end(&self) -> CommandsEnd {
-        CommandsEnd::of(&self.are_dropped)
-    }
+/// A light's state while a frame of it waits to be recorded.
+struct FrameWork<'a, T: Technique> {
+    shadow: &'a mut Shadow<T>,
+    /// `None` where the mask holds the frame.
+    passes: Option<(StagedUploads, Passes<'a, T::Prepared>)>,
+}
+
+impl<T: Technique> Work for FrameWork<'_, T> {
     fn overflow(&self) -> Option<Overflow> {
-        Shadow::overflow(self)
+        self.shadow.overflow()
     }
-    fn record(&mut self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, parts: Option<Vec<PartWork<'_>>>) {
-        let smooth = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
-        let mask = self.denoiser.as_ref().and_then(Denoiser::noisy).unwrap_or(smooth);
-        let wide = PreparedFrame { mask, ..*frame };
-        match (parts, &self.parted) {
-            (Some(works), Some(parted)) => {
-                parted.record(recorder, &wide, works, || CommandsEnd::of(&self.are_dropped));
-            }
-            _ => self.technique.record(recorder, &wide),
-        }
-        if let Some(denoiser) = &self.denoiser {
-            denoiser.record(recorder);
-        }
-        if let Some(narrow) = &self.narrow {
-            narrow.record(recorder, frame.mask);
-        }
-        self.is_stale = false;
-    }
-}
-
-/// Object-safe twin of [`Shadow`].
-trait ErasedShadow: wgpu::WasmNotSendSync {
-    fn param_specs(&self) -> &'static [ParamSpec];
-    fn get(&self, key: &str) -> Option<ParamValue>;
-    fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError>;
-    fn set_quality(&mut self, quality: Quality);
-    fn denoise(&self) -> Option<&Denoise>;
-    fn set_denoise(&mut self, denoise: Option<Denoise>);
-    fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
-    fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
-    fn memory_bytes(&self) -> u64;
-    fn drawn_maps(&self) -> Vec<DrawnMap>;
-    fn drawn_lists(&self) -> Vec<DrawnLists>;
-    fn overflow(&self) -> Option<Overflow>;
-}
-
-impl<T: Technique> ErasedShadow for Shadow<T> {
-    fn param_specs(&self) -> &'static [ParamSpec] {
-        T::Params::specs()
-    }
-    fn get(&self, key: &str) -> Option<ParamValue> {
-        self.params.get(key)
-    }
-    fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
-        self.params.set(T::NAME, key, text)
-    }
-    fn set_quality(&mut self, quality: Quality) {
-        self.params = T::Params::of_quality(quality);
-    }
-    fn denoise(&self) -> Option<&Denoise> {
-        self.denoise.as_ref()
-    }
-    fn set_denoise(&mut self, denoise: Option<Denoise>) {
-        self.denoise = denoise;
-    }
-    fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
-        Shadow::warm_up(self, what)
-    }
-    fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
-        Shadow::prepare(self, frame)
-    }
-    fn memory_bytes(&self) -> u64 {
-        Shadow::memory_bytes(self)
-    }
-    fn drawn_maps(&self) -> Vec<DrawnMap> {
-        Shadow::drawn_maps(self)
-    }
-    fn drawn_lists(&self) -> Vec<DrawnLists> {
-        Shadow::drawn_lists(self)
-    }
-    fn overflow(&self) -> Option<Overflow> {
-        Shadow::overflow(self)
-    }
-}
-
-/// One light's shadow by a technique chosen while the program runs.
-pub struct AnyShadow {
-    technique: &'static str,
-    inner: Box<dyn ErasedShadow>,
-}
-
-impl fmt::Debug for AnyShadow {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "AnyShadow({})", self.technique)
-    }
-}
-
-impl<T: Technique + 'static> From<Shadow<T>> for AnyShadow {
-    fn from(shadow: Shadow<T>) -> Self {
-        Self { technique: T::NAME, inner: Box::new(shadow) }
-    }
-}
-
-impl AnyShadow {
-    /// The name of the technique that this is by.
-    pub fn name(&self) -> &'static str {
-        self.technique
-    }
-
-    /// The parameters with their present values.
-    pub fn params(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> + '_ {
-        self.inner.param_specs().iter().map(|spec| (spec, self.inner.get(spec.key).unwrap_or(spec.default)))
-    }
-
-    /// Sets a parameter from text, for the next frame.
-    ///
-    /// # Errors
-    /// Names the keys there are, or what the key takes.
-    pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
-        self.inner.set(key, text)
-    }
-
-    /// Sets all parameters to what a quality has, for the next frame; set single ones after it.
-    pub fn set_quality(&mut self, quality: Quality) {
-        self.inner.set_quality(quality);
-    }
-
-    /// How the next frame's mask is made smooth: [`Shadow::denoise`].
-    pub fn denoise(&self) -> Option<&Denoise> {
-        self.inner.denoise()
-    }
-
-    /// Sets how the next frame's mask is made smooth: [`Shadow::denoise`].
-    pub fn set_denoise(&mut self, denoise: Option<Denoise>) {
-        self.inner.set_denoise(denoise);
-    }
-
-    /// [`Shadow::warm_up`].
-    ///
-    /// # Errors
-    /// As [`Shadow::warm_up`].
-    pub fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
-        self.inner.warm_up(what)
-    }
-
-    /// [`Shadow::prepare`].
-    ///
-    /// # Errors
-    /// As [`Shadow::prepare`].
-    pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
-        self.inner.prepare(frame)
-    }
-
-    /// [`Shadow::memory_bytes`].
-    pub fn memory_bytes(&self) -> u64 {
-        self.inner.memory_bytes()
-    }
-
-    /// [`Shadow::drawn_maps`].
-    pub fn drawn_maps(&self) -> Vec<DrawnMap> {
-        self.inner.drawn_maps()
-    }
-
-    /// [`Shadow::drawn_lists`].
-    pub fn drawn_lists(&self) -> Vec<DrawnLists> {
-        self.inner.drawn_lists()
-    }
-
-    /// [`Shadow::overflow`].
-    pub fn overflow(&self) -> Option<Overflow> {
-        self.inner.overflow()
+    fn record(self: Box<Self>, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let Some((uploads, passes)) = self.passes else { return };
+        recorder.upload(uploads, self.shadow.commands.end());
+        self.shadow.record_passes(recorder, frame, passes);
+        self.shadow.is_recorded = true;
     }
 }

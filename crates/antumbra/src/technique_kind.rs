@@ -16,6 +16,8 @@ use crate::techniques::light_views::{
 };
 #[cfg(feature = "multi_layer")]
 use crate::techniques::multi_layer::MultiLayer;
+#[cfg(feature = "ray_traced")]
+use crate::techniques::ray_traced::RayTraced;
 #[cfg(feature = "receiver_lists")]
 use crate::techniques::receiver_lists::{alias_free::AliasFree, sample_based::SampleBased};
 #[cfg(feature = "single_map")]
@@ -361,6 +363,15 @@ techniques! {
         good_for: "layered occluders, large lights",
         fails_where: "about thrice the arithmetic; silhouettes within a texel",
         worst_case: "tree", "behind the fourth leaf nothing more is known",
+    }
+    "ray_traced", RayTraced, "ray_traced", "ray_traced", {
+        title: "Rays through trees over the triangles",
+        source: "Cook, Porter, Carpenter 1984, SIGGRAPH; Karras 2012, HPG",
+        penumbra: "as true as its rays",
+        light_maps: "none",
+        good_for: "truth on the GPU, tinted casters along each ray; few rays, denoised",
+        fails_where: "few rays are noise; leaves near the light are dear",
+        worst_case: "tree", "sixty-four rays a pixel among leaves are noise",
     }
     "receiver_lists", AliasFree, "alias_free", "receiver_lists::alias_free", {
         title: "Alias-free hard shadows",

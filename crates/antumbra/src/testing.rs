@@ -121,6 +121,7 @@ impl Mesh {
             closed: false,
             opacity: Opacity::Opaque,
             bounds: self.bounds,
+            version: None,
         }
     }
 }

@@ -224,6 +224,14 @@ fn parameters_say_what_they_take() {
     assert!(message(params.set("pcf", "kernel", "gauss")).contains("one of box, poisson, vogel"));
     params.set("pcf", "kernel", "vogel").expect("a choice");
     assert_eq!(params.get("kernel"), Some(ParamValue::Choice("vogel")));
+    params.set_value("pcf", "map_size", 2048).expect("a number in range");
+    params.set_value("pcf", "Kernel", "box").expect("a choice");
+    assert_eq!((params.map_size, params.get("kernel")), (2048, Some(ParamValue::Choice("box"))));
+    assert!(message(params.set_value("pcf", "map_size", 7)).contains("a whole number from 16 to 8192"));
+    assert!(message(params.set_value("pcf", "map_size", 64.0)).contains("a whole number from 16 to 8192"));
+    assert!(message(params.set_value("pcf", "kernel_size", f32::NAN)).contains("a number from 1 to 127"));
+    assert!(message(params.set_value("pcf", "kernel", "gauss")).contains("one of box, poisson, vogel"));
+    assert!(message(params.set_value("pcf", "rotate", 1)).contains("true or false"));
     params.kernel_size = 1000.0;
     assert!(params.validate("pcf").is_err());
 }

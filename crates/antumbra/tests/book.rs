@@ -39,6 +39,7 @@ fn the_library_in_thirty_lines(
         closed: true,
         opacity: Opacity::Opaque,
         bounds,
+        version: None,
     }];
     let receivers = Receivers {
         size_px,

@@ -21,7 +21,7 @@ pub use render::render;
 pub use reproduce::reproduce;
 pub use scenes::scenes;
 pub use sweep::sweep;
-pub use techniques::{techniques, techniques_help};
+pub use techniques::techniques;
 pub use view::view;
 
 use std::path::{Path, PathBuf};

@@ -6,6 +6,7 @@ use crate::args::TechniquesArgs;
 use crate::failure::Failure;
 use crate::stdout::say;
 use crate::table;
+use crate::technique_text::plain;
 
 /// Lists the techniques, or what is to be known of one.
 pub fn techniques(args: &TechniquesArgs) -> Result<(), Failure> {
@@ -22,17 +23,6 @@ pub fn techniques(args: &TechniquesArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Text without Markdown's marks of code.
-fn plain(text: &str) -> String {
-    text.replace('`', "")
-}
-
-/// What `--help` says of the techniques: all their names with what each is for.
-pub fn techniques_help() -> String {
-    let rows = TechniqueKind::ALL.iter().map(|kind| format!("  {:20} {}\n", kind.name(), plain(kind.facts().good_for)));
-    format!("Good for:\n{}\n`antumbra techniques` says where each fails, too.", rows.collect::<String>())
 }
 
 fn print_one(kind: TechniqueKind) {

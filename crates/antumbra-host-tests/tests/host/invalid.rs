@@ -207,6 +207,7 @@ fn casters_of_a_frame() {
         closed: false,
         opacity: Opacity::Opaque,
         bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE },
+        version: None,
     };
     let bad: [(MeshCaster<'static>, &[&str]); 7] = [
         (MeshCaster { bounds: Aabb::EMPTY, ..mesh }, &["`bounds`", "empty", "caster 1"]),

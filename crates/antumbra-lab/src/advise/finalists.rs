@@ -1,19 +1,18 @@
 //! The last few: timed in turns, looked at in motion where that is asked for, and one of them chosen.
 
-use antumbra::contract::ParamValue;
-use serde_json::{Map, Value};
-
 use super::bench::FULL;
+use super::candidate::candidate;
 use super::plainest::{plain_candidate, simplified};
 use super::search::Search;
 use super::turns::in_turns;
 use super::words::reasons;
-use super::{Advice, Candidate, Config, Measured, Prefer, Spent};
+use super::{Advice, Candidate, Config, Prefer, Spent};
+use crate::adapter_info::AdapterInfo;
 use crate::color_maps::signed_error_map;
+use crate::date::utc_now;
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::motion::{Motion, MotionOptions, MovingScene};
-use crate::report::{AdapterInfo, utc_now};
 use crate::technique_run::create;
 
 /// So many of those that may keep the budget are timed in turns at once.
@@ -273,42 +272,6 @@ fn look_above(search: &mut Search<'_, '_>) -> Result<(), LabError> {
     Ok(())
 }
 
-/// A configuration as it was measured, once.
-pub(super) fn candidate(config: &Config, measured: &Measured, budget_ms: &[f64]) -> Candidate {
-    let choice = config.choice();
-    let parameters: Map<String, Value> = choice
-        .settings
-        .iter()
-        .map(|(key, value)| {
-            let spec = config.kind.param_specs().iter().find(|spec| spec.key == key);
-            let is_text = spec.is_none_or(|spec| matches!(spec.default, ParamValue::Choice(_) | ParamValue::List(_)));
-            let number = serde_json::from_str(value).ok().filter(|_| !is_text);
-            (key.clone(), number.unwrap_or_else(|| Value::String(value.clone())))
-        })
-        .collect();
-    let pace = measured.pace();
-    let mut one = Candidate {
-        name: config.to_string(),
-        technique: config.kind.name(),
-        parameters,
-        rmse: measured.error(),
-        rmse_of_views: measured.rmse.clone(),
-        roughness: measured.roughness(),
-        ms: measured.ms.iter().map(|ms| ms / pace).collect(),
-        spread_ms: measured.spread_ms.iter().map(|spread| spread.map(|ms| ms / pace)).collect(),
-        turns: 1,
-        count: measured.count,
-        load: 0.0,
-        highest_load: 0.0,
-        heaviest_view: 0,
-        memory_bytes: measured.memory_bytes,
-        flicker: None,
-        config: config.clone(),
-    };
-    one.weigh(budget_ms);
-    one
-}
-
 /// Holds finalists against the truth while the camera moves, on every view.
 fn look_in_motion(lab: &LabDevice, search: &Search<'_, '_>, finalists: &mut [Candidate]) -> Result<(), LabError> {
     let request = search.bench.request;
@@ -365,6 +328,7 @@ fn front(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
 mod tests {
     use antumbra::TechniqueKind;
 
+    use super::super::Measured;
     use super::*;
 
     fn timed(rmse: f64, highest_load: f64) -> Candidate {

@@ -11,6 +11,7 @@
 //! of it that is taken are one statement.
 
 mod bench;
+mod candidate;
 mod finalists;
 mod grid;
 mod plainest;
@@ -35,10 +36,10 @@ pub use space::Config;
 pub use store::{MEASUREMENTS_NAME, Measured};
 pub use words::Reason;
 
+use crate::adapter_info::AdapterInfo;
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::progress::Progress;
-use crate::report::AdapterInfo;
 use crate::scene_facts::SceneFacts;
 use crate::stopwatch::FrameCount;
 use bench::Bench;

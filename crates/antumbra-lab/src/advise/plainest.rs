@@ -5,7 +5,7 @@
 //! is, and saves no time that could be told from a machine's noise, is dropped.
 
 use super::bench::FULL;
-use super::finalists::candidate;
+use super::candidate::candidate;
 use super::search::Search;
 use super::turns::in_turns;
 use super::{Candidate, Config, Prefer};

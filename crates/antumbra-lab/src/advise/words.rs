@@ -36,9 +36,12 @@ impl Assumes {
             }
             Kind::Pcss if has("layers", "1") || has("attach_contacts", "false") => Self::OneDepth,
             Kind::Pcss | Kind::MultiLayer => Self::SeveralDepths,
-            Kind::Smrt | Kind::MultiView | Kind::Reprojection | Kind::ReprojectionLayered | Kind::SampleBased => {
-                Self::Nothing
-            }
+            Kind::Smrt
+            | Kind::MultiView
+            | Kind::Reprojection
+            | Kind::ReprojectionLayered
+            | Kind::RayTraced
+            | Kind::SampleBased => Self::Nothing,
             Kind::PcssAnisotropic | Kind::Essm | Kind::Savsm | Kind::Vssm | Kind::Cssm | Kind::Evssm | Kind::Mssm => {
                 Self::OneDepth
             }
@@ -49,7 +52,7 @@ impl Assumes {
 
 /// Whether a technique looks occluders up in texels of a map.
 fn looks_into_a_map(kind: TechniqueKind) -> bool {
-    !matches!(kind, TechniqueKind::AliasFree | TechniqueKind::SampleBased)
+    !matches!(kind, TechniqueKind::RayTraced | TechniqueKind::AliasFree | TechniqueKind::SampleBased)
 }
 
 /// Above such a share several depths count as a feature of the scene.

@@ -5,7 +5,6 @@
 //! [`write_index`] is the page above several of them.
 
 mod advice;
-mod date;
 mod files;
 mod glossary;
 mod html;
@@ -21,11 +20,13 @@ mod scatter;
 mod tests;
 
 pub use advice::write_advice;
-pub use date::utc_now;
 pub use files::write_report;
 pub use index::write_index;
 pub use model::{
-    AdapterInfo, IndexEntry, IndexTechnique, Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo,
-    Report, Row, SceneInfo,
+    IndexEntry, IndexTechnique, Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo, Report, Row,
+    SceneInfo,
 };
 pub use reproduced::{ReproductionInfo, write_reproduction};
+
+pub use crate::adapter_info::AdapterInfo;
+pub use crate::date::utc_now;

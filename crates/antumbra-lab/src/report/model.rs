@@ -4,7 +4,7 @@ use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::device::AdapterReport;
+use crate::adapter_info::AdapterInfo;
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
 use crate::picture::Visibility;
@@ -47,31 +47,6 @@ pub struct SceneInfo {
     pub triangles: u64,
     /// The setup file (TOML) that reproduces camera and lights.
     pub setup_toml: String,
-}
-
-/// The adapter whose times these are.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct AdapterInfo {
-    /// As the driver names it.
-    pub name: String,
-    /// Driver and version.
-    pub driver: String,
-    /// Vulkan, Metal, …
-    pub backend: String,
-    /// The adapter is a program on the CPU: its times rank techniques only roughly and say nothing about a GPU.
-    pub is_software: bool,
-}
-
-impl AdapterInfo {
-    /// What a report says of an adapter.
-    pub fn of(adapter: &AdapterReport) -> Self {
-        Self {
-            name: adapter.name.clone(),
-            driver: adapter.driver_and_version(),
-            backend: adapter.backend.to_string(),
-            is_software: adapter.is_software(),
-        }
-    }
 }
 
 /// The traced truth, its picture, and the pixels over which techniques are judged.

@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::html::{escape, grouped, three_figures};
-use super::model::AdapterInfo;
 use super::page::{ICON, STYLE, software_notice};
+use crate::adapter_info::AdapterInfo;
 use crate::output_files::{FileError, write_atomically};
 use crate::reproduce::{
     ExhibitResult, Judged, Measured, Outcome, Paper, RowResult, SCENES_VARIABLE, Verdict, VerdictCount,

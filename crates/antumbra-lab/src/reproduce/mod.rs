@@ -7,20 +7,24 @@
 
 mod claim;
 mod exhibit;
+mod figure;
 mod outcome;
 mod papers;
 mod preset;
 mod run;
 mod session;
+mod verdict;
 mod views;
 
-pub use claim::{Claim, Judged, Rule, Verdict, judge};
+pub use claim::{Claim, Rule};
 pub use exhibit::{Exhibit, Measure, Paper, Reported, Row, Settings};
-pub use outcome::{Figure, Measured, Outcome};
+pub use figure::Figure;
+pub use outcome::{Measured, Outcome};
 pub use papers::PAPERS;
 pub use preset::{PRESETS, Preset};
 pub use run::{Bench, Pictures, Ran, RunOptions};
 pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Session, VerdictCount};
+pub use verdict::{Judged, Verdict, judge};
 pub use views::VIEWS;
 
 /// The environment variable that names the folder with scenes that are files.

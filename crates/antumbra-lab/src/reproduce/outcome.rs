@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SCENES_VARIABLE;
 use super::exhibit::Measure;
+use super::figure::Figure;
 use crate::stopwatch::FrameCount;
 
 /// What came of a row.
@@ -54,44 +55,6 @@ pub struct Measured {
     pub size_px: [u32; 2],
     /// Triangles as drawn.
     pub triangles: u64,
-}
-
-/// Which figure a rule is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Figure {
-    /// Milliseconds of what the row names.
-    Ms,
-    /// Root of the mean squared error.
-    Rmse,
-    /// Mean visibility where the reference is umbra.
-    UmbraLeak,
-    /// Mean of what is missing where the reference is lit.
-    LitLoss,
-    /// Memory, MiB.
-    MemoryMib,
-}
-
-impl Figure {
-    /// A value for readers.
-    pub fn text(self, value: f64) -> String {
-        match self {
-            Self::Ms => format!("{value:.3} ms"),
-            Self::Rmse | Self::UmbraLeak | Self::LitLoss => format!("{value:.4}"),
-            Self::MemoryMib => format!("{value:.1} MiB"),
-        }
-    }
-}
-
-impl fmt::Display for Figure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Ms => "time",
-            Self::Rmse => "rmse",
-            Self::UmbraLeak => "umbra leak",
-            Self::LitLoss => "lit loss",
-            Self::MemoryMib => "memory",
-        })
-    }
 }
 
 impl Measured {

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::claim::{Judged, Verdict, judge};
 use super::exhibit::{Exhibit, Measure, Paper, Row};
 use super::outcome::Outcome;
 use super::run::{Bench, Pictures, Ran, RunOptions};
+use super::verdict::{Judged, Verdict, judge};
 use super::{PAPERS, exhibit_name, views};
 use crate::device::LabDevice;
 use crate::error::LabError;

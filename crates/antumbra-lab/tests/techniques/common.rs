@@ -84,7 +84,12 @@ impl Judged {
         Self::set_up(size_px, spec, &VisibilityOptions { samples, ..VisibilityOptions::default() }, change)
     }
 
-    fn set_up(size_px: UVec2, spec: &str, options: &VisibilityOptions, change: impl FnOnce(&mut Setup)) -> Self {
+    pub(crate) fn set_up(
+        size_px: UVec2,
+        spec: &str,
+        options: &VisibilityOptions,
+        change: impl FnOnce(&mut Setup),
+    ) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a built-in scene");
         let mut setup = Setup::for_scene(&scene);
         change(&mut setup);

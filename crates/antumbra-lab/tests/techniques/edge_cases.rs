@@ -160,6 +160,7 @@ pub(crate) fn usual_bound(kind: TechniqueKind) -> f32 {
         TechniqueKind::MultiLayer => 0.064,
         TechniqueKind::Reprojection => 0.134,
         TechniqueKind::ReprojectionLayered => 0.121,
+        TechniqueKind::RayTraced => 0.1,
         TechniqueKind::AliasFree => 0.096,
         TechniqueKind::SampleBased => 0.023,
         other => panic!("{other} has no bound yet: measure one"),

@@ -416,6 +416,7 @@ kept! {
     multi_layer: MultiLayer,
     reprojection: Reprojection,
     reprojection_layered: ReprojectionLayered,
+    ray_traced: RayTraced,
     alias_free: AliasFree,
     sample_based: SampleBased,
 }

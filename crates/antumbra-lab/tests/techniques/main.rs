@@ -11,6 +11,7 @@ mod grounds;
 mod kept;
 mod many_lights;
 mod multi_layer;
+mod ray_traced;
 mod reprojection;
 mod roughness;
 mod sample_based;

@@ -281,6 +281,18 @@ impl Same {
         Truth { judged: judged.filter_map(|((i, v), faces)| faces.then_some((i, v[0]))).collect() }
     }
 
+    /// How far judged pixels are from what the tracer has from these receivers or from those that its own camera's rays find, each from
+    /// the nearer answer, the least first: at edges these are two surfaces.
+    pub(crate) fn errors_to_either(&self, options: &VisibilityOptions, ours: &[f32]) -> Vec<f64> {
+        let receivers = self.tracer.primary(&self.setup.camera, self.size_px);
+        let image = self.tracer.visibility(&receivers, self.light(), options, &|_| {}, &AtomicBool::new(false));
+        let of_rays = image.expect("a good light").values;
+        let error = |(i, truth): &(usize, f32)| (ours[*i] - truth).abs().min((ours[*i] - of_rays[*i][0]).abs());
+        let mut errors: Vec<f64> = self.truth(options).judged.iter().map(|pixel| f64::from(error(pixel))).collect();
+        errors.sort_by(f64::total_cmp);
+        errors
+    }
+
     /// Every pixel's bits, by the order of the sample set: words of 64, as [`Tracer::visible_mask`] has them.
     fn bits(&self, lab: &LabDevice, params: &SampleBasedParams) -> Vec<Vec<u64>> {
         let gpu = lab.gpu();

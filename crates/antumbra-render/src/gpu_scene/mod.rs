@@ -17,9 +17,10 @@ mod repose;
 mod split;
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use antumbra::contract::VertexFaces;
-use antumbra::{Gpu, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
+use antumbra::{Gpu, MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture};
 use antumbra_scene::{
     Aabb, AlphaMode, Coverage, Image, Instance, Material, Mesh, Occluder, Scene, SurfacePicture, Translucency, Wrap,
 };
@@ -73,7 +74,12 @@ pub(crate) struct Geometry {
     pub occluder: Occluder,
     closed: bool,
     caster: CasterSurface,
+    /// Another for each pose.
+    version: MeshVersion,
 }
+
+/// The number of the next geometry of any scene.
+static NEXT_GEOMETRY: AtomicU64 = AtomicU64::new(0);
 
 /// A texture and how it is sampled.
 #[derive(Clone, Copy, Debug)]
@@ -209,6 +215,7 @@ impl GpuScene {
             closed: geometry.closed && !draw.mirrored,
             opacity,
             bounds: draw.bounds,
+            version: Some(geometry.version),
         })
     }
 
@@ -348,6 +355,7 @@ impl<'a> Upload<'a> {
             occluder,
             closed,
             caster,
+            version: MeshVersion { mesh: NEXT_GEOMETRY.fetch_add(1, Ordering::Relaxed), vertices: 0 },
         }
     }
 

@@ -47,8 +47,9 @@ impl GpuScene {
         true
     }
 
-    fn write_vertices(&self, gpu: &Gpu, geometry: usize, part: &MeshPart<'_>) {
-        let geometry = &self.geometries[geometry];
+    fn write_vertices(&mut self, gpu: &Gpu, geometry: usize, part: &MeshPart<'_>) {
+        let geometry = &mut self.geometries[geometry];
+        geometry.version.vertices += 1;
         gpu.queue().write_buffer(&geometry.positions, 0, bytemuck::cast_slice(&part.positions));
         gpu.queue().write_buffer(&geometry.normals, 0, bytemuck::cast_slice(&part.normals));
     }

@@ -1,4 +1,4 @@
-//! Compressed buffer views.
+//! Compression of buffer views, as a view describes it.
 //!
 //! Source: EXT_meshopt_compression (Kapoulkine 2021) and its successor KHR_meshopt_compression.
 
@@ -6,10 +6,8 @@ use gltf::json::buffer::View;
 use serde_json::Value;
 
 use super::fault::{Fault, Result};
-use super::limits::Budget;
-use super::meshopt_codec as codec;
 
-/// What a compressed view says about itself.
+/// Compression of a buffer view, as the view describes it.
 pub(super) struct Compression<'v> {
     /// The buffer that holds the compressed bytes, and where in it they lie.
     pub buffer: usize,
@@ -51,19 +49,5 @@ impl<'v> Compression<'v> {
             mode: text("mode").ok_or_else(|| missing("mode"))?,
             filter: text("filter").unwrap_or("NONE"),
         }))
-    }
-
-    /// `byteStride · count` bytes from the compressed ones, taken from the budget before they are made.
-    pub(super) fn decode(&self, encoded: &[u8], budget: &Budget, view: &View, place: &str) -> Result<Vec<u8>> {
-        let bad = |problem: String, remedy: &str| Fault::new(place, problem, remedy);
-        let size = self.stride.checked_mul(self.count).filter(|size| *size as u64 == view.byte_length.0);
-        let Some(size) = size else {
-            return Err(bad(
-                format!("{} elements of {} bytes are not {} bytes", self.count, self.stride, view.byte_length.0),
-                "`count` times `byteStride` must be the view's `byteLength`",
-            ));
-        };
-        budget.take_decoded_bytes(size, place)?;
-        codec::decode(self, encoded, place)
     }
 }

@@ -28,6 +28,7 @@ mod limits;
 mod materials;
 #[cfg_attr(not(feature = "meshopt"), path = "meshopt_absent.rs")]
 mod meshopt_codec;
+mod meshopt_decode;
 mod meshopt_view;
 mod nodes;
 mod numbers;

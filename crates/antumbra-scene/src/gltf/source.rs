@@ -12,6 +12,7 @@ use super::container::Container;
 use super::document;
 use super::fault::{Fault, Result, quoted};
 use super::limits::{Budget, Limits};
+use super::meshopt_decode;
 use super::meshopt_view::Compression;
 use super::uri;
 
@@ -160,7 +161,7 @@ impl<'a> Source<'a> {
             let cell = &self.decoded_views[index];
             if cell.get().is_none() {
                 let encoded = self.buffer_range(compression.buffer, compression.offset, compression.length, &place)?;
-                let _ = cell.set(compression.decode(encoded, &self.budget, view, &place)?);
+                let _ = cell.set(meshopt_decode::decode(&compression, encoded, &self.budget, view, &place)?);
             }
             return Ok(ViewBytes { bytes: cell.get().map_or(&[], Vec::as_slice), stride });
         }

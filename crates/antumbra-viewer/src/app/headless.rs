@@ -15,7 +15,7 @@ use web_time::Instant;
 use super::{App, Outcome};
 use crate::device::device_descriptor;
 use crate::file_dialog::FileDialog;
-use crate::loader::one_line;
+use crate::message::one_line;
 use crate::options::ViewerOptions;
 use crate::state::{Show, Side};
 

@@ -10,6 +10,7 @@ mod lists;
 mod present;
 mod refusals;
 mod side;
+mod side_readings;
 mod texture_reader;
 mod times;
 
@@ -30,9 +31,11 @@ pub use inspector::{Inspected, InspectedSurface};
 pub use light_map::MapChoices;
 pub use present::{ERROR_RAMP, ERROR_RANGE, NOT_JUDGED_COLOR, OUTPUT_FORMAT};
 pub use side::SideWork;
+pub use side_readings::SideReadings;
 pub use texture_reader::Texels;
 pub use times::{FRAMES, FrameTimes, Times};
 
+pub use crate::aside::Wake;
 use crate::state::{Show, Side, State};
 use crate::truth::Estimate;
 use inspector::{Asked, PixelReader};
@@ -41,9 +44,6 @@ use lists::ListsPass;
 use present::{Present, Shown, SideImages, upload_f32};
 use side::SideFrame;
 use texture_reader::TextureReader;
-
-/// Called from any thread when there is something new to show.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// When a technique's programs are compiled.
 #[derive(Clone)]

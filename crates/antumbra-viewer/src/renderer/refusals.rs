@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use antumbra::Gpu;
 
-use crate::loader::one_line;
+use crate::message::one_line;
 
 /// Refusals that come late.
 #[derive(Clone, Debug, Default)]

@@ -17,12 +17,12 @@ use web_time::Instant;
 use super::light_map::{MapChoices, ShownMap, of_point};
 use super::lists::level_of;
 use super::refusals::Refusals;
+use super::side_readings::SideReadings;
 use super::texture_reader::TextureReader;
 use super::times::{FrameClock, FrameTimes, Times};
 use super::{Compile, Wake};
 use crate::aside::aside;
 use crate::state::{Show, Side};
-use crate::ui::SideReadings;
 
 /// Techniques that a side has compiled at a time: the chosen one, and one that was chosen before it. Each takes memory, on
 /// software devices hundreds of megabytes, and a minute where they are slow.
@@ -432,8 +432,8 @@ impl SideWork {
     ) -> Result<(), String> {
         let began = Instant::now();
         let made_before = gpu.objects_made();
-        let mut works = Vec::new();
         let casters = frame.scene.casters_of_lights();
+        let mut works = Vec::new();
         for ((shadow, light), mask) in self.shadows.iter_mut().zip(frame.lights).zip(&self.masks) {
             let casters = Casters::Meshes(casters.of(light));
             let work = shadow.prepare(&Frame { light, casters, receivers: frame.images.receivers(), mask });

@@ -207,7 +207,13 @@ fn flapping(time_s: f32) -> Scene {
 fn a_scene_at_another_time_is_what_it_is_when_opened_then() {
     let Some(gpu) = gpu_or_skip() else { return };
     // What keeps anything of the frames before: maps, lists of texels and of receivers, triangles.
-    for kind in [TechniqueKind::Pcss, TechniqueKind::MultiView, TechniqueKind::AliasFree, TechniqueKind::MultiLayer] {
+    for kind in [
+        TechniqueKind::Pcss,
+        TechniqueKind::MultiView,
+        TechniqueKind::AliasFree,
+        TechniqueKind::MultiLayer,
+        TechniqueKind::RayTraced,
+    ] {
         let mut state = State::new(kind, TechniqueKind::Hard);
         state.sides[0].set_quality(Quality::Fast);
         state.open("flapping", &flapping(0.0), None);
@@ -280,7 +286,7 @@ fn light_maps_are_seen_as_the_light_sees() {
     let (scene, setup) = board_over_floor();
     let mut with_map = 0;
     // Of those with many maps, lists or layers one stands for all: they take long on software devices.
-    let others = ["multi_view", "reprojection", "reprojection_layered", "alias_free", "sample_based"];
+    let others = ["multi_view", "reprojection", "reprojection_layered", "ray_traced", "alias_free", "sample_based"];
     for &kind in TechniqueKind::ALL.iter().filter(|kind| !others.contains(&kind.name())) {
         let mut state = State::new(kind, TechniqueKind::Hard);
         state.sides[0].set_quality(Quality::Fast);

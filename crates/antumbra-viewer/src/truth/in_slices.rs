@@ -11,7 +11,7 @@ use web_time::Instant;
 
 use super::tracing::Tracing;
 use super::{Estimate, Job};
-use crate::renderer::Wake;
+use crate::aside::Wake;
 
 /// How long a frame may trace: about half of a sixtieth of a second.
 const SLICE: Duration = Duration::from_millis(8);

@@ -18,7 +18,7 @@ use in_slices::Slices as Worker;
 #[cfg(not(target_arch = "wasm32"))]
 use on_thread::Thread as Worker;
 
-use crate::renderer::Wake;
+use crate::aside::Wake;
 
 /// Light points of each round; a multiple of nothing, and a square for the stratified set.
 pub const ROUND_POINTS: u32 = 16;

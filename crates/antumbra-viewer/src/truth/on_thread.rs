@@ -11,7 +11,7 @@ use antumbra_scene::Scene;
 
 use super::tracing::Tracing;
 use super::{Estimate, Job};
-use crate::renderer::Wake;
+use crate::aside::Wake;
 
 /// The thread, which ends with this value.
 pub struct Thread {

@@ -17,7 +17,7 @@ pub use open::OpenWindow;
 #[cfg(not(target_arch = "wasm32"))]
 pub use open::action_for;
 pub use picture::show as show_picture;
-pub use readings::{Readings, SideReadings, status_bar};
+pub use readings::{Readings, status_bar};
 pub use timeline::show as timeline;
 
 use crate::renderer::MapChoices;

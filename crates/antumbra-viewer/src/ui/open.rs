@@ -3,8 +3,8 @@
 use antumbra_scene::builtin;
 
 use super::Action;
+use crate::aside::Wake;
 use crate::loader::is_setup;
-use crate::renderer::Wake;
 use crate::thumbnails::{SIZE_PX, Thumbnails};
 
 /// A page has one thread, which tracing would hold up.

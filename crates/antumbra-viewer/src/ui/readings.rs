@@ -1,26 +1,7 @@
 //! What is measured of what is shown: times, memory, errors.
 
-use antumbra::TechniqueKind;
-
-use crate::renderer::{ERROR_RAMP, ERROR_RANGE, FrameTimes, Times};
+use crate::renderer::{ERROR_RAMP, ERROR_RANGE, FrameTimes, SideReadings, Times};
 use crate::state::State;
-
-/// What is measured of one side.
-#[derive(Clone, Copy, Debug)]
-pub struct SideReadings<'a> {
-    /// What is being compiled.
-    pub compiling: Option<TechniqueKind>,
-    /// Why it cannot draw.
-    pub problem: Option<&'a str>,
-    /// What the last frame lacked room for.
-    pub overflow: Option<&'a str>,
-    /// Times of the last frames.
-    pub times: &'a Times,
-    /// GPU memory that the technique holds, bytes.
-    pub memory_bytes: u64,
-    /// The error against the truth so far.
-    pub rmse: Option<f64>,
-}
 
 /// What is measured.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use antumbra::contract::{ParamScale, ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
 
 use super::decimals;
-use super::readings::SideReadings;
+use crate::renderer::SideReadings;
 use crate::state::Side;
 
 /// The technique's name and quality, what it is, and its parameters, on a device of these features.

@@ -20,15 +20,16 @@
 //! ```
 
 use std::ops::Range;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec3};
 use slotmap::SlotMap;
 
-use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture, tints};
-use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Span, Stage, ViewKind};
+use crate::contract::{
+    CastersKey, Error, MaskChannels, MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture, tints,
+};
+use crate::gpu::{Commands, Gpu, Keep, Recorder, Span, Stage, ViewKind};
 
 mod arena;
 mod mesh;
@@ -146,7 +147,7 @@ pub struct CasterSet {
     /// The version that the last update brought to the GPU.
     updated: Option<u64>,
     /// Commands of an update were never submitted.
-    are_dropped: Arc<AtomicBool>,
+    commands: Commands,
 }
 
 #[derive(Debug)]
@@ -158,6 +159,7 @@ struct MeshEntry {
     bounds: Aabb,
     /// To be packed with the next update.
     is_changed: bool,
+    version: MeshVersion,
     users: u32,
 }
 
@@ -182,6 +184,8 @@ const WHO: &str = "casters";
 
 /// The number of the next set.
 static NEXT_SET: AtomicU64 = AtomicU64::new(0);
+/// The number of the next mesh of any set.
+static NEXT_MESH: AtomicU64 = AtomicU64::new(0);
 
 impl CasterSet {
     /// An empty set.
@@ -204,7 +208,7 @@ impl CasterSet {
             number: NEXT_SET.fetch_add(1, Ordering::Relaxed),
             version: 0,
             updated: None,
-            are_dropped: Arc::default(),
+            commands: Commands::default(),
         }
     }
 
@@ -238,6 +242,7 @@ impl CasterSet {
             closed: is_closed(mesh),
             bounds: mesh.bounds,
             is_changed: true,
+            version: MeshVersion { mesh: NEXT_MESH.fetch_add(1, Ordering::Relaxed), vertices: 0 },
             users: 0,
         }))
     }
@@ -264,6 +269,7 @@ impl CasterSet {
         }
         let has_new_bounds = entry.bounds != mesh.bounds;
         (entry.source, entry.closed, entry.bounds, entry.is_changed) = (source, is_closed(mesh), mesh.bounds, true);
+        entry.version.vertices += 1;
         self.version += 1;
         if has_new_bounds {
             for caster in self.casters.values_mut().filter(|caster| caster.mesh == id && caster.source.is_none()) {
@@ -397,11 +403,11 @@ impl CasterSet {
     /// # Errors
     /// None today; devices may refuse in later versions.
     pub fn update(&mut self, recorder: &mut Recorder<'_>) -> Result<(), Error> {
-        if self.updated == Some(self.version) && !self.are_dropped.load(Ordering::Acquire) {
+        if self.updated == Some(self.version) && !self.commands.are_dropped() {
             return Ok(());
         }
         let gpu = self.gpu.clone();
-        if self.are_dropped.swap(false, Ordering::AcqRel) {
+        if self.commands.take_dropped() {
             self.bring_all();
         }
         let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), None);
@@ -414,7 +420,7 @@ impl CasterSet {
         self.upload_instances(&stage, encoder, &mut dispatches);
         let uploads;
         (self.keep, uploads) = stage.finish();
-        recorder.upload(uploads, CommandsEnd::of(&self.are_dropped));
+        recorder.upload(uploads, self.commands.end());
         if !dispatches.is_empty() {
             recorder.compute("pack casters", Span::Only, |pass| {
                 dispatches.iter().for_each(|dispatch| dispatch.record(pass));
@@ -429,7 +435,11 @@ impl CasterSet {
 
     /// Has the next update bring everything: what an earlier one recorded came to nothing.
     fn bring_all(&mut self) {
-        self.meshes.values_mut().for_each(|mesh| mesh.is_changed = true);
+        for mesh in self.meshes.values_mut() {
+            mesh.is_changed = true;
+            // What was made of the buffers meanwhile is of what they held before.
+            mesh.version.vertices += 1;
+        }
         self.casters.values_mut().for_each(|caster| caster.is_moved = true);
         self.version += 1;
     }
@@ -527,6 +537,7 @@ impl CasterSet {
                     closed: mesh.closed && !caster.is_mirrored,
                     opacity: opacity_of(&caster.surface, arena.column(1)),
                     bounds: caster.bounds,
+                    version: Some(mesh.version),
                 }
             })
             .collect())

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::mesh::{Indices, InstanceBuffer, InstanceLayout, Mesh, PositionFormat, Positions, TextureCoordinateFormat};
 use crate::contract::Error;
-use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_pipeline, dispatch_threads, gpu_structs};
+use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_pipeline, dispatch_threads, gpu_structs, shared_constants};
 use crate::shaders;
 
 gpu_structs! {
@@ -63,6 +63,22 @@ bindings! {
         2 instances: ReadWrite,
     }
 }
+
+shared_constants! {
+    /// Formats of positions and texture coordinates.
+    const FLOAT_32: u32 = 0, as in PACK_MESH;
+    const SNORM_16: u32 = 1, as in PACK_MESH;
+    const UNORM_16: u32 = 2, as in PACK_MESH;
+    const FLOAT_16: u32 = 3, as in PACK_MESH;
+    /// Format of texture coordinates that a mesh does not have.
+    const NO_UVS: u32 = 4, as in PACK_MESH;
+    /// Formats of indices.
+    const NO_INDICES: u32 = 0, as in PACK_MESH;
+    const INDICES_16: u32 = 1, as in PACK_MESH;
+}
+
+/// Format of indices that are neither.
+const INDICES_32: u32 = 2;
 
 /// What errors name in place of a technique.
 const WHO: &str = "casters";
@@ -153,9 +169,9 @@ impl MeshSource {
         let corner_count = indices.map_or(vertex_count, |indices| indices.count);
         let index_count = index_count_of(*topology, corner_count)?;
         let (position_format, position_scale, position_offset) = match format {
-            PositionFormat::Float32x3 => (0, Vec3::ONE, Vec3::ZERO),
-            PositionFormat::Snorm16x4 { scale, offset } => (1, scale, offset),
-            PositionFormat::Unorm16x4 { scale, offset } => (2, scale, offset),
+            PositionFormat::Float32x3 => (FLOAT_32, Vec3::ONE, Vec3::ZERO),
+            PositionFormat::Snorm16x4 { scale, offset } => (SNORM_16, scale, offset),
+            PositionFormat::Unorm16x4 { scale, offset } => (UNORM_16, scale, offset),
         };
         let of_positions = Words::of_items("the positions", buffer, [offset, stride, format.bytes()], vertex_count)?;
         let of_uvs = uvs
@@ -182,15 +198,15 @@ impl MeshSource {
             }),
             base_vertex: indices.map_or(0, |indices| indices.base_vertex),
             position_format,
-            uv_format: uvs.map_or(4, |uvs| match uvs.format {
-                TextureCoordinateFormat::Float32x2 => 0,
-                TextureCoordinateFormat::Snorm16x2 => 1,
-                TextureCoordinateFormat::Unorm16x2 => 2,
-                TextureCoordinateFormat::Float16x2 => 3,
+            uv_format: uvs.map_or(NO_UVS, |uvs| match uvs.format {
+                TextureCoordinateFormat::Float32x2 => FLOAT_32,
+                TextureCoordinateFormat::Snorm16x2 => SNORM_16,
+                TextureCoordinateFormat::Unorm16x2 => UNORM_16,
+                TextureCoordinateFormat::Float16x2 => FLOAT_16,
             }),
-            index_format: indices.map_or(0, |indices| match indices.format {
-                wgpu::IndexFormat::Uint16 => 1,
-                wgpu::IndexFormat::Uint32 => 2,
+            index_format: indices.map_or(NO_INDICES, |indices| match indices.format {
+                wgpu::IndexFormat::Uint16 => INDICES_16,
+                wgpu::IndexFormat::Uint32 => INDICES_32,
             }),
             is_strip: (*topology == wgpu::PrimitiveTopology::TriangleStrip).into(),
             ..PackMesh::default()

@@ -39,7 +39,7 @@ impl MeshCaster<'_> {
 /// Indexed triangles of one surface, drawn `instance_count` times.
 ///
 /// Buffers stay the host's. They need the usages `VERTEX`, and `INDEX` for the indices; techniques that read
-/// triangles in compute (`alias_free`, `sample_based`, `multi_view` unless it compares otherwise) also need `STORAGE` on all
+/// triangles in compute (`ray_traced`, `alias_free`, `sample_based`, `multi_view` unless it compares otherwise) also need `STORAGE` on all
 /// three, and `multi_layer` sees parts of texels where positions and indices have it.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshCaster<'a> {
@@ -64,6 +64,18 @@ pub struct MeshCaster<'a> {
     pub opacity: Opacity<'a>,
     /// World-space box of all instances, infinite on sides that are not known ([`Aabb::EVERYTHING`] on all).
     pub bounds: Aabb,
+    /// What tells the mesh from what it was, for a technique that keeps something of a mesh from frame to frame (`ray_traced`); `None`
+    /// where nothing does: all of it may be another in each frame.
+    pub version: Option<MeshVersion>,
+}
+
+/// What a mesh's positions and indices are: equal versions, equal meshes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MeshVersion {
+    /// No other mesh has it, nor has the same place in buffers once it holds another mesh.
+    pub mesh: u64,
+    /// Another for each pose of the mesh: skinned, morphed.
+    pub vertices: u64,
 }
 
 /// What a surface does to light that meets it.

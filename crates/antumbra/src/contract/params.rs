@@ -64,6 +64,25 @@ impl fmt::Display for ParamList {
     }
 }
 
+/// Values of each type that a parameter can have, for [`Params::set_value`].
+macro_rules! into_values {
+    ($( $ty:ty as $variant:ident, )+) => { $(
+        impl From<$ty> for ParamValue {
+            fn from(value: $ty) -> Self {
+                Self::$variant(value)
+            }
+        }
+    )+ };
+}
+
+into_values! {
+    u32 as U32,
+    f32 as F32,
+    bool as Bool,
+    &'static str as Choice,
+    ParamList as List,
+}
+
 impl fmt::Display for ParamValue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -118,6 +137,8 @@ pub trait ParamType: Copy {
     fn parse(text: &str) -> Option<Self>;
     /// The value, untyped.
     fn value(self) -> ParamValue;
+    /// A value of this type; `None` of a value of another, or one that is not finite.
+    fn from_value(value: ParamValue) -> Option<Self>;
     /// The value as a number, for range checks; `None` for switches and choices.
     fn number(self) -> Option<f64> {
         None
@@ -131,6 +152,9 @@ impl ParamType for u32 {
     fn value(self) -> ParamValue {
         ParamValue::U32(self)
     }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::U32(number) = value { Some(number) } else { None }
+    }
     fn number(self) -> Option<f64> {
         Some(f64::from(self))
     }
@@ -143,6 +167,9 @@ impl ParamType for f32 {
     fn value(self) -> ParamValue {
         ParamValue::F32(self)
     }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::F32(number) = value { Some(number).filter(|number| number.is_finite()) } else { None }
+    }
     fn number(self) -> Option<f64> {
         Some(f64::from(self))
     }
@@ -154,6 +181,9 @@ impl ParamType for bool {
     }
     fn value(self) -> ParamValue {
         ParamValue::Bool(self)
+    }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::Bool(switch) = value { Some(switch) } else { None }
     }
 }
 
@@ -168,6 +198,9 @@ impl ParamType for ParamList {
     fn value(self) -> ParamValue {
         ParamValue::List(self)
     }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::List(list) = value { Self::new(list.values()) } else { None }
+    }
 }
 
 /// A technique's parameters.
@@ -180,11 +213,34 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
     fn specs() -> &'static [ParamSpec];
     /// The value of a key of [`Self::specs`].
     fn get(&self, key: &str) -> Option<ParamValue>;
+    /// The value that a text stands for as that of a key of [`Self::specs`]; `None` where it stands for none.
+    fn parse(key: &str, text: &str) -> Option<ParamValue>;
+    /// Sets a key of [`Self::specs`], in range or not; `None`, and nothing is set, where the value is of another type.
+    fn put(&mut self, key: &str, value: ParamValue) -> Option<()>;
+
     /// Sets a key from text. Keys, choices and switches are read in any case.
     ///
     /// # Errors
     /// Names the keys there are, or what the key takes.
-    fn set(&mut self, technique: &'static str, key: &str, text: &str) -> Result<(), ParamError>;
+    fn set(&mut self, technique: &'static str, key: &str, text: &str) -> Result<(), ParamError> {
+        let spec = spec_of::<Self>(technique, key)?;
+        put_in_range(self, technique, spec, Self::parse(spec.key, text), || text.into())
+    }
+
+    /// Sets a key to a value of its type: `set_value("pcf", "map_size", 2048)`.
+    ///
+    /// # Errors
+    /// As [`Self::set`].
+    fn set_value(
+        &mut self,
+        technique: &'static str,
+        key: &str,
+        value: impl Into<ParamValue>,
+    ) -> Result<(), ParamError> {
+        let (spec, value) = (spec_of::<Self>(technique, key)?, value.into());
+        put_in_range(self, technique, spec, Some(value), || value.to_string())
+    }
+
     /// Checks every number against its range; fields are public and can be set past [`Self::set`].
     ///
     /// # Errors
@@ -193,7 +249,7 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
         let mut checked = Self::default();
         for spec in Self::specs() {
             if let Some(value) = self.get(spec.key) {
-                checked.set(technique, spec.key, &value.to_string())?;
+                checked.set_value(technique, spec.key, value)?;
             }
         }
         Ok(())
@@ -209,140 +265,36 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
     }
 }
 
-/// Declares a technique's parameters; see [`ParamSpec`] for the facts each states. Behind the struct may stand what the steps of
-/// [`Quality`] set otherwise than the defaults: `Fast { samples: 16, }`; and behind those what the technique's paper prints
-/// otherwise, with what ours does in its place, and the departures that no parameter turns off:
-/// `=> Paper { samples: 1, ours "64 of them."; } kept { "A warped window.", }`.
-macro_rules! params {
-    ($(#[$outer:meta])* pub struct $name:ident { $(
-        $(#[doc = $doc:literal])+
-        $key:ident: $ty:ty = $default:expr $(, in $low:literal..=$high:literal)? $(, unit $unit:literal)?
-        $(, scale $scale:ident)? , more $more:literal;
-    )+ }
-    $( $quality:ident { $( $quality_key:ident: $quality_value:expr, )+ } )*
-    $( => Paper { $( $paper_key:ident: $paper_value:expr, ours $ours:literal; )* } kept { $( $kept:literal, )* } )?
-    ) => {
-        $(#[$outer])*
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct $name { $( $(#[doc = $doc])+ pub $key: $ty, )+ }
-
-        impl Default for $name {
-            fn default() -> Self {
-                Self { $( $key: $default, )+ }
-            }
-        }
-
-        impl $crate::contract::Params for $name {
-            fn of_quality(quality: $crate::contract::Quality) -> Self {
-                match quality {
-                    $( $crate::contract::Quality::$quality => Self { $( $quality_key: $quality_value, )+ ..Self::default() }, )*
-                    $( $crate::contract::Quality::Paper => Self { $( $paper_key: $paper_value, )* ..Self::default() }, )?
-                    _ => Self::default(),
-                }
-            }
-
-            #[allow(unreachable_code)]
-            fn printed() -> Option<&'static $crate::contract::Printed> {
-                $( return Some(&$crate::contract::Printed {
-                    departures: &[$( $crate::contract::Departure { key: stringify!($paper_key), ours: $ours }, )*],
-                    kept: &[$( $kept, )*],
-                }); )?
-                None
-            }
-
-            fn specs() -> &'static [$crate::contract::ParamSpec] {
-                static SPECS: std::sync::LazyLock<Vec<$crate::contract::ParamSpec>> = std::sync::LazyLock::new(|| {
-                    use $crate::contract::{ParamScale, ParamSpec, ParamType};
-                    let defaults = $name::default();
-                    vec![$( {
-                        #[allow(unused_mut, unused_assignments)]
-                        let (mut range, mut unit, mut scale) = (None, "", ParamScale::Linear);
-                        $( range = Some(($low as f64, $high as f64)); )?
-                        $( unit = $unit; )?
-                        $( scale = ParamScale::$scale; )?
-                        ParamSpec {
-                            key: stringify!($key),
-                            meaning: concat!($($doc,)+).trim_ascii(),
-                            unit,
-                            range,
-                            choices: <$ty as ParamType>::CHOICES,
-                            default: defaults.$key.value(),
-                            scale,
-                            more: $more,
-                        }
-                    }, )+]
-                });
-                &SPECS
-            }
-
-            fn get(&self, key: &str) -> Option<$crate::contract::ParamValue> {
-                use $crate::contract::ParamType;
-                match key {
-                    $( stringify!($key) => Some(self.$key.value()), )+
-                    _ => None,
-                }
-            }
-
-            fn set(
-                &mut self,
-                technique: &'static str,
-                key: &str,
-                text: &str,
-            ) -> Result<(), $crate::contract::ParamError> {
-                use $crate::contract::{ParamError, ParamType};
-                let named = Self::specs().iter().find(|spec| spec.key.eq_ignore_ascii_case(key));
-                let spec = named.ok_or_else(|| ParamError::UnknownKey {
-                    technique,
-                    key: key.into(),
-                    known: Self::specs().iter().map(|spec| spec.key).collect::<Vec<_>>().join(", "),
-                })?;
-                let bad_value = || ParamError::BadValue {
-                    technique,
-                    key: spec.key,
-                    value: text.into(),
-                    expected: spec.expected(),
-                };
-                match spec.key {
-                    $( stringify!($key) => {
-                        let value = <$ty as ParamType>::parse(text).ok_or_else(bad_value)?;
-                        if let (Some((low, high)), Some(number)) = (spec.range, value.number()) {
-                            if !(low..=high).contains(&number) {
-                                return Err(bad_value());
-                            }
-                        }
-                        self.$key = value;
-                    } )+
-                    _ => {}
-                }
-                Ok(())
-            }
-        }
-    };
+/// The declaration of a key, read in any case.
+fn spec_of<P: Params>(technique: &'static str, key: &str) -> Result<&'static ParamSpec, ParamError> {
+    let named = P::specs().iter().find(|spec| spec.key.eq_ignore_ascii_case(key));
+    named.ok_or_else(|| ParamError::UnknownKey {
+        technique,
+        key: key.into(),
+        known: P::specs().iter().map(|spec| spec.key).collect::<Vec<_>>().join(", "),
+    })
 }
 
-/// Declares an enum as a parameter's choice; each variant's name is what users write.
-macro_rules! param_choice {
-    ($(#[$outer:meta])* pub enum $name:ident { $( $(#[$inner:meta])* $variant:ident = $text:literal, )+ }) => {
-        $(#[$outer])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum $name { $( $(#[$inner])* $variant, )+ }
-
-        impl $crate::contract::ParamType for $name {
-            const CHOICES: &'static [&'static str] = &[$( $text, )+];
-            fn parse(text: &str) -> Option<Self> {
-                match text {
-                    $( _ if text.eq_ignore_ascii_case($text) => Some(Self::$variant), )+
-                    _ => None,
-                }
-            }
-            fn value(self) -> $crate::contract::ParamValue {
-                $crate::contract::ParamValue::Choice(match self { $( Self::$variant => $text, )+ })
-            }
-        }
+/// Sets a key to a value that is one of its type and in range. `written` is the value as it was given.
+fn put_in_range<P: Params>(
+    params: &mut P,
+    technique: &'static str,
+    spec: &ParamSpec,
+    value: Option<ParamValue>,
+    written: impl Fn() -> String,
+) -> Result<(), ParamError> {
+    let is_in_range = |value: &ParamValue| match (spec.range, *value) {
+        (Some((low, high)), ParamValue::U32(number)) => (low..=high).contains(&f64::from(number)),
+        (Some((low, high)), ParamValue::F32(number)) => (low..=high).contains(&f64::from(number)),
+        _ => true,
     };
+    value.filter(is_in_range).and_then(|value| params.put(spec.key, value)).ok_or_else(|| ParamError::BadValue {
+        technique,
+        key: spec.key,
+        value: written(),
+        expected: spec.expected(),
+    })
 }
-
-pub(crate) use {param_choice, params};
 
 impl ParamType for antumbra_light::SampleSet {
     const CHOICES: &'static [&'static str] = &["stratified", "r2", "sobol", "poisson", "relaxed"];
@@ -351,5 +303,8 @@ impl ParamType for antumbra_light::SampleSet {
     }
     fn value(self) -> ParamValue {
         ParamValue::Choice(self.name())
+    }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::Choice(name) = value { Self::from_name(name) } else { None }
     }
 }

@@ -9,7 +9,7 @@ use glam::UVec2;
 use super::Part;
 use super::region::RegionGpu;
 use crate::contract::{Mask, MaskChannels, PreparedFrame, Receivers};
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels, texture_bytes,
@@ -51,13 +51,23 @@ pub(crate) struct PartPictures {
     join: wgpu::ComputePipeline,
     /// A texture of one texel in place of normals that the host has.
     no_normals: wgpu::TextureView,
-    /// Of the frame prepared.
+    /// Of the last frame.
     picture: Option<Picture>,
+}
+
+/// Receivers, mask and passes of the parts of one frame.
+#[derive(Debug)]
+pub(crate) struct PreparedPictures {
+    inputs: PreparedInputs,
+    picture: Picture,
+    /// Part by part, groups of `pick` and of `join`.
     groups: Vec<[wgpu::BindGroup; 2]>,
+    pick: wgpu::ComputePipeline,
+    join: wgpu::ComputePipeline,
 }
 
 /// Receivers and mask of a part.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Picture {
     depth: (Arc<wgpu::Texture>, wgpu::TextureView),
     normals: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
@@ -77,15 +87,14 @@ impl PartPictures {
             inputs,
             layouts,
             picture: None,
-            groups: Vec::new(),
         }
     }
 
     /// Makes ready for the parts of a frame, whose mask is of 32 bits.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, parts: &[Part]) {
-        self.inputs.prepare(stage, frame);
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, parts: &[Part]) -> PreparedPictures {
+        let inputs = self.inputs.prepare(stage, frame);
         let picture = Picture::prepare(stage, frame, self.picture.as_ref());
-        self.groups.clear();
+        let mut groups = Vec::with_capacity(parts.len());
         for (i, part) in parts.iter().enumerate() {
             // Another for each part, and so no uniforms: drivers may compile for those.
             let region = &stage.storage::<RegionGpu>("antumbra region", &[part.region.to_gpu()]);
@@ -94,14 +103,26 @@ impl PartPictures {
             let normals = picture.normals.as_ref().map_or(&self.no_normals, |(_, view)| view);
             let picked = Picked { region, part_depth: &picture.depth.1, part_normals: normals };
             let joined = Joined { region, part_mask: picture.mask.layers_view(), joining };
-            self.groups.push([picked.group(stage, &self.layouts[0]), joined.group(stage, &self.layouts[1])]);
+            groups.push([picked.group(stage, &self.layouts[0]), joined.group(stage, &self.layouts[1])]);
         }
-        self.picture = Some(picture);
+        self.picture = Some(picture.clone());
+        PreparedPictures { inputs, picture, groups, pick: self.pick.clone(), join: self.join.clone() }
     }
 
+    /// Bytes of the picture.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.picture.as_ref().map_or(0, |picture| {
+            texture_bytes(&picture.depth.0)
+                + picture.normals.as_ref().map_or(0, |(texture, _)| texture_bytes(texture))
+                + texture_bytes(&picture.scratch)
+        })
+    }
+}
+
+impl PreparedPictures {
     /// A part's frame: its light, its receivers, a mask of its own; the frame's casters.
     pub(crate) fn frame_of<'a>(&'a self, frame: &PreparedFrame<'a>, part: &'a Part) -> PreparedFrame<'a> {
-        let picture = self.picture.as_ref().expect("prepare comes before");
+        let picture = &self.picture;
         let receivers = Receivers {
             depth: &picture.depth.1,
             normals: picture.normals.as_ref().map(|(_, view)| view).or(frame.receivers.normals),
@@ -113,7 +134,7 @@ impl PartPictures {
         PreparedFrame { light: &part.light, receivers, mask: &picture.mask, ..*frame }
     }
 
-    /// Records the receivers of part `i` of the frame prepared.
+    /// Records the receivers of part `i`.
     pub(crate) fn pick(&self, recorder: &mut Recorder<'_>, i: usize) {
         self.record(recorder, "receivers of a part", &self.pick, &self.groups[i][0]);
     }
@@ -136,15 +157,6 @@ impl PartPictures {
             pass.set_bind_group(1, group, &[]);
             self.inputs.dispatch(pass);
         });
-    }
-
-    /// Bytes of the picture.
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.picture.as_ref().map_or(0, |picture| {
-            texture_bytes(&picture.depth.0)
-                + picture.normals.as_ref().map_or(0, |(texture, _)| texture_bytes(texture))
-                + texture_bytes(&picture.scratch)
-        })
     }
 }
 

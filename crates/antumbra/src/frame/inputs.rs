@@ -142,7 +142,13 @@ pub(crate) struct FrameInputs {
     light_data: Option<wgpu::Buffer>,
     no_normals: wgpu::TextureView,
     noise_tile: wgpu::TextureView,
-    bind_group: Option<wgpu::BindGroup>,
+}
+
+/// Bind group 0 of one frame, and the size of its picture.
+#[derive(Clone, Debug)]
+pub(crate) struct PreparedInputs {
+    group: wgpu::BindGroup,
+    light_data: wgpu::Buffer,
     size_px: UVec2,
     /// Pixels from one thread of a [known](Self::dispatch_known) pixel to the next.
     stride_px: u32,
@@ -168,26 +174,28 @@ impl FrameInputs {
             light_data: None,
             no_normals,
             noise_tile: blue_noise::tile(gpu).clone(),
-            bind_group: None,
-            size_px: UVec2::ZERO,
-            stride_px: 1,
         }
     }
 
     /// Uploads the frame, which was found to be good.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>) {
-        self.prepare_known(stage, frame, 1);
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> PreparedInputs {
+        self.prepare_known(stage, frame, 1)
     }
 
     /// The same where the pixels that are known are those whose column and row are multiples of `stride_px`.
-    pub(crate) fn prepare_known(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, stride_px: u32) {
-        self.size_px = frame.receivers.size_px;
-        self.stride_px = stride_px;
+    pub(crate) fn prepare_known(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        stride_px: u32,
+    ) -> PreparedInputs {
         let view = ReceiverView { pixel_stride: stride_px, ..receiver_view(stage, frame) };
         write_uniform(stage, &self.receiver_view, &view);
         write_uniform(stage, &self.light_source, &light_source(frame.light));
-        upload_storage(stage, &mut self.light_data, "antumbra light data", &light_data(frame.light));
-        self.bind_group = Some(self.inputs_of(frame).group(stage, &self.layout));
+        let light_data =
+            upload_storage(stage, &mut self.light_data, "antumbra light data", &light_data(frame.light)).clone();
+        let group = self.inputs_of(frame, &light_data).group(stage, &self.layout);
+        PreparedInputs { group, light_data, size_px: frame.receivers.size_px, stride_px }
     }
 
     /// The layout of [`missing_group`](Self::missing_group).
@@ -195,38 +203,40 @@ impl FrameInputs {
         MissingInputs::layout(gpu)
     }
 
-    /// Group 0 of the frame that was prepared last, with a list of pixels.
+    /// Group 0 of a frame, with a list of pixels.
     pub(crate) fn missing_group(
         &self,
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
+        prepared: &PreparedInputs,
         layout: &wgpu::BindGroupLayout,
         missing: &wgpu::Buffer,
     ) -> wgpu::BindGroup {
-        MissingInputs { inputs: self.inputs_of(frame), missing }.group(stage, layout)
+        MissingInputs { inputs: self.inputs_of(frame, &prepared.light_data), missing }.group(stage, layout)
     }
 
-    /// What the frame that was prepared last binds.
-    fn inputs_of<'a>(&'a self, frame: &PreparedFrame<'a>) -> Inputs<'a> {
+    fn inputs_of<'a>(&'a self, frame: &PreparedFrame<'a>, light_data: &'a wgpu::Buffer) -> Inputs<'a> {
         Inputs {
             receiver_view: &self.receiver_view,
             light_source: &self.light_source,
             receiver_depth: frame.receivers.depth,
             receiver_normals: frame.receivers.normals.unwrap_or(&self.no_normals),
             mask: frame.mask.layers_view(),
-            light_data: self.light_data.as_ref().expect("prepare uploads it"),
+            light_data,
             noise_tile: &self.noise_tile,
         }
     }
+}
 
+impl PreparedInputs {
     /// Binds group 0.
     pub(crate) fn bind(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_bind_group(0, self.bind_group.as_ref().expect("prepare comes before record"), &[]);
+        pass.set_bind_group(0, &self.group, &[]);
     }
 
     /// Binds group 0 while something is drawn.
     pub(crate) fn bind_drawn(&self, pass: &mut wgpu::RenderPass<'_>) {
-        pass.set_bind_group(0, self.bind_group.as_ref().expect("prepare comes before record"), &[]);
+        pass.set_bind_group(0, &self.group, &[]);
     }
 
     /// Dispatches one thread a pixel.

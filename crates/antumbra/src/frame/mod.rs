@@ -8,6 +8,8 @@ pub(crate) mod inputs;
 pub(crate) mod narrow_mask;
 #[cfg(any(feature = "multi_layer", feature = "single_map", feature = "summed"))]
 pub(crate) mod resolve;
+#[cfg(feature = "single_map")]
+pub(crate) mod smoothing;
 #[cfg(any(feature = "multi_layer", feature = "single_map", feature = "summed"))]
 pub(crate) mod sparse_upsample;
 pub(crate) mod split_receivers;

@@ -16,9 +16,6 @@ pub(crate) trait Bindings {
     /// The layout's entries.
     fn layout_entries() -> Vec<wgpu::BindGroupLayoutEntry>;
 
-    /// The bindings of [`Numbers`].
-    fn numbers() -> Vec<u32>;
-
     /// The group's entries.
     fn entries(&self) -> Vec<wgpu::BindGroupEntry<'_>>;
 
@@ -28,7 +25,7 @@ pub(crate) trait Bindings {
 
     /// The layout, shared by all that have the same entries.
     fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-        create_layout(gpu, Self::LABEL, &Self::layout_entries(), &Self::numbers())
+        create_layout(gpu, Self::LABEL, &Self::layout_entries())
     }
 
     /// The layout where depth has several samples a texel, or one.
@@ -44,7 +41,7 @@ pub(crate) trait Bindings {
     fn layout_with(gpu: &Gpu, adapt: impl Fn(&mut wgpu::BindingType)) -> wgpu::BindGroupLayout {
         let mut entries = Self::layout_entries();
         entries.iter_mut().for_each(|entry| adapt(&mut entry.ty));
-        create_layout(gpu, Self::LABEL, &entries, &Self::numbers())
+        create_layout(gpu, Self::LABEL, &entries)
     }
 
     /// A frame's group: that of an earlier frame where it is the same.
@@ -60,13 +57,8 @@ pub(crate) trait Bindings {
     }
 }
 
-fn create_layout(
-    gpu: &Gpu,
-    label: &str,
-    entries: &[wgpu::BindGroupLayoutEntry],
-    numbers: &[u32],
-) -> wgpu::BindGroupLayout {
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries }, numbers)
+fn create_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
 }
 
 /// Declares bind groups: label, the stages that see them, and each binding's number, name and [kind](Kind).
@@ -107,13 +99,6 @@ macro_rules! bindings {
                     count: None,
                 }, )+];
                 $crate::gpu::bindings::joined!($($base_ty::layout_entries(),)? own)
-            }
-
-            fn numbers() -> Vec<u32> {
-                use $crate::gpu::bindings::Kind as _;
-                let own = [$( ($binding, $crate::gpu::bindings::$kind::IS_NUMBERS), )+];
-                let own: Vec<u32> = own.into_iter().filter_map(|(binding, is)| is.then_some(binding)).collect();
-                $crate::gpu::bindings::joined!($($base_ty::numbers(),)? own)
             }
 
             fn entries(&self) -> Vec<wgpu::BindGroupEntry<'_>> {
@@ -169,8 +154,6 @@ pub(crate) use {bindings, first_of, joined};
 pub(crate) trait Kind {
     /// What is bound.
     type Bound<'a>: Clone;
-    /// Whether it is [`Numbers`], one or of several.
-    const IS_NUMBERS: bool = false;
     /// Its type in layouts.
     fn ty(&self) -> wgpu::BindingType;
     /// It in groups.
@@ -183,13 +166,12 @@ fn buffer(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
 
 /// Declares kinds of buffers, bound whole.
 macro_rules! buffer_kinds {
-    ($( $(#[$outer:meta])* $name:ident: $ty:expr $(, is_numbers = $is_numbers:literal)?; )+) => { $(
+    ($( $(#[$outer:meta])* $name:ident: $ty:expr; )+) => { $(
         $(#[$outer])*
         pub(crate) struct $name;
 
         impl Kind for $name {
             type Bound<'a> = &'a wgpu::Buffer;
-            $( const IS_NUMBERS: bool = $is_numbers; )?
             fn ty(&self) -> wgpu::BindingType {
                 buffer($ty)
             }
@@ -203,9 +185,6 @@ macro_rules! buffer_kinds {
 buffer_kinds! {
     /// A uniform buffer.
     Uniform: wgpu::BufferBindingType::Uniform;
-    /// A uniform buffer of numbers that decide over no branch and no loop by themselves: one on every device, as
-    /// [`uniforms`](super::uniforms) says.
-    Numbers: wgpu::BufferBindingType::Uniform, is_numbers = true;
     /// A storage buffer that is read.
     Storage: wgpu::BufferBindingType::Storage { read_only: true };
     /// A storage buffer that is read and written.
@@ -239,13 +218,12 @@ part_kinds! {
 
 /// Declares kinds of buffers that hold several items of so many bytes, of which one is chosen where the group is bound.
 macro_rules! dynamic_kinds {
-    ($( $(#[$outer:meta])* $name:ident: $ty:expr $(, is_numbers = $is_numbers:literal)?; )+) => { $(
+    ($( $(#[$outer:meta])* $name:ident: $ty:expr; )+) => { $(
         $(#[$outer])*
         pub(crate) struct $name(pub(crate) usize);
 
         impl Kind for $name {
             type Bound<'a> = &'a wgpu::Buffer;
-            $( const IS_NUMBERS: bool = $is_numbers; )?
             fn ty(&self) -> wgpu::BindingType {
                 let min_binding_size = NonZeroU64::new(self.0 as u64);
                 wgpu::BindingType::Buffer { ty: $ty, has_dynamic_offset: true, min_binding_size }
@@ -261,8 +239,6 @@ macro_rules! dynamic_kinds {
 dynamic_kinds! {
     /// One of several uniforms.
     DynamicUniform: wgpu::BufferBindingType::Uniform;
-    /// One of several [`Numbers`].
-    DynamicNumbers: wgpu::BufferBindingType::Uniform, is_numbers = true;
     /// One of several items that are read.
     DynamicStorage: wgpu::BufferBindingType::Storage { read_only: true };
 }

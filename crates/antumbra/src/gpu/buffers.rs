@@ -1,6 +1,6 @@
 //! Typed uniforms, and the few descriptors that every pass repeats.
 
-use super::{DrawPipeline, Gpu, Stage};
+use super::{DrawPipeline, Gpu, Stage, overrides};
 
 /// Where a member of a [`GpuStruct`] lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,8 +135,7 @@ pub(crate) fn compute_entry(
     constants: &[(&str, f64)],
     bind_group_layouts: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
-    let options = wgpu::PipelineCompilationOptions { constants, ..wgpu::PipelineCompilationOptions::default() };
-    compute_entry_with(gpu, label, wgsl, entry_point, options, bind_group_layouts)
+    compute_entry_with(gpu, label, wgsl, entry_point, constants, true, bind_group_layouts)
 }
 
 /// A compute pipeline of a linked shader's only entry point, which writes all of its workgroup's memory that it reads: the
@@ -148,8 +147,7 @@ pub(crate) fn compute_pipeline_without_zeroing(
     constants: &[(&str, f64)],
     bind_group_layouts: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
-    let options = wgpu::PipelineCompilationOptions { zero_initialize_workgroup_memory: false, constants };
-    compute_entry_with(gpu, label, wgsl, None, options, bind_group_layouts)
+    compute_entry_with(gpu, label, wgsl, None, constants, false, bind_group_layouts)
 }
 
 fn compute_entry_with(
@@ -157,9 +155,12 @@ fn compute_entry_with(
     label: &str,
     wgsl: &'static str,
     entry_point: Option<&str>,
-    compilation_options: wgpu::PipelineCompilationOptions<'_>,
+    constants: &[(&str, f64)],
+    zero_initialize_workgroup_memory: bool,
     bind_group_layouts: &[&wgpu::BindGroupLayout],
 ) -> wgpu::ComputePipeline {
+    let constants = overrides::linked(&crate::shaders::text_of(wgsl), constants);
+    let constants: Vec<_> = constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     let bind_group_layouts: Vec<_> = bind_group_layouts.iter().map(|layout| Some(*layout)).collect();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),
@@ -171,7 +172,10 @@ fn compute_entry_with(
         layout: Some(&layout),
         module: &shader_module(gpu, label, wgsl),
         entry_point,
-        compilation_options,
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants: &constants,
+            zero_initialize_workgroup_memory,
+        },
         cache: None,
     })
 }

@@ -1,7 +1,7 @@
 //! The host's device, and what it offers.
 
 use super::device::{Device, ObjectCounts};
-use super::{rasteriser, uniforms};
+use super::uniforms;
 
 /// A handle on the host's device and queue, with the programs that all lights share: make one for a device, and clone it.
 ///
@@ -38,9 +38,8 @@ impl Gpu {
 
     /// Limits to ask for when making the device: WebGPU's defaults, which are enough everywhere.
     ///
-    /// Mesa's software Vulkan before version 23 compiles shaders anew for the values of their uniforms, at every dispatch, and keeps
-    /// what it compiled. There these are more storage buffers than the defaults; a device that has as many reads uniforms
-    /// from such, and neither waits nor grows.
+    /// On software drivers that compile shaders anew for the values of their uniforms these are more storage buffers than the
+    /// defaults: a device that has as many reads uniforms from storage, and neither waits nor grows.
     pub fn wanted_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
         uniforms::wanted_limits(&adapter.get_info(), &adapter.limits())
     }
@@ -84,18 +83,6 @@ impl Gpu {
     /// The queue.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
-    }
-
-    /// A uniform, `f32`, with usage `COPY_SRC`: by how many texels the adapter's rasteriser draws planes elsewhere than they lie, as
-    /// measured by the first call for this device. About .003 on graphics cards, 0 on software renderers.
-    pub fn snapped_texels(&self) -> &wgpu::Buffer {
-        self.device.snapped_texels(|| rasteriser::measure(self))
-    }
-
-    /// Before it was measured: as if this rasteriser drew planes so many texels elsewhere, beside what it does.
-    #[cfg(test)]
-    pub(crate) fn pretend_snapped(&self, by_texels: f32) {
-        self.device.snapped_texels(|| rasteriser::measure_moved(self, by_texels));
     }
 
     /// The last line of wgpu's validation message about what `run` does; `None` where there is none, or where the device, in a

@@ -9,12 +9,11 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
-use glam::UVec2;
+use super::budget::Budget;
+use super::uniforms::{self, UniformAccess};
+use super::{programs, quirks};
 
-use super::lease::Budget;
-use super::{NoDepth, programs, quirks, uniforms};
-
-/// The host's device, and what the library has made on it that all lights share.
+/// The host's device, and the objects on it that all lights share.
 #[derive(Clone, Debug)]
 pub(crate) struct Device {
     device: wgpu::Device,
@@ -51,6 +50,8 @@ pub(crate) enum Scratch {
     WideMask,
     /// Mask before it is denoised.
     NoisyMask,
+    /// Visibility before it is made smooth over pixels.
+    NoisyVisibility,
     /// Mask of one part of a light.
     PartMask,
     /// Depth of the receivers of one part.
@@ -77,30 +78,39 @@ pub(crate) enum Scratch {
     Links,
     /// Nearest depths of squares of lists.
     NearestSquares,
+    /// Depth attachment without content.
+    NoDepth,
 }
 
-/// A layout's entries, and those of them that are numbers alone: see [`uniforms`].
-type LayoutKey = (Vec<wgpu::BindGroupLayoutEntry>, Vec<u32>);
+/// What lights that share a scratch texture have in common.
+#[derive(Debug, PartialEq)]
+struct ScratchTextureKey {
+    scratch: Scratch,
+    size: wgpu::Extent3d,
+    sample_count: u32,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+}
+
+/// A layout's entries as declared, and as the device has them.
+type LayoutKey = [Vec<wgpu::BindGroupLayoutEntry>; 2];
 
 #[derive(Debug, Default)]
 struct Programs {
     pipeline_cache: Option<wgpu::PipelineCache>,
-    /// As [`uniforms`] says.
-    uniforms_are_storage: bool,
+    uniforms: UniformAccess,
     /// As [`quirks`] says.
     most_turns: u32,
-    bind_group_layouts: Shelf<LayoutKey, wgpu::BindGroupLayout>,
-    pipeline_layouts: Shelf<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
+    bind_group_layouts: DescriptorCache<LayoutKey, wgpu::BindGroupLayout>,
+    pipeline_layouts: DescriptorCache<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
     /// By the address of the linked text, which is the program's own.
-    modules: Shelf<(usize, usize), wgpu::ShaderModule>,
-    compute_pipelines: Shelf<ComputeKey, wgpu::ComputePipeline>,
-    render_pipelines: Shelf<RenderKey, wgpu::RenderPipeline>,
+    modules: DescriptorCache<(usize, usize), wgpu::ShaderModule>,
+    compute_pipelines: DescriptorCache<ComputeKey, wgpu::ComputePipeline>,
+    render_pipelines: DescriptorCache<RenderKey, wgpu::RenderPipeline>,
     /// By their description in words: it has floats.
-    samplers: Shelf<String, wgpu::Sampler>,
-    scratch_textures: SharedPool<(Scratch, wgpu::Extent3d, wgpu::TextureFormat, wgpu::TextureUsages), wgpu::Texture>,
+    samplers: DescriptorCache<String, wgpu::Sampler>,
+    scratch_textures: SharedPool<ScratchTextureKey, wgpu::Texture>,
     scratch_buffers: SharedPool<(Scratch, u64, wgpu::BufferUsages), wgpu::Buffer>,
-    /// By size and samples.
-    no_depths: SharedPool<(UVec2, u32), NoDepth>,
     /// Memory budget of maps that one light owns.
     budget: Arc<Budget>,
     /// What `rasteriser` measures.
@@ -119,17 +129,17 @@ struct Counts {
     bind_groups: AtomicU64,
 }
 
-/// What was made, by what it was made of.
+/// Cache of objects by their descriptors.
 #[derive(Debug)]
-struct Shelf<K, V>(Mutex<HashMap<K, V>>);
+struct DescriptorCache<K, V>(Mutex<HashMap<K, V>>);
 
-impl<K, V> Default for Shelf<K, V> {
+impl<K, V> Default for DescriptorCache<K, V> {
     fn default() -> Self {
         Self(Mutex::new(HashMap::new()))
     }
 }
 
-impl<K: Eq + Hash, V: Clone> Shelf<K, V> {
+impl<K: Eq + Hash, V: Clone> DescriptorCache<K, V> {
     /// The one there is, or a new one. Two threads that miss at once both make one, and the first stays.
     fn get_or_make(&self, key: K, made: &AtomicU64, make: impl FnOnce() -> V) -> V {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -252,7 +262,7 @@ impl Device {
     pub(crate) fn new(device: &wgpu::Device, pipeline_cache: Option<&wgpu::PipelineCache>) -> Self {
         let programs = Programs {
             pipeline_cache: pipeline_cache.cloned(),
-            uniforms_are_storage: uniforms::are_storage(device),
+            uniforms: UniformAccess::of(device),
             most_turns: quirks::most_turns(&device.adapter_info()),
             ..Programs::default()
         };
@@ -281,11 +291,6 @@ impl Device {
         self.device.features()
     }
 
-    /// An attachment without content, shared by all that ask for the size and samples.
-    pub(super) fn no_depth(&self, size: UVec2, sample_count: u32, make: impl FnOnce() -> NoDepth) -> Arc<NoDepth> {
-        self.programs.no_depths.get_or_make((size, sample_count), make)
-    }
-
     /// Memory budget of maps that one light owns.
     pub(super) fn budget(&self) -> &Arc<Budget> {
         &self.programs.budget
@@ -293,10 +298,8 @@ impl Device {
 
     /// Bytes of all resources that lights share.
     pub(super) fn scratch_bytes(&self) -> u64 {
-        let Programs { scratch_textures, scratch_buffers, no_depths, .. } = &*self.programs;
-        scratch_textures.bytes(texture_bytes)
-            + scratch_buffers.bytes(wgpu::Buffer::size)
-            + no_depths.bytes(NoDepth::memory_bytes)
+        let Programs { scratch_textures, scratch_buffers, .. } = &*self.programs;
+        scratch_textures.bytes(texture_bytes) + scratch_buffers.bytes(wgpu::Buffer::size)
     }
 
     /// What has been made so far.
@@ -311,15 +314,11 @@ impl Device {
     pub(crate) fn create_bind_group_layout(
         &self,
         descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,
-        numbers: &[u32],
     ) -> wgpu::BindGroupLayout {
         let Programs { bind_group_layouts, counts, .. } = &*self.programs;
-        let key = (descriptor.entries.to_vec(), numbers.to_vec());
+        let entries = self.programs.uniforms.layout_entries(descriptor.label.unwrap_or_default(), descriptor.entries);
+        let key = [descriptor.entries.to_vec(), entries.clone()];
         bind_group_layouts.get_or_make(key, &counts.programs, || {
-            if !self.programs.uniforms_are_storage {
-                return programs::create_bind_group_layout(&self.device, descriptor);
-            }
-            let entries = uniforms::entries_as_storage(descriptor.entries, numbers);
             let descriptor = wgpu::BindGroupLayoutDescriptor { entries: &entries, ..*descriptor };
             programs::create_bind_group_layout(&self.device, &descriptor)
         })
@@ -346,7 +345,7 @@ impl Device {
     /// allows more, and does not tell.
     fn is_within_defaults(&self, layouts: &[Option<wgpu::BindGroupLayout>]) -> bool {
         let known = self.programs.bind_group_layouts.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let declared = |layout| known.iter().find(|(_, made)| *made == layout).map(|((entries, _), _)| entries);
+        let declared = |layout| known.iter().find(|(_, made)| *made == layout).map(|([entries, _], _)| entries);
         let entries: Vec<_> = layouts.iter().flatten().filter_map(declared).flatten().copied().collect();
         uniforms::are_within_defaults(&entries)
     }
@@ -355,10 +354,7 @@ impl Device {
     pub(crate) fn create_shader_module(&self, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
         let Programs { modules, counts, .. } = &*self.programs;
         modules.get_or_make((wgsl.as_ptr() as usize, wgsl.len()), &counts.programs, || {
-            let mut text = crate::shaders::text_of(wgsl);
-            if self.programs.uniforms_are_storage {
-                text = uniforms::text_as_storage(text);
-            }
+            let text = self.programs.uniforms.shader_text(crate::shaders::text_of(wgsl));
             programs::create_shader_module(&self.device, label, text)
         })
     }
@@ -413,11 +409,8 @@ impl Device {
 
     pub(crate) fn create_buffer(&self, descriptor: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {
         self.programs.counts.buffers.fetch_add(1, Ordering::Relaxed);
-        let mut descriptor = descriptor.clone();
-        if self.programs.uniforms_are_storage {
-            descriptor.usage = uniforms::usage_as_storage(descriptor.usage);
-        }
-        self.device.create_buffer(&descriptor)
+        let usage = self.programs.uniforms.buffer_usage(descriptor.usage);
+        self.device.create_buffer(&wgpu::BufferDescriptor { usage, ..descriptor.clone() })
     }
 
     pub(crate) fn create_texture(&self, descriptor: &wgpu::TextureDescriptor<'_>) -> wgpu::Texture {
@@ -432,7 +425,13 @@ impl Device {
         scratch: Scratch,
         descriptor: &wgpu::TextureDescriptor<'_>,
     ) -> Arc<wgpu::Texture> {
-        let key = (scratch, descriptor.size, descriptor.format, descriptor.usage);
+        let key = ScratchTextureKey {
+            scratch,
+            size: descriptor.size,
+            sample_count: descriptor.sample_count,
+            format: descriptor.format,
+            usage: descriptor.usage,
+        };
         self.programs.scratch_textures.get_or_make(key, || self.create_texture(descriptor))
     }
 
@@ -461,12 +460,13 @@ impl Device {
     }
 }
 
-/// Bytes of a texture's texels, all levels and layers.
+/// Bytes of a texture's texels, all samples, levels and layers.
 pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     let texel = texture.format().block_copy_size(None).unwrap_or(4);
     let level = |level: u32| {
         let size = texture.size().mip_level_size(level, texture.dimension());
         u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
     };
-    u64::from(texel) * (0..texture.mip_level_count()).map(level).sum::<u64>()
+    let sample = u64::from(texel) * u64::from(texture.sample_count());
+    sample * (0..texture.mip_level_count()).map(level).sum::<u64>()
 }

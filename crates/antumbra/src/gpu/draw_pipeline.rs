@@ -1,6 +1,6 @@
 //! Render pipelines by what differs from one to the next.
 
-use super::{Gpu, shader_module};
+use super::{Gpu, overrides};
 
 /// A render pipeline of a linked shader.
 #[derive(Clone, Debug)]
@@ -45,7 +45,9 @@ impl DrawPipeline<'_> {
     /// The pipeline, shared by all that ask for the same.
     pub(crate) fn create(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
         let label = Some(self.label);
-        let module = shader_module(gpu, self.label, self.wgsl);
+        let module = gpu.device.create_shader_module(self.label, self.wgsl);
+        let constants = overrides::linked(&crate::shaders::text_of(self.wgsl), self.constants);
+        let constants: Vec<_> = constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label,
             bind_group_layouts: self.layouts,
@@ -67,7 +69,7 @@ impl DrawPipeline<'_> {
                 module: &module,
                 entry_point: Some(entry_point),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: self.constants,
+                    constants: &constants,
                     ..wgpu::PipelineCompilationOptions::default()
                 },
                 targets: self.targets,

@@ -4,59 +4,9 @@
 //! overwrite them, so that a hundred lights need no more memory than one.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::budget::OwnedBytes;
 use super::device::{Device, Scratch};
-
-/// Budget of all lights together by default, bytes.
-const DEFAULT_BUDGET_BYTES: u64 = 256 << 20;
-
-/// Memory budget of what lights own.
-#[derive(Debug)]
-pub(super) struct Budget {
-    bytes: AtomicU64,
-    owned_bytes: AtomicU64,
-}
-
-impl Default for Budget {
-    fn default() -> Self {
-        Self { bytes: DEFAULT_BUDGET_BYTES.into(), owned_bytes: 0.into() }
-    }
-}
-
-impl Budget {
-    pub(super) fn set(&self, bytes: u64) {
-        self.bytes.store(bytes, Ordering::Relaxed);
-    }
-
-    pub(super) fn bytes(&self) -> u64 {
-        self.bytes.load(Ordering::Relaxed)
-    }
-
-    pub(super) fn owned_bytes(&self) -> u64 {
-        self.owned_bytes.load(Ordering::Relaxed)
-    }
-
-    /// Reserves bytes; `None` where fewer are left.
-    fn take(self: &Arc<Self>, bytes: u64) -> Option<OwnedBytes> {
-        let add = |owned: u64| owned.checked_add(bytes).filter(|all| *all <= self.bytes());
-        self.owned_bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).ok()?;
-        Some(OwnedBytes { budget: Arc::clone(self), bytes })
-    }
-}
-
-/// Reserved bytes, returned to the budget when dropped.
-#[derive(Debug)]
-struct OwnedBytes {
-    budget: Arc<Budget>,
-    bytes: u64,
-}
-
-impl Drop for OwnedBytes {
-    fn drop(&mut self) {
-        self.budget.owned_bytes.fetch_sub(self.bytes, Ordering::Relaxed);
-    }
-}
 
 /// One light's right to textures and buffers: its own, or those that all lights share.
 #[derive(Debug)]
@@ -77,7 +27,7 @@ impl Lease {
 
     /// Bytes of what the light owns.
     pub(crate) fn own_bytes(&self) -> u64 {
-        self.owned.as_ref().map_or(0, |owned| owned.bytes)
+        self.owned.as_ref().map_or(0, OwnedBytes::bytes)
     }
 
     /// One of them; the light keeps it as long as it draws.
@@ -104,25 +54,5 @@ impl Lease {
             Some(_) => Arc::new(device.create_buffer(descriptor)),
             None => device.scratch_buffer(scratch, descriptor),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_budget_is_taken_and_given_back() {
-        let budget = Arc::new(Budget::default());
-        budget.set(100);
-        let first = budget.take(60).expect("there is room");
-        assert!(budget.take(41).is_none());
-        let second = budget.take(40).expect("there is just room");
-        assert_eq!(budget.owned_bytes(), 100);
-        drop(first);
-        assert_eq!(budget.owned_bytes(), 40);
-        assert!(budget.take(u64::MAX).is_none());
-        drop(second);
-        assert_eq!(budget.owned_bytes(), 0);
     }
 }

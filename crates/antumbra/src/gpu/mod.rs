@@ -2,7 +2,11 @@
 //! and times every pass.
 
 pub(crate) mod bindings;
+mod budget;
 mod buffers;
+mod cached;
+mod commands;
+mod content;
 mod context;
 mod device;
 mod draw_pipeline;
@@ -11,6 +15,7 @@ mod lease;
 #[cfg(feature = "mutants")]
 pub(crate) mod mutants;
 mod no_depth;
+pub(crate) mod overrides;
 #[doc(hidden)]
 pub mod programs;
 mod quirks;
@@ -18,7 +23,6 @@ mod rasteriser;
 mod recorder;
 pub(crate) mod shared_constants;
 mod stage;
-mod standing;
 mod textures;
 mod trial;
 mod uniforms;
@@ -29,6 +33,9 @@ pub(crate) use buffers::{
     create_uniform, dispatch_threads, gpu_structs, shader_module, sized_buffer, upload_storage, upload_with_room,
     write_uniform,
 };
+pub(crate) use cached::Cached;
+pub(crate) use commands::{Commands, CommandsEnd};
+pub(crate) use content::Content;
 pub use context::{Gpu, MemoryBytes};
 pub use device::ObjectCounts;
 pub(crate) use device::{Scratch, texture_bytes};
@@ -39,7 +46,6 @@ pub(crate) use no_depth::NoDepth;
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
 pub(crate) use shared_constants::shared_constants;
 pub use stage::Stage;
-pub(crate) use stage::{CommandsEnd, Keep, StagedUploads};
-pub(crate) use standing::Standing;
+pub(crate) use stage::{Keep, StagedUploads};
 pub(crate) use textures::{array_view, level_views, slice_views, texture_of, white_texture};
 pub(crate) use trial::ViewKind;

@@ -5,13 +5,12 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::{Gpu, depth_state};
+use super::{Gpu, Scratch, depth_state, texture_bytes};
 
-/// A texture of no use but its size.
+/// Depth attachment without content.
 #[derive(Debug)]
 pub(crate) struct NoDepth {
-    size: UVec2,
-    sample_count: u32,
+    texture: Arc<wgpu::Texture>,
     pub(crate) view: wgpu::TextureView,
 }
 
@@ -21,7 +20,17 @@ impl NoDepth {
 
     /// `size` texels along each side.
     pub(crate) fn new(gpu: &Gpu, size: UVec2, sample_count: u32) -> Self {
-        let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
+        Self::of(gpu, Arc::new(gpu.device.create_texture(&Self::descriptor(size, sample_count))))
+    }
+
+    /// At least of this size: one that some light has, or a new one whose sides are powers of two.
+    pub(crate) fn shared(gpu: &Gpu, size: UVec2, sample_count: u32) -> Self {
+        let size = UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two());
+        Self::of(gpu, gpu.device.scratch_texture(Scratch::NoDepth, &Self::descriptor(size, sample_count)))
+    }
+
+    fn descriptor(size: UVec2, sample_count: u32) -> wgpu::TextureDescriptor<'static> {
+        wgpu::TextureDescriptor {
             label: Some("antumbra no depth"),
             size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
             mip_level_count: 1,
@@ -30,14 +39,12 @@ impl NoDepth {
             format: Self::FORMAT,
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             view_formats: &[],
-        });
-        Self { size, sample_count, view: gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()) }
+        }
     }
 
-    /// At least of this size: one that some light has, or a new one whose sides are powers of two.
-    pub(crate) fn shared(gpu: &Gpu, size: UVec2, sample_count: u32) -> Arc<Self> {
-        let size = UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two());
-        gpu.device.no_depth(size, sample_count, || Self::new(gpu, size, sample_count))
+    fn of(gpu: &Gpu, texture: Arc<wgpu::Texture>) -> Self {
+        let view = gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default());
+        Self { texture, view }
     }
 
     /// How a pipeline takes it: nothing is compared, nothing written.
@@ -47,15 +54,15 @@ impl NoDepth {
 
     /// Texels along each side.
     pub(crate) fn size(&self) -> UVec2 {
-        self.size
+        UVec2::new(self.texture.width(), self.texture.height())
     }
 
     /// Samples a texel.
     pub(crate) fn sample_count(&self) -> u32 {
-        self.sample_count
+        self.texture.sample_count()
     }
 
     pub(crate) fn memory_bytes(&self) -> u64 {
-        2 * u64::from(self.sample_count) * u64::from(self.size.element_product())
+        texture_bytes(&self.texture)
     }
 }

@@ -34,7 +34,7 @@ pub(crate) fn assert_in_shader((shader, wgsl): (&str, &'static str), name: &str,
 #[cfg(test)]
 pub(crate) fn constant_of(wgsl: &'static str, name: &str) -> Option<f64> {
     let module = naga::front::wgsl::parse_str(&crate::shaders::text_of(wgsl)).expect("valid");
-    let is_named = |linked: &str| is_linked_name(linked, name);
+    let is_named = |linked: &str| super::overrides::is_linked_name(linked, name);
     let (_, constant) = module.constants.iter().find(|(_, constant)| constant.name.as_deref().is_some_and(is_named))?;
     match module.global_expressions[constant.init] {
         naga::Expression::Literal(naga::Literal::F32(value)) => Some(f64::from(value)),
@@ -44,12 +44,4 @@ pub(crate) fn constant_of(wgsl: &'static str, name: &str) -> Option<f64> {
         naga::Expression::Literal(naga::Literal::AbstractFloat(value)) => Some(value),
         ref other => panic!("{name} is {other:?}"),
     }
-}
-
-/// Whether a name in a linked shader is this one of a module: the linker puts the module's path before names, and before
-/// one with underscores their number.
-#[cfg(test)]
-pub(crate) fn is_linked_name(linked: &str, name: &str) -> bool {
-    let underscores = name.matches('_').count();
-    linked == name || linked.ends_with(&format!("_{name}")) || linked.ends_with(&format!("_{underscores}{name}"))
 }

@@ -14,12 +14,11 @@ use std::hash::{BuildHasher, Hash, Hasher};
 use std::num::NonZeroU64;
 use std::ops::Deref;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::Vec3;
 use hashbrown::{DefaultHashBuilder, HashTable};
 
-use super::Gpu;
+use super::{CommandsEnd, Gpu};
 use crate::contract::CastersKey;
 
 /// What a technique prepares with: the device, and what is kept from frame to frame.
@@ -156,32 +155,6 @@ impl StagedUploads {
             drop(ticket);
             then.done();
         });
-    }
-}
-
-/// Tells whether commands were ever submitted: what they would have drawn is not there if they were dropped.
-#[derive(Debug)]
-pub(crate) struct CommandsEnd {
-    are_dropped: Arc<AtomicBool>,
-    is_done: bool,
-}
-
-impl CommandsEnd {
-    /// Sets `are_dropped` if the commands come to nothing.
-    pub(crate) fn of(are_dropped: &Arc<AtomicBool>) -> Self {
-        Self { are_dropped: Arc::clone(are_dropped), is_done: false }
-    }
-
-    fn done(mut self) {
-        self.is_done = true;
-    }
-}
-
-impl Drop for CommandsEnd {
-    fn drop(&mut self) {
-        if !self.is_done {
-            self.are_dropped.store(true, Ordering::Release);
-        }
     }
 }
 

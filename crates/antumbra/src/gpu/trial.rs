@@ -26,8 +26,7 @@ impl ViewKind {
             count: None,
         };
         let label = Some("antumbra trial");
-        let layout =
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &[entry] }, &[]);
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &[entry] });
         let entries = [wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(view) }];
         gpu.complaint(|| {
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout: &layout, entries: &entries });

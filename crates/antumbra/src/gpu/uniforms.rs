@@ -7,6 +7,9 @@
 //!
 //! But each lane of a vector loads them by itself, where a uniform is loaded once. Uniforms of numbers, over which hangs no branch
 //! alone, are left as they are: `reprojection_layered` scatters in .7 of the time that its views' matrices from storage take.
+//!
+//! This module is the one place that knows the driver and the uniforms that are left as they are: declarations of bind groups,
+//! shaders and buffers are the same on every device, and `device` passes them through here.
 
 use std::borrow::Cow;
 
@@ -21,7 +24,7 @@ fn compiles_values_in(adapter: &wgpu::AdapterInfo) -> bool {
     adapter.driver == "llvmpipe" && mesa.is_some_and(|version| version < 23)
 }
 
-/// WebGPU's default limits, and what [`are_storage`] needs where it matters.
+/// WebGPU's default limits, and what [`UniformAccess`] needs where it matters.
 pub(super) fn wanted_limits(adapter: &wgpu::AdapterInfo, allowed: &wgpu::Limits) -> wgpu::Limits {
     let defaults = wgpu::Limits::default();
     let raised = wgpu::Limits {
@@ -32,9 +35,10 @@ pub(super) fn wanted_limits(adapter: &wgpu::AdapterInfo, allowed: &wgpu::Limits)
     if compiles_values_in(adapter) && has_room(allowed) { raised } else { defaults }
 }
 
-/// Whether a device's uniforms are bound and read as storage buffers.
-pub(super) fn are_storage(device: &wgpu::Device) -> bool {
-    compiles_values_in(&device.adapter_info()) && has_room(&device.limits())
+/// Uniforms of one device: as such, or as storage buffers. Nothing else in the library knows which.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct UniformAccess {
+    is_storage: bool,
 }
 
 fn has_room(limits: &wgpu::Limits) -> bool {
@@ -60,47 +64,84 @@ pub(super) fn are_within_defaults(entries: &[wgpu::BindGroupLayoutEntry]) -> boo
         && count(&|_, is_dynamic| is_dynamic) <= defaults.max_dynamic_storage_buffers_per_pipeline_layout
 }
 
-/// The names in linked shaders of what is declared as [`Numbers`](super::bindings::Numbers).
-const NUMBERS: [&str; 4] = ["group_views", "ladder", "light_words", "light_bits_light_words"];
+/// A uniform of numbers that decide over no branch and no loop by themselves: it stays one on every device.
+struct Numbers {
+    /// Its bind group's layout, and its place there.
+    layout: &'static str,
+    binding: u32,
+    /// Its name in linked shaders.
+    name: &'static str,
+}
+
+const NUMBERS: [Numbers; 5] = [
+    Numbers { layout: "antumbra splat", binding: 1, name: "group_views" },
+    Numbers { layout: "antumbra multi_layer lookup", binding: 5, name: "ladder" },
+    Numbers { layout: "antumbra view-sample table", binding: 1, name: "light_words" },
+    Numbers { layout: "antumbra view-sample evaluate", binding: 4, name: "light_bits_light_words" },
+    Numbers { layout: "antumbra view-sample raster", binding: 4, name: "light_bits_light_words" },
+];
 
 /// Whether a shader's uniform is of numbers.
-pub(super) fn is_of_numbers(name: &str) -> bool {
-    NUMBERS.contains(&name)
+fn is_of_numbers(name: &str) -> bool {
+    NUMBERS.iter().any(|numbers| numbers.name == name)
 }
 
-/// A shader that reads its uniforms from storage buffers, but for those of numbers. The layout of structs is the same in both.
-pub(super) fn text_as_storage(wgsl: Cow<'static, str>) -> Cow<'static, str> {
-    const UNIFORM: &str = "var<uniform>";
-    let mut parts = wgsl.split(UNIFORM);
-    let mut text = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let name = part.split(':').next().unwrap_or_default().trim();
-        text += if is_of_numbers(name) { UNIFORM } else { "var<storage, read>" };
-        text += part;
+/// Whether a layout's uniform is of numbers.
+fn is_bound_to_numbers(layout: &str, binding: u32) -> bool {
+    NUMBERS.iter().any(|numbers| (numbers.layout, numbers.binding) == (layout, binding))
+}
+
+/// Fails where a shader's variable is of numbers in the shader and not in its bind group's layout, or the other way round.
+#[cfg(test)]
+pub(super) fn assert_alike(layout: &str, binding: u32, name: &str) {
+    assert_eq!(is_of_numbers(name), is_bound_to_numbers(layout, binding), "{layout}: {name} is numbers here or there");
+}
+
+impl UniformAccess {
+    /// What suits a device.
+    pub(super) fn of(device: &wgpu::Device) -> Self {
+        Self { is_storage: compiles_values_in(&device.adapter_info()) && has_room(&device.limits()) }
     }
-    text.into()
-}
 
-/// Layout entries with storage buffers for uniforms, but for those of numbers.
-pub(super) fn entries_as_storage(
-    entries: &[wgpu::BindGroupLayoutEntry],
-    numbers: &[u32],
-) -> Vec<wgpu::BindGroupLayoutEntry> {
-    let as_storage = |mut entry: wgpu::BindGroupLayoutEntry| {
-        if numbers.contains(&entry.binding) {
-            return entry;
-        }
-        if let wgpu::BindingType::Buffer { ty: ty @ wgpu::BufferBindingType::Uniform, .. } = &mut entry.ty {
-            *ty = wgpu::BufferBindingType::Storage { read_only: true };
-        }
-        entry
-    };
-    entries.iter().copied().map(as_storage).collect()
-}
+    /// The entries of a bind group's layout as the device gets them.
+    pub(super) fn layout_entries(
+        self,
+        label: &str,
+        declared: &[wgpu::BindGroupLayoutEntry],
+    ) -> Vec<wgpu::BindGroupLayoutEntry> {
+        let as_made = |mut entry: wgpu::BindGroupLayoutEntry| {
+            if self.is_storage
+                && !is_bound_to_numbers(label, entry.binding)
+                && let wgpu::BindingType::Buffer { ty: ty @ wgpu::BufferBindingType::Uniform, .. } = &mut entry.ty
+            {
+                *ty = wgpu::BufferBindingType::Storage { read_only: true };
+            }
+            entry
+        };
+        declared.iter().copied().map(as_made).collect()
+    }
 
-/// A buffer's usage, as storage too where it is a uniform.
-pub(super) fn usage_as_storage(usage: wgpu::BufferUsages) -> wgpu::BufferUsages {
-    if usage.contains(wgpu::BufferUsages::UNIFORM) { usage | wgpu::BufferUsages::STORAGE } else { usage }
+    /// A shader as the device gets it. The layout of structs is the same in both kinds of buffers.
+    pub(super) fn shader_text(self, wgsl: Cow<'static, str>) -> Cow<'static, str> {
+        const UNIFORM: &str = "var<uniform>";
+        if !self.is_storage {
+            return wgsl;
+        }
+        let mut parts = wgsl.split(UNIFORM);
+        let mut text = parts.next().unwrap_or_default().to_owned();
+        for part in parts {
+            let name = part.split(':').next().unwrap_or_default().trim();
+            text += if is_of_numbers(name) { UNIFORM } else { "var<storage, read>" };
+            text += part;
+        }
+        text.into()
+    }
+
+    /// A buffer's usage as the device gets it.
+    pub(super) fn buffer_usage(self, usage: wgpu::BufferUsages) -> wgpu::BufferUsages {
+        let is_read_as_storage = self.is_storage && usage.contains(wgpu::BufferUsages::UNIFORM);
+        if is_read_as_storage { usage | wgpu::BufferUsages::STORAGE } else { usage }
+    }
 }
 
 #[cfg(test)]
@@ -169,7 +210,7 @@ mod tests {
     #[test]
     fn no_shader_keeps_a_uniform_but_of_numbers() {
         for (path, wgsl) in crate::shaders::ALL {
-            let text = text_as_storage(crate::shaders::text_of(wgsl));
+            let text = UniformAccess { is_storage: true }.shader_text(crate::shaders::text_of(wgsl));
             let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"));
             let mut uniforms = module.global_variables.iter().filter(|(_, it)| it.space == naga::AddressSpace::Uniform);
             assert!(uniforms.all(|(_, it)| it.name.as_deref().is_some_and(is_of_numbers)), "{path}");

@@ -14,9 +14,9 @@ use super::hosts_map::view_of_hosts_map;
 use super::light_spread::LightSpread;
 use super::light_view::{FitTo, Followed, LightView, LightViewGpu, WindowShape};
 use super::still_view::{corners_to_hold, in_whole_texels};
-use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
+use crate::contract::{CastersKey, DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{
-    Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, Standing, bindings, create_uniform, samples, texels,
+    Bindings, Content, Gpu, Lease, Recorder, Scratch, Span, Stage, bindings, create_uniform, samples, texels,
     write_uniform,
 };
 
@@ -134,15 +134,18 @@ pub(crate) struct LightMap {
     sampler: wgpu::Sampler,
     textures: Option<Textures>,
     /// Of the map of our own, layers behind it and pyramid.
-    standing: Standing,
-    bind_group: Option<wgpu::BindGroup>,
+    content: Content<(CastersKey, Vec<u8>)>,
     /// Of the frame prepared last.
     drawn: Option<DrawnMap>,
 }
 
 /// A map made ready for a frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub(crate) struct PreparedMap {
+    /// Bind group 1.
+    pub(crate) group: wgpu::BindGroup,
+    /// An earlier frame has drawn it.
+    is_drawn: bool,
     pub(crate) view: LightViewGpu,
     pub(crate) size_px: UVec2,
     /// What it holds where there is no caster.
@@ -169,8 +172,7 @@ impl LightMap {
                 ..wgpu::SamplerDescriptor::default()
             }),
             textures: None,
-            standing: Standing::default(),
-            bind_group: None,
+            content: Content::default(),
             drawn: None,
         }
     }
@@ -211,10 +213,9 @@ impl LightMap {
         let lease = &textures.lease;
         let map =
             hosts_map.or(textures.map.as_ref().map(|(_, map)| map)).expect("the host's, or made with the textures");
-        self.standing.draw_next(
-            stage.casters().filter(|_| lease.is_own()),
-            &[bytemuck::bytes_of(&view), bytemuck::bytes_of(&shape), bytemuck::bytes_of(&light_half_extent_m)],
-        );
+        let of = [bytemuck::bytes_of(&view), bytemuck::bytes_of(&shape), bytemuck::bytes_of(&light_half_extent_m)];
+        let key = stage.casters().filter(|_| lease.is_own()).map(|casters| (casters, of.concat()));
+        let is_drawn = self.content.ask(key);
         write_uniform(stage, &self.view_uniform, &view);
         if let Some(pyramid) = &mut self.pyramid {
             pyramid.prepare(stage, lease, map, &self.view_uniform, shape.size_px, light_half_extent_m);
@@ -224,8 +225,8 @@ impl LightMap {
         }
         let map = MapBindings { light_view: &self.view_uniform, light_map: map, light_map_sampler: &self.sampler };
         self.drawn = Some(view.drawn_map(map.light_map, 1, empty_depth)).filter(|_| lease.is_own());
-        self.bind_group = Some(self.bind(stage, map));
-        Ok(PreparedMap { view, size_px: shape.size_px, empty_depth })
+        let group = self.bind(stage, map);
+        Ok(PreparedMap { group, is_drawn, view, size_px: shape.size_px, empty_depth })
     }
 
     /// The map with whatever is searched besides.
@@ -242,8 +243,8 @@ impl LightMap {
 
     /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one); nothing where
     /// they stand from the frame before.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        if self.standing.stands() {
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMap) {
+        if prepared.is_drawn {
             return;
         }
         let own_map = self.textures.as_ref().and_then(|textures| textures.map.as_ref());
@@ -266,11 +267,6 @@ impl LightMap {
         let layers_behind = self.layers_behind.as_ref().map(LayersBehind::drawn).unwrap_or_default();
         let levels = self.pyramid.as_ref().map(DepthPyramid::drawn).unwrap_or_default();
         Some(DrawnMap { layers_behind, levels, ..map })
-    }
-
-    /// Bind group 1.
-    pub(crate) fn bind_group(&self) -> &wgpu::BindGroup {
-        self.bind_group.as_ref().expect("prepare comes before record")
     }
 
     /// Bytes of the map, of layers behind it and of its pyramid, where they are the light's own.

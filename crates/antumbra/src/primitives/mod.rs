@@ -6,7 +6,7 @@ pub(crate) mod depth_basis;
 pub(crate) mod lloyd;
 #[cfg(feature = "filterable")]
 pub(crate) mod packed_map;
-#[cfg(any(feature = "multi_layer", feature = "receiver_lists"))]
+#[cfg(any(feature = "multi_layer", feature = "ray_traced", feature = "receiver_lists"))]
 pub(crate) mod prefix_scan;
 #[cfg(test)]
 mod stochastic;

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::contract::{DrawnLists, DrawnMap, Error, MeshCaster, Overflow, Params, PreparedCasters, PreparedFrame};
-use crate::cover::pictures::PartPictures;
+use crate::cover::pictures::{PartPictures, PreparedPictures};
 use crate::cover::still::Still;
 use crate::cover::{Part, parts_of};
 use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
@@ -28,9 +28,15 @@ struct PartState<T> {
     keep: Keep,
 }
 
-/// A part's work in a frame.
-pub(super) struct PartWork<'a> {
+/// Passes of all parts in one frame; `P` is the technique's.
+pub(super) struct PartedPasses<'a, P> {
+    pictures: PreparedPictures,
+    parts: Vec<PartPasses<'a, P>>,
+}
+
+struct PartPasses<'a, P> {
     casters: Vec<MeshCaster<'a>>,
+    technique: P,
     uploads: StagedUploads,
 }
 
@@ -42,7 +48,7 @@ impl<T: Technique> Parted<T> {
         frame: &PreparedFrame<'_>,
         meshes: &[MeshCaster<'a>],
         params: &T::Params,
-    ) -> Result<Option<Vec<PartWork<'a>>>, Error> {
+    ) -> Result<Option<PartedPasses<'a, T::Prepared>>, Error> {
         let mut still = earlier.as_mut().map(|earlier| std::mem::take(&mut earlier.still)).unwrap_or_default();
         let parts = parts_of(frame, T::coverage(params), stage.anchor(), &mut still);
         if parts.is_empty() {
@@ -58,42 +64,43 @@ impl<T: Technique> Parted<T> {
             still: Still::default(),
         });
         parted.still = still;
-        parted.pictures.prepare(stage, frame, &parts);
+        let pictures = parted.pictures.prepare(stage, frame, &parts);
         parted.parts = parts;
-        let Self { pictures, parts, states, .. } = parted;
-        let mut works = Vec::with_capacity(parts.len());
+        let Self { parts, states, .. } = parted;
+        let mut passes = Vec::with_capacity(parts.len());
         for part in &*parts {
             let casters = part.casters_of(meshes);
             let state = PartState::of(states, stage, part.id)?;
             let of_part = pictures.frame_of(frame, part);
             let frame = PreparedFrame { casters: of_meshes(&frame.casters, &casters), ..of_part };
             state.has_cast |= !casters.is_empty() || !matches!(frame.casters, PreparedCasters::Draws(_));
-            let uploads = if state.has_cast {
+            let (technique, uploads) = if state.has_cast {
                 state.prepare(stage, &frame, part.still, params)?
             } else {
                 state.prepare(stage, &frame, part.still, &with_least_maps(params))?
             };
-            works.push(PartWork { casters, uploads });
+            passes.push(PartPasses { casters, technique, uploads });
         }
-        Ok(Some(works))
+        Ok(Some(PartedPasses { pictures, parts: passes }))
     }
 
-    /// Records the frame prepared, part by part. `then` is told of each part's commands.
+    /// Records a frame, part by part. `then` is told of each part's commands.
     pub(super) fn record(
         &self,
         recorder: &mut Recorder<'_>,
         frame: &PreparedFrame<'_>,
-        works: Vec<PartWork<'_>>,
+        passes: PartedPasses<'_, T::Prepared>,
         then: impl Fn() -> CommandsEnd,
     ) {
-        for (i, (part, work)) in self.parts.iter().zip(works).enumerate() {
+        let PartedPasses { pictures, parts } = passes;
+        for (i, (part, passes)) in self.parts.iter().zip(parts).enumerate() {
             let Some(state) = self.states.iter().find(|state| state.id == part.id) else { continue };
-            recorder.upload(work.uploads, then());
-            self.pictures.pick(recorder, i);
-            let frame = self.pictures.frame_of(frame, part);
-            let casters = of_meshes(&frame.casters, &work.casters);
-            state.technique.record(recorder, &PreparedFrame { casters, ..frame });
-            self.pictures.join(recorder, i);
+            recorder.upload(passes.uploads, then());
+            pictures.pick(recorder, i);
+            let frame = pictures.frame_of(frame, part);
+            let casters = of_meshes(&frame.casters, &passes.casters);
+            state.technique.record(recorder, &PreparedFrame { casters, ..frame }, &passes.technique);
+            pictures.join(recorder, i);
         }
     }
 
@@ -170,7 +177,7 @@ impl<T: Technique> PartState<T> {
         frame: &PreparedFrame<'_>,
         still: Option<[Vec3; 8]>,
         params: &T::Params,
-    ) -> Result<StagedUploads, Error> {
+    ) -> Result<(T::Prepared, StagedUploads), Error> {
         let keep = std::mem::take(&mut self.keep);
         let stage = Stage::new(of_light, keep, of_light.casters())
             .anchored(of_light.anchor())
@@ -179,6 +186,6 @@ impl<T: Technique> PartState<T> {
         let outcome = self.technique.prepare(&stage, frame, params);
         let uploads;
         (self.keep, uploads) = stage.finish();
-        outcome.map(|()| uploads)
+        Ok((outcome?, uploads))
     }
 }

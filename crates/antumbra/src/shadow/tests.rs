@@ -86,6 +86,7 @@ techniques! {
     multi_layer: MultiLayer,
     reprojection: Reprojection,
     reprojection_layered: ReprojectionLayered,
+    ray_traced: RayTraced,
     alias_free: AliasFree,
     sample_based: SampleBased,
 }
@@ -322,7 +323,7 @@ fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueK
             let mut encoder = encoder(gpu);
             let mut recorder = Recorder::new(&mut encoder, None);
             work.record(&mut recorder);
-            let reads_casters = ["triangles", "view-sample lists"];
+            let reads_casters = ["triangles", "view-sample lists", "trace"];
             let draws = recorder.passes().iter().any(|pass| pass.draws_casters || reads_casters.contains(&pass.label));
             let passes = recorder.passes().len();
             if is_submitted {

@@ -1,4 +1,4 @@
-//! Compiling before the first frame: a frame of next to nothing is prepared on a state that is dropped, and what it compiled
+//! Compiling before the first frame: a frame of a dummy scene is prepared on a state that is dropped, and what it compiled
 //! stays with the device.
 
 use antumbra_light::{Aabb, Light, LightShape};
@@ -53,13 +53,13 @@ impl<T: Technique> Shadow<T> {
             drop(Denoiser::new(&self.gpu));
         }
         for scene in scenes {
-            let nothing = Nothing::new(&self.gpu, scene)?;
+            let dummy = DummyScene::new(&self.gpu, scene)?;
             let mut shadow = Self::with_params(&self.gpu, self.params.clone())?;
-            drop(shadow.prepare(&nothing.frame(&light_of(LightShape::Disk { radius_m: 0.1 })))?);
+            drop(shadow.prepare(&dummy.frame(&light_of(LightShape::Disk { radius_m: 0.1 })))?);
             // Some compile for the light's kind, and once more for each kind of caster; what none can do is said when it is
             // asked for.
             for shape in other_shapes() {
-                drop(shadow.prepare(&nothing.frame(&light_of(shape))));
+                drop(shadow.prepare(&dummy.frame(&light_of(shape))));
             }
         }
         Ok(())
@@ -83,13 +83,13 @@ fn other_shapes() -> [LightShape; 5] {
 }
 
 /// A scene of one triangle for each kind of caster.
-struct Nothing {
+struct DummyScene {
     set: CasterSet,
     depth: wgpu::TextureView,
     mask: Mask,
 }
 
-impl Nothing {
+impl DummyScene {
     fn new(gpu: &Gpu, what: WarmUp) -> Result<Self, Error> {
         let texture = |format, usage| {
             let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

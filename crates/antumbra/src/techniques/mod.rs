@@ -8,6 +8,8 @@ pub mod filterable;
 pub mod light_views;
 #[cfg(feature = "multi_layer")]
 pub mod multi_layer;
+#[cfg(feature = "ray_traced")]
+pub mod ray_traced;
 #[cfg(feature = "receiver_lists")]
 pub mod receiver_lists;
 #[cfg(feature = "single_map")]

@@ -13,6 +13,8 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     const NAME: &'static str;
     /// Its parameters.
     type Params: Params;
+    /// Bind groups and pipelines of one frame: [`prepare`](Self::prepare) returns them, [`record`](Self::record) requires them.
+    type Prepared: wgpu::WasmNotSendSync + 'static;
 
     /// How much of what a light reaches a state covers; what is more is cut into parts, with a state each.
     fn coverage(_params: &Self::Params) -> Coverage {
@@ -29,10 +31,15 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     ///
     /// # Errors
     /// Where parameters, light or frame do not fit one another or the device.
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &Self::Params) -> Result<(), Error>;
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &Self::Params,
+    ) -> Result<Self::Prepared, Error>;
 
-    /// Records the passes of the frame that [`prepare`](Self::prepare) saw last.
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>);
+    /// Records the passes of a frame, as [`prepare`](Self::prepare) made them ready.
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &Self::Prepared);
 
     /// Whether the mask of a frame that is as the one before would be the same: nothing goes on from frame to frame, and
     /// nothing is yet to be learnt of the last. So many frames as it were prepared after the first of them.

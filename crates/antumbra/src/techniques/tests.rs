@@ -29,6 +29,7 @@ fn half_plane_under_a_rectangle_light() {
         (TechniqueKind::MultiView, &[("samples", "64")][..], 0.007),
         (TechniqueKind::MultiView, &[("samples", "256"), ("sample_set", "stratified")][..], 0.004),
         (TechniqueKind::MultiView, &[("samples", "64"), ("compare", "hardware")][..], 0.007),
+        (TechniqueKind::RayTraced, &[("samples", "256")][..], 0.003),
     ] {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), |p| half_plane_visibility(p.x, 1.0));
         println!("{kind} {settings:?}: rmse {error:.4}");
@@ -78,7 +79,7 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
         let first_visible = -p.x * (1.0 - 0.375) / 0.375;
         0.5 * f32::from(u8::from(-0.5 > first_visible) + u8::from(0.5 > first_visible))
     };
-    for kind in [TechniqueKind::MultiView, TechniqueKind::Pcss, TechniqueKind::Smrt] {
+    for kind in [TechniqueKind::MultiView, TechniqueKind::Pcss, TechniqueKind::Smrt, TechniqueKind::RayTraced] {
         let error = rmse(&pixels, &case.run(gpu, kind, &[]), truth);
         println!("{kind}, points: rmse {error:.4}");
         assert!(error < 0.025, "{kind}: {error}");
@@ -94,6 +95,7 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
             (TechniqueKind::MultiView, &[("samples", "256")][..]),
             (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..]),
             (TechniqueKind::Smrt, &[("samples", "256")][..]),
+            (TechniqueKind::RayTraced, &[("samples", "256")][..]),
         ] {
             let error = rmse(&pixels, &case.run(gpu, kind, settings), disk);
             println!("{kind}, {shape:?}: rmse {error:.4}");
@@ -119,6 +121,7 @@ fn a_sun_s_penumbra_grows_with_distance_alone() {
         (TechniqueKind::MultiView, &[("samples", "256"), ("view_size", "2048")][..]),
         (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256"), ("map_size", "2048")][..]),
         (TechniqueKind::Smrt, &[("samples", "256"), ("map_size", "2048")][..]),
+        (TechniqueKind::RayTraced, &[("samples", "256")][..]),
     ] {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), truth);
         println!("{kind}, sun: rmse {error:.4}");

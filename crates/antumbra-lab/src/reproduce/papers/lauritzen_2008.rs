@@ -7,7 +7,7 @@
 use crate::reproduce::claim::{Rule, claim};
 use crate::reproduce::exhibit::Reported::Drawn;
 use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, colors, drawing, filtered_error, fps, ms};
-use crate::reproduce::outcome::Figure::{Ms, Rmse, UmbraLeak};
+use crate::reproduce::figure::Figure::{Ms, Rmse, UmbraLeak};
 
 const OVERLAP: &str = "builtin:overlap";
 const BENCH: &str = "builtin:bench-under-tree";

@@ -4,7 +4,7 @@ use super::SKETCHED_PCSS;
 use crate::reproduce::claim::{Rule, claim};
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
 use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, difference, error, ms};
-use crate::reproduce::outcome::Figure::{LitLoss, Ms, Rmse, UmbraLeak};
+use crate::reproduce::figure::Figure::{LitLoss, Ms, Rmse, UmbraLeak};
 
 /// Poisson-disc light points, even maps of 512², 2 × 2 hardware comparison: the paper's section 4.
 const VIEWS_64: Settings =

@@ -10,7 +10,7 @@ use super::shen_2013::PRINTED as ESSM;
 use crate::reproduce::claim::{Claim, Rule, claim};
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
 use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, drawing, error, fps, ms, rays, scene_ms};
-use crate::reproduce::outcome::Figure::{Ms, Rmse, UmbraLeak};
+use crate::reproduce::figure::Figure::{Ms, Rmse, UmbraLeak};
 
 const SPONZA: &str = "sponza.glb";
 /// Figure 1, centre left: along the hall.

@@ -3,7 +3,7 @@
 use crate::reproduce::claim::{Rule, claim};
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
 use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, drawing, error, fps, ms, scene_ms};
-use crate::reproduce::outcome::Figure::{Ms, Rmse, UmbraLeak};
+use crate::reproduce::figure::Figure::{Ms, Rmse, UmbraLeak};
 
 const OGRE: &str = "builtin:knot?triangles=100000";
 const PLANTS: &str = "builtin:tree";

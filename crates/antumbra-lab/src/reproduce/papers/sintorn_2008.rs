@@ -4,7 +4,7 @@ use super::SKETCHED_PCSS;
 use crate::reproduce::claim::{Rule, claim};
 use crate::reproduce::exhibit::Reported::Drawn;
 use crate::reproduce::exhibit::{Exhibit, Paper, Settings, drawing, error, fps, ms, rays};
-use crate::reproduce::outcome::Figure::{Ms, Rmse};
+use crate::reproduce::figure::Figure::{Ms, Rmse};
 
 const SAMPLES_128: Settings = &[("samples", "128")];
 const SAMPLES_256: Settings = &[("samples", "256")];

@@ -10,13 +10,10 @@ struct ListSort {
     adjoin_m: f32
 }
 
-@id(0)
 override COLORED: u32 = 0u;
 
-@id(1)
 override ACCUMULATION: u32 = 0u;
 
-@id(2)
 override JOINS: bool = false;
 
 @group(0) @binding(0)

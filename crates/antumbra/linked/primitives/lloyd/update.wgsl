@@ -11,7 +11,6 @@ struct LloydUniform {
     glide: f32
 }
 
-@id(0)
 override BY_WEIGHT: bool = false;
 
 const BIN_COUNT = 4096u;

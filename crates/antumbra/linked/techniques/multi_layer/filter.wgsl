@@ -29,13 +29,10 @@ var<storage, read_write> fragments: array<vec2u>;
 @group(0) @binding(3)
 var<storage, read_write> counters: fragments_ListCounters;
 
-@id(0)
 override AVERAGES_BY_COUNT: bool = false;
 
-@id(1)
 override COLORED: u32 = 0u;
 
-@id(2)
 override LIST_ACCUMULATION: u32 = 0u;
 
 const NONE = 3e38;

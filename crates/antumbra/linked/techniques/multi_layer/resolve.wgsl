@@ -44,25 +44,18 @@ var<storage, read> nearest_in: array<f32>;
 @group(1) @binding(5)
 var<uniform> ladder: MultiLayerLadder;
 
-@id(0)
 override COLORED: u32 = 0u;
 
-@id(1)
 override LIST_ACCUMULATION: u32 = 0u;
 
-@id(2)
 override LEVEL_ACCUMULATION: u32 = 0u;
 
-@id(3)
 override LIGHT_PARTS: u32 = 1u;
 
-@id(4)
 override LEVEL_WEIGHTS: u32 = 0u;
 
-@id(5)
 override LISTS_APART: u32 = 0u;
 
-@id(6)
 override HAS_PLANES: bool = true;
 
 const LEAST_SINE = 0.006;

@@ -206,6 +206,8 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
 const light_points_END_MARGIN = 9.5367431640625e-7;
 
 struct light_points_Rays {
@@ -357,8 +359,6 @@ fn projection_cell_in(point: vec3f, low: vec3f, high: vec3f, bits: u32) -> u32 {
 
 @group(1) @binding(14)
 var<uniform> ray_offset_snapped_texels: f32;
-
-const ray_offset_ROUNDING = 3.814697265625e-6;
 
 fn ray_offset_most_ray_offset_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
     let across = distance(low, high);

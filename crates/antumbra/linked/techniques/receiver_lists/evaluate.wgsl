@@ -914,6 +914,13 @@ fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
     return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_ray_offset_from(pos_in_world: vec3f, eye_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
+}
+
 const caster_surface_COVERAGE_WHOLE: u32 = 0u;
 
 const caster_surface_COVERAGE_ALPHA: u32 = 1u;
@@ -1086,7 +1093,6 @@ const light_bits_MAX_WORDS = 32u;
 
 const light_bits_FIRST_BOX = 2u;
 
-@id(0)
 override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
@@ -1329,11 +1335,8 @@ fn open_bits_write_open(pixel: vec2u, pixel_index: u32, seen: f32) {
 @group(1) @binding(14)
 var<uniform> ray_offset_snapped_texels: f32;
 
-const ray_offset_ROUNDING = 3.814697265625e-6;
-
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
-    return settings.hair_scale * (rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(ray_offset_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
+    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, eye_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 struct settings_SampleSettings {

@@ -285,6 +285,13 @@ fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
     return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_ray_offset_from(pos_in_world: vec3f, eye_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
+}
+
 const caster_surface_COVERAGE_WHOLE: u32 = 0u;
 
 const caster_surface_COVERAGE_ALPHA: u32 = 1u;
@@ -468,7 +475,6 @@ var light_bits_surface_sampler: sampler;
 
 const light_bits_FIRST_BOX = 2u;
 
-@id(0)
 override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
@@ -644,11 +650,8 @@ fn lookup_index_lookup_texel(axes: lookup_index_LookupAxes, size: u32, plane: ve
 @group(1) @binding(14)
 var<uniform> ray_offset_snapped_texels: f32;
 
-const ray_offset_ROUNDING = 3.814697265625e-6;
-
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
-    return settings.hair_scale * (rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(ray_offset_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
+    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, eye_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 struct region_Region {

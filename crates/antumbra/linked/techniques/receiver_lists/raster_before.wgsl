@@ -197,6 +197,13 @@ fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
     return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_ray_offset_from(pos_in_world: vec3f, eye_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
+}
+
 fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
@@ -207,7 +214,6 @@ var<uniform> light_bits_settings: settings_SampleSettings;
 @group(1) @binding(4)
 var<uniform> light_bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
 
-@id(0)
 override light_bits_IS_FLAT: bool = false;
 
 fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
@@ -295,11 +301,8 @@ fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
 @group(1) @binding(14)
 var<uniform> ray_offset_snapped_texels: f32;
 
-const ray_offset_ROUNDING = 3.814697265625e-6;
-
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
-    return settings.hair_scale * (rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(ray_offset_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
+    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, eye_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 struct settings_SampleSettings {

@@ -167,6 +167,13 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
+const ray_offset_ROUNDING = 3.814697265625e-6;
+
+fn ray_offset_ray_offset_from(pos_in_world: vec3f, eye_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+    return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
+}
+
 @group(1) @binding(0)
 var<uniform> lists_settings: settings_SampleSettings;
 
@@ -185,11 +192,8 @@ var<storage, read_write> lists_positions: array<vec4f>;
 @group(1) @binding(14)
 var<uniform> ray_offset_snapped_texels: f32;
 
-const ray_offset_ROUNDING = 3.814697265625e-6;
-
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
-    return settings.hair_scale * (rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(ray_offset_snapped_texels, pos_in_world) + settings.matrix_rounding_m);
+    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, eye_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 struct settings_SampleSettings {

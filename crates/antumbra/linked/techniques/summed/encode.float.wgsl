@@ -3,7 +3,6 @@
 @group(3) @binding(0)
 var basis: texture_storage_2d<rgba32float, write>;
 
-@id(1)
 override PART: u32 = 0u;
 
 fn encode(range: depth_range_DepthRange, stored: f32) -> vec4f {
@@ -183,7 +182,6 @@ fn depth_range_t_of_depth(range: depth_range_DepthRange, depth: f32) -> f32 {
     return saturate(depth_range_t_of_z(range, space_z_of_depth(map_light_view, depth)));
 }
 
-@id(0)
 override uniform_BASIS: u32 = 0u;
 
 const uniform_BASIS_EXPONENTIAL = 1u;

@@ -160,7 +160,6 @@ fn depth_range_t_of_depth(range: depth_range_DepthRange, depth: f32) -> f32 {
     return saturate(depth_range_t_of_z(range, space_z_of_depth(map_light_view, depth)));
 }
 
-@id(1)
 override encode_PART: u32 = 0u;
 
 fn encode_encode(range: depth_range_DepthRange, stored: f32) -> vec4f {
@@ -438,7 +437,6 @@ fn tile_basis_encode_in_tile(stored: f32, tile: tile_basis_TilePlane, offset: ve
     return vec4f(e, n * e, n / max(tile.w, 1e-20), 1.0);
 }
 
-@id(0)
 override uniform_BASIS: u32 = 0u;
 
 const uniform_BASIS_TILES = 0u;

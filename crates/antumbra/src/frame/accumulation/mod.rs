@@ -22,10 +22,10 @@ use crate::contract::{
     CastersKey, DepthConvention, Error, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage,
     SurfaceTexture,
 };
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform, gpu_structs,
-    sized_buffer, write_uniform,
+    Bindings, Content, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform,
+    gpu_structs, sized_buffer, write_uniform,
 };
 use crate::shaders;
 
@@ -79,11 +79,8 @@ pub(crate) struct Accumulation {
     means: Option<wgpu::Buffer>,
     /// For each pixel its depth's bits and how many frames its mean is of.
     seen: Option<wgpu::Buffer>,
-    last: Option<Seen>,
+    content: Content<Seen>,
     generation: u32,
-    /// Frames since the processor last saw a change.
-    frames: u32,
-    prepared: Option<Prepared>,
 }
 
 /// What the processor compares from frame to frame.
@@ -108,8 +105,9 @@ enum SeenCasters {
     Hashed(u64),
 }
 
+/// Bind groups of one frame.
 #[derive(Debug)]
-struct Prepared {
+pub(crate) struct PreparedAccumulation {
     /// One for each of the casters' buffers, with its workgroups.
     fingerprints: Vec<(wgpu::BindGroup, u32)>,
     accumulate: wgpu::BindGroup,
@@ -142,10 +140,8 @@ impl Accumulation {
             accumulate_layout,
             means: None,
             seen: None,
-            last: None,
+            content: Content::default(),
             generation: 0,
-            frames: 0,
-            prepared: None,
         }
     }
 
@@ -163,14 +159,10 @@ impl Accumulation {
             casters: set.map_or_else(|| SeenCasters::Hashed(hash_of_casters(&frame.casters)), SeenCasters::Set),
             settings,
         };
-        if self.last.as_ref() == Some(&now) {
-            self.frames = self.frames.wrapping_add(1);
-        } else {
-            self.last = Some(now);
+        if !self.content.ask(Some(now)) {
             self.generation = self.generation.wrapping_add(1).max(1);
-            self.frames = 0;
         }
-        self.frames
+        self.content.repeats()
     }
 
     /// Makes ready for the frame that [`Self::begin`] saw.
@@ -182,7 +174,7 @@ impl Accumulation {
         stage: &Stage<'_>,
         technique: &'static str,
         frame: &PreparedFrame<'_>,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedAccumulation, Error> {
         let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
         let layers = u64::from(frame.mask.channels().count());
         let limit = stage.device.limits().max_storage_buffer_binding_size;
@@ -215,13 +207,11 @@ impl Accumulation {
                 (group, groups.clamp(1, u64::from(FINGERPRINT_GROUPS)) as u32)
             })
             .collect();
-        self.prepared = Some(Prepared { fingerprints, accumulate });
-        Ok(())
+        Ok(PreparedAccumulation { fingerprints, accumulate })
     }
 
     /// Replaces the mask, which the technique's passes have written, by the mean.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &FrameInputs) {
-        let prepared = self.prepared.as_ref().expect("prepare comes before record");
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &PreparedInputs, prepared: &PreparedAccumulation) {
         recorder.compute("accumulate", Span::Only, |pass| {
             pass.set_pipeline(&self.fingerprint);
             for (group, workgroups) in &prepared.fingerprints {

@@ -33,7 +33,7 @@ use glam::{Mat4, UVec2, Vec3};
 
 use crate::contract::{Denoise, DepthConvention, Mask, PreparedFrame};
 use crate::frame::DEPTH_FORMAT;
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline, create_uniform, gpu_structs,
     texels, write_uniform,
@@ -95,7 +95,17 @@ pub(crate) struct Denoiser {
     frames: u32,
     /// Of these the last in which nothing changed.
     still_frames: u32,
-    groups: Option<[wgpu::BindGroup; 2]>,
+}
+
+/// Passes of one frame.
+#[derive(Debug)]
+pub(crate) struct PreparedDenoise {
+    /// The mask that the technique is to write.
+    pub(crate) noisy: Mask,
+    inputs: PreparedInputs,
+    /// Over time, over pixels.
+    passes: [(&'static str, wgpu::ComputePipeline, wgpu::BindGroup); 2],
+    channels: u32,
 }
 
 /// What the technique writes.
@@ -141,7 +151,6 @@ impl Denoiser {
             before: None,
             frames: 0,
             still_frames: 0,
-            groups: None,
         }
     }
 
@@ -155,8 +164,8 @@ impl Denoiser {
         self.still_frames >= settings.most_frames
     }
 
-    /// Makes the mask that the technique is to write, for one of the host's.
-    pub(crate) fn prepare_noisy(&mut self, stage: &Stage<'_>, mask: &Mask) {
+    /// The mask that the technique is to write, for one of the host's.
+    fn noisy_mask(&mut self, gpu: &Gpu, mask: &Mask) -> Mask {
         let descriptor = wgpu::TextureDescriptor {
             label: Some("antumbra noisy mask"),
             size: extent(mask.size_px(), mask.channels().count()),
@@ -167,16 +176,13 @@ impl Denoiser {
             usage: Mask::usages(Mask::FORMAT),
             view_formats: &[],
         };
-        let scratch = stage.device.scratch_texture(Scratch::NoisyMask, &descriptor);
-        if self.noisy.as_ref().is_none_or(|noisy| noisy.scratch != scratch) {
+        let scratch = gpu.device.scratch_texture(Scratch::NoisyMask, &descriptor);
+        let made = self.noisy.take().filter(|noisy| noisy.scratch == scratch);
+        let noisy = made.unwrap_or_else(|| {
             let mask = Mask::of_layers(&scratch, 0, mask.channels());
-            self.noisy = Some(NoisyMask { scratch, mask });
-        }
-    }
-
-    /// The mask that the technique is to write.
-    pub(crate) fn noisy(&self) -> Option<&Mask> {
-        self.noisy.as_ref().map(|noisy| &noisy.mask)
+            NoisyMask { scratch, mask }
+        });
+        self.noisy.insert(noisy).mask.clone()
     }
 
     /// Makes ready for a frame. `frame` is counted from the stage's anchor and has the mask to smooth into; `host` is the
@@ -187,14 +193,15 @@ impl Denoiser {
         [host, frame]: [&PreparedFrame<'_>; 2],
         settings: &Denoise,
         is_same: bool,
-    ) {
-        self.inputs.prepare(stage, frame);
+    ) -> PreparedDenoise {
+        let inputs = self.inputs.prepare(stage, frame);
+        let noisy = self.noisy_mask(stage, frame.mask);
         let (size, channels) = (frame.receivers.size_px, frame.mask.channels().count());
-        if self.kept.as_ref().is_none_or(|[kept, _]| (kept.size_px, kept.channels) != (size, channels)) {
-            self.kept = Some([Kept::new(stage, size, channels), Kept::new(stage, size, channels)]);
+        let kept = self.kept.take().filter(|[kept, _]| (kept.size_px, kept.channels) == (size, channels));
+        if kept.is_none() {
             self.before = None;
         }
-        let Some(kept) = &self.kept else { return };
+        let kept = kept.unwrap_or_else(|| [Kept::new(stage, size, channels), Kept::new(stage, size, channels)]);
         let [before, now] = if self.frames.is_multiple_of(2) { [&kept[0], &kept[1]] } else { [&kept[1], &kept[0]] };
         let most_frames = settings.most_frames as f32;
         let uniform = DenoiseFrame {
@@ -203,20 +210,21 @@ impl Denoiser {
             ..self.seen_before(stage.anchor())
         };
         write_uniform(stage, &self.uniform, &uniform);
-        let noisy = self.noisy.as_ref().expect("the technique's mask comes first");
         let over_time = OverTime {
             denoise: &self.uniform,
-            noisy: noisy.mask.layers_view(),
+            noisy: noisy.layers_view(),
             means_before: &before.means_view,
             depth_before: &before.depth_view,
             motion: settings.motion.as_ref().unwrap_or(&before.depth_view),
             means_now: &now.means_view,
             depth_now: &now.depth_view,
         };
-        self.groups = Some([
-            over_time.group(stage, &self.over_time_layout),
-            OverPixels { means: &now.means_view }.group(stage, &self.over_pixels_layout),
-        ]);
+        let over_pixels = OverPixels { means: &now.means_view }.group(stage, &self.over_pixels_layout);
+        let passes = [
+            ("denoise over time", self.over_time.clone(), over_time.group(stage, &self.over_time_layout)),
+            ("denoise over pixels", self.over_pixels.clone(), over_pixels),
+        ];
+        self.kept = Some(kept);
         self.before = Some(Camera {
             view_from_world: host.receivers.view_from_world,
             clip_from_view: host.receivers.clip_from_view,
@@ -224,6 +232,7 @@ impl Denoiser {
         });
         self.frames += 1;
         self.still_frames = if is_same { self.still_frames + 1 } else { 1 };
+        PreparedDenoise { noisy, inputs, passes, channels }
     }
 
     /// The frame before's camera, for places counted from an anchor.
@@ -240,31 +249,24 @@ impl Denoiser {
         }
     }
 
-    /// Smooths what the technique has written into the host's mask.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
-        let [over_time, over_pixels] = self.groups.as_ref().expect("prepare comes before record");
-        let passes = [
-            ("denoise over time", &self.over_time, over_time),
-            ("denoise over pixels", &self.over_pixels, over_pixels),
-        ];
-        for (label, pipeline, group) in passes {
-            recorder.compute(label, Span::Only, |pass| {
-                pass.set_pipeline(pipeline);
-                self.inputs.bind(pass);
-                pass.set_bind_group(1, group, &[]);
-                self.inputs.dispatch_layers(pass, self.channels());
-            });
-        }
-    }
-
-    fn channels(&self) -> u32 {
-        self.kept.as_ref().map_or(1, |[kept, _]| kept.channels)
-    }
-
     /// Bytes of what is kept from frame to frame.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let of = |kept: &Kept| u64::from(kept.size_px.element_product() * (8 * kept.channels + 4));
         self.kept.iter().flatten().map(of).sum()
+    }
+}
+
+impl PreparedDenoise {
+    /// Smooths what the technique has written into the host's mask.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
+        for (label, pipeline, group) in &self.passes {
+            recorder.compute(label, Span::Only, |pass| {
+                pass.set_pipeline(pipeline);
+                self.inputs.bind(pass);
+                pass.set_bind_group(1, group, &[]);
+                self.inputs.dispatch_layers(pass, self.channels);
+            });
+        }
     }
 }
 

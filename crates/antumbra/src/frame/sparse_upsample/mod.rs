@@ -7,7 +7,7 @@
 //! no thread waits for a neighbour's lookup.
 
 use crate::contract::PreparedFrame;
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline};
 use crate::shaders;
 
@@ -28,11 +28,18 @@ pub(crate) struct SparseUpsample {
     pipeline: wgpu::ComputePipeline,
     missing_layout: wgpu::BindGroupLayout,
     lists: Option<Lists>,
-    /// Group 0 of the technique's pipeline for missing pixels.
-    missing_group: Option<wgpu::BindGroup>,
 }
 
+/// The pass of one frame.
 #[derive(Debug)]
+pub(crate) struct PreparedUpsample {
+    pipeline: wgpu::ComputePipeline,
+    lists: Lists,
+    /// Group 0 of the technique's pipeline for missing pixels.
+    missing_group: wgpu::BindGroup,
+}
+
+#[derive(Clone, Debug)]
 struct Lists {
     /// Count and pixels.
     missing: wgpu::Buffer,
@@ -52,44 +59,53 @@ impl SparseUpsample {
             layout,
             missing_layout: FrameInputs::missing_layout(gpu),
             lists: None,
-            missing_group: None,
         }
     }
 
-    /// Makes room for as many missing pixels as the picture can have.
-    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, inputs: &FrameInputs, frame: &PreparedFrame<'_>) {
+    /// Makes room for as many missing pixels as the picture can have. `of_frame` is what `inputs` has made of the frame.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        inputs: &FrameInputs,
+        frame: &PreparedFrame<'_>,
+        of_frame: &PreparedInputs,
+    ) -> PreparedUpsample {
         let size_px = frame.receivers.size_px;
         let known = size_px.map(|px| px.div_ceil(Self::STRIDE_PX));
         let most = size_px.element_product() - known.element_product();
         let bytes = 4 * u64::from(most + 1);
         let lists = self.lists.take().filter(|lists| lists.missing.size() >= bytes);
         let lists = self.lists.insert(lists.unwrap_or_else(|| Lists::new(stage, &self.layout, bytes)));
-        self.missing_group = Some(inputs.missing_group(stage, frame, &self.missing_layout, &lists.missing));
+        PreparedUpsample {
+            pipeline: self.pipeline.clone(),
+            missing_group: inputs.missing_group(stage, frame, of_frame, &self.missing_layout, &lists.missing),
+            lists: lists.clone(),
+        }
     }
 
-    /// Fills in the mask of the prepared frame, all but the missing pixels.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &FrameInputs) {
-        let Some(lists) = &self.lists else { return };
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.lists.as_ref().map_or(0, |lists| lists.missing.size() + lists.dispatch.size())
+    }
+}
+
+impl PreparedUpsample {
+    /// Fills in the mask of the frame, all but the missing pixels.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &PreparedInputs) {
         // The count; what lies behind it is written before it is read.
-        recorder.clear_buffer(&lists.missing);
-        recorder.clear_buffer(&lists.dispatch);
+        recorder.clear_buffer(&self.lists.missing);
+        recorder.clear_buffer(&self.lists.dispatch);
         recorder.compute("upsample", Span::Only, |pass| {
             pass.set_pipeline(&self.pipeline);
             inputs.bind(pass);
-            pass.set_bind_group(1, &lists.group, &[]);
+            pass.set_bind_group(1, &self.lists.group, &[]);
             inputs.dispatch_known(pass);
         });
     }
 
     /// Dispatches the pipeline that the pass has set, of 64 threads a workgroup, for the missing pixels, with its group 0.
     pub(crate) fn dispatch_missing(&self, pass: &mut wgpu::ComputePass<'_>) {
-        let (Some(lists), Some(group)) = (&self.lists, &self.missing_group) else { return };
-        pass.set_bind_group(0, group, &[]);
-        pass.dispatch_workgroups_indirect(&lists.dispatch, 0);
-    }
-
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.lists.as_ref().map_or(0, |lists| lists.missing.size() + lists.dispatch.size())
+        pass.set_bind_group(0, &self.missing_group, &[]);
+        pass.dispatch_workgroups_indirect(&self.lists.dispatch, 0);
     }
 }
 

@@ -1,13 +1,11 @@
 //! Receivers of a multisampled depth buffer, as two pictures of one sample a pixel.
 
-use std::sync::Arc;
-
 use glam::{Mat4, UVec2};
 
 use crate::contract::{Error, Receivers};
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::gpu::{
-    Bindings, CommandsEnd, Gpu, Keep, Recorder, Span, Stage, array_view, bindings, color_pipeline, gpu_structs,
+    Bindings, Commands, Gpu, Keep, Recorder, Span, Stage, array_view, bindings, color_pipeline, gpu_structs,
     slice_views, texels,
 };
 use crate::shaders;
@@ -162,7 +160,7 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
         let pipeline = pipeline(&stage, &self.layout, normal_format);
         let (keep, uploads) = stage.finish();
         self.keep = keep;
-        recorder.upload(uploads, CommandsEnd::of(&Arc::default()));
+        recorder.upload(uploads, Commands::default().end());
         for picture in 0..2 {
             recorder.color_pass("split receivers", Span::of(picture, 2), &made.targets(picture), |pass| {
                 pass.set_pipeline(&pipeline);

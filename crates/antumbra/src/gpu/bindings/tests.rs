@@ -3,8 +3,8 @@
 use naga::{AddressSpace, ImageClass, ImageDimension, ScalarKind, StorageAccess, TypeInner};
 
 use super::Bindings;
-use crate::gpu::shared_constants::is_linked_name;
-use crate::gpu::uniforms::is_of_numbers;
+use crate::gpu::overrides::is_linked_name;
+use crate::gpu::uniforms;
 
 /// Whether group `group` of some shaders, each with its name, is as declared: every binding of theirs is in the
 /// declaration, by the same name and of the same kind, and every one declared is some shader's.
@@ -23,11 +23,7 @@ pub(crate) fn assert_as_declared<G: Bindings>(group: u32, shaders: &[(&str, &str
             assert!(is_linked_name(name, declared), "{shader}: at {binding} is {name}, declared {declared}");
             let inner = &module.types[variable.ty].inner;
             assert!(fits(&entry.ty, variable.space, inner), "{shader}: {name} is declared as {:?}", entry.ty);
-            assert_eq!(
-                is_of_numbers(name),
-                G::numbers().contains(&binding),
-                "{shader}: {name} is numbers here or there"
-            );
+            uniforms::assert_alike(G::LABEL, binding, name);
             missing.retain(|(of, _)| *of != binding);
         }
     }

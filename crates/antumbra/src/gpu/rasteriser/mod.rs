@@ -26,13 +26,27 @@ crate::gpu::shared_constants! {
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+impl Gpu {
+    /// A uniform, `f32`, with usage `COPY_SRC`: by how many texels the adapter's rasteriser draws planes elsewhere than they lie, as
+    /// measured by the first call for this device. About .003 on graphics cards, 0 on software renderers.
+    pub fn snapped_texels(&self) -> &wgpu::Buffer {
+        self.device.snapped_texels(|| measure(self))
+    }
+
+    /// Before it was measured: as if this rasteriser drew planes so many texels elsewhere, beside what it does.
+    #[cfg(test)]
+    pub(crate) fn pretend_snapped(&self, by_texels: f32) {
+        self.device.snapped_texels(|| measure_moved(self, by_texels));
+    }
+}
+
 /// Draws and measures; a uniform, `f32`: by how many texels planes are drawn elsewhere than they lie, 0 where by none.
-pub(super) fn measure(gpu: &Gpu) -> wgpu::Buffer {
+fn measure(gpu: &Gpu) -> wgpu::Buffer {
     measure_moved(gpu, 0.0)
 }
 
 /// The same with everything drawn so many texels to the right of where it is taken to be.
-pub(super) fn measure_moved(gpu: &Gpu, by_texels: f32) -> wgpu::Buffer {
+fn measure_moved(gpu: &Gpu, by_texels: f32) -> wgpu::Buffer {
     let label = Some("antumbra rasteriser");
     let size = CELLS * CELL_TEXELS;
     let drawn = gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -268,7 +268,7 @@ fn windows_are_judged_by_their_texels() {
         WindowShape::Warped { along: Vec2::from_angle(2.1), strength: 0.7 },
     ];
     for fit in [
-        ViewFit::perspective(light.frame(), 0.25, None, &Between::of_known(&casters), &[]),
+        ViewFit::perspective(light.frame(), Followed::All, 0.25, None, &Between::of_known(&casters), &[]),
         ViewFit::orthographic(light.frame(), 0.0, &Between::of_known(&casters), &[]),
     ] {
         let in_plane = fit.in_plane(&seen);

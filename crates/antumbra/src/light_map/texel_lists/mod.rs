@@ -22,7 +22,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::contract::{MeshCaster, Opacity, SurfaceTexture};
 use crate::gpu::{
-    Bindings, DrawPipeline, Gpu, Lease, NoDepth, Recorder, Scratch, Span, Stage, bindings, compute_entry,
+    Bindings, Cached, DrawPipeline, Gpu, Lease, NoDepth, Recorder, Scratch, Span, Stage, bindings, compute_entry,
     create_uniform, gpu_structs, samples, texels, white_texture, write_uniform,
 };
 use crate::light_map::caster_depth::{Bound, INSTANCES, POSITIONS, UVS, caster_primitives, is_in_view, make_no_uvs};
@@ -216,9 +216,9 @@ impl SortDesign {
             Gather::Linked => "pack_lists",
         };
         let constants = [
-            ("0", f64::from(u8::from(self.colored))),
-            ("1", f64::from(self.accumulation as u32)),
-            ("2", f64::from(u8::from(self.joins))),
+            ("COLORED", f64::from(u8::from(self.colored))),
+            ("ACCUMULATION", f64::from(self.accumulation as u32)),
+            ("JOINS", f64::from(u8::from(self.joins))),
         ];
         compute_entry(gpu, entry, shaders::TEXEL_LISTS_SORT, Some(entry), &constants, &[layout])
     }
@@ -233,7 +233,7 @@ pub(crate) struct TexelLists {
     covered_layout: wgpu::BindGroupLayout,
     /// By [`Pass`], how the caster is drawn, closed or not.
     rasters: [[[wgpu::RenderPipeline; 2]; 3]; 3],
-    sort: Option<(SortDesign, wgpu::ComputePipeline)>,
+    sort: Cached<SortDesign, wgpu::ComputePipeline>,
     scan: PrefixScan,
     view_uniform: wgpu::Buffer,
     sort_uniform: wgpu::Buffer,
@@ -245,7 +245,21 @@ pub(crate) struct TexelLists {
     /// One a caster.
     is_in_view: Vec<bool>,
     storage: Option<Storage>,
-    bind_groups: Option<BindGroups>,
+}
+
+/// The lists of one frame, and the passes that fill them.
+#[derive(Debug)]
+pub(crate) struct PreparedLists {
+    /// (first, count) of each texel's list, row by row, then the owner's.
+    pub(crate) lists: Arc<wgpu::Buffer>,
+    /// The fragments: `array<vec2u>`.
+    pub(crate) fragments: Arc<wgpu::Buffer>,
+    /// `ListCounters`: how many fragments the casters have, and where the room behind the stored ones begins.
+    pub(crate) counters: Arc<wgpu::Buffer>,
+    /// The right to the buffers, which those that the owner makes of them share.
+    pub(crate) lease: Arc<Lease>,
+    groups: BindGroups,
+    sort: wgpu::ComputePipeline,
 }
 
 /// How a caster is drawn.
@@ -271,7 +285,7 @@ enum Pass {
 #[derive(Debug)]
 struct Storage {
     options: ListOptions,
-    lease: Lease,
+    lease: Arc<Lease>,
     cursors: Arc<wgpu::Buffer>,
     fragments: Arc<wgpu::Buffer>,
     lists: Arc<wgpu::Buffer>,
@@ -280,8 +294,8 @@ struct Storage {
     nodes: Arc<wgpu::Buffer>,
     links: Arc<wgpu::Buffer>,
     /// Of one sample, and of four.
-    no_depth: Arc<NoDepth>,
-    no_covered_depth: Option<Arc<NoDepth>>,
+    no_depth: NoDepth,
+    no_covered_depth: Option<NoDepth>,
 }
 
 #[derive(Debug)]
@@ -302,7 +316,7 @@ impl TexelLists {
                 [Draw::Opaque, Draw::Surface, Draw::Covered]
                     .map(|draw| [false, true].map(|closed| raster_pipeline(gpu, layouts, pass, draw, closed)))
             }),
-            sort: None,
+            sort: Cached::default(),
             scan: PrefixScan::new(gpu),
             raster_layout,
             covered_layout,
@@ -316,7 +330,6 @@ impl TexelLists {
             caster_groups: Vec::new(),
             is_in_view: Vec::new(),
             storage: None,
-            bind_groups: None,
         }
     }
 
@@ -327,7 +340,7 @@ impl TexelLists {
         view: &LightView,
         casters: &[MeshCaster<'_>],
         options: &ListOptions,
-    ) {
+    ) -> PreparedLists {
         if self.storage.as_ref().is_none_or(|storage| !storage.fits(options)) {
             // What it has goes back before more is taken.
             self.storage = None;
@@ -338,25 +351,31 @@ impl TexelLists {
         storage.widen(stage);
         write_uniform(stage, &self.view_uniform, &list_view(view, options, stage.anchor()));
         write_uniform(stage, &self.sort_uniform, &list_sort(options));
-        if self.sort.as_ref().is_none_or(|(made, _)| *made != SortDesign::of(options)) {
-            let design = SortDesign::of(options);
-            self.sort = Some((design, design.compiled(stage, &self.sort_layout)));
-        }
+        let design = SortDesign::of(options);
+        let sort = self.sort.get_or_make(design, || design.compiled(stage, &self.sort_layout)).clone();
         self.scan.prepare(stage, &storage.cursors, options.most_texels);
         let Storage { cursors, fragments, lists, counters, nodes, links, .. } = &*storage;
         let is_linked = options.gather == Gather::Linked;
         let gathered = if is_linked { nodes } else { fragments };
         let raster = Gathered { list_view: &self.view_uniform, cursors, fragments: gathered, counters, links };
-        let sort = Sorted { list_sort: &self.sort_uniform, cursors, fragments, lists, counters, nodes, links };
-        self.bind_groups = Some(BindGroups {
-            raster: raster.group(stage, &self.raster_layout),
-            sort: sort.group(stage, &self.sort_layout),
-        });
+        let sorted = Sorted { list_sort: &self.sort_uniform, cursors, fragments, lists, counters, nodes, links };
+        let prepared = PreparedLists {
+            lists: Arc::clone(lists),
+            fragments: Arc::clone(fragments),
+            counters: Arc::clone(counters),
+            lease: Arc::clone(&storage.lease),
+            groups: BindGroups {
+                raster: raster.group(stage, &self.raster_layout),
+                sort: sorted.group(stage, &self.sort_layout),
+            },
+            sort,
+        };
         self.caster_groups = self.caster_groups(stage, casters, options.samples);
         let clip_from_world = view.clip_from_world();
         self.is_in_view.clear();
         self.is_in_view.extend(casters.iter().map(|caster| is_in_view(&clip_from_world, &caster.bounds)));
         make_no_uvs(stage, &mut self.no_uvs, casters);
+        prepared
     }
 
     /// How each caster is drawn, and what that needs.
@@ -428,8 +447,8 @@ impl TexelLists {
     }
 
     /// Records the passes that fill the lists: `count`, `scan`, `collect`, `sort`, or `link`, `sort`.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, casters: &[MeshCaster<'_>]) {
-        let (Some(storage), Some(bind_groups)) = (&self.storage, &self.bind_groups) else { return };
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, casters: &[MeshCaster<'_>], prepared: &PreparedLists) {
+        let Some(storage) = &self.storage else { return };
         recorder.clear_buffer(&storage.cursors);
         recorder.clear_buffer(&storage.counters);
         // Casters with coverage have their own pass, of more samples.
@@ -445,7 +464,7 @@ impl TexelLists {
                     let UVec2 { x, y } = storage.options.map_size;
                     render.set_viewport(0.0, 0.0, x as f32, y as f32, 0.0, 1.0);
                     render.set_scissor_rect(0, 0, x, y);
-                    render.set_bind_group(0, &bind_groups.raster, &[]);
+                    render.set_bind_group(0, &prepared.groups.raster, &[]);
                     self.draw(render, storage, pass, *covered, casters);
                 });
             }
@@ -459,9 +478,8 @@ impl TexelLists {
             raster(recorder, "collect", Pass::Collect);
         }
         recorder.compute("sort", Span::Only, |pass| {
-            let (_, sort) = self.sort.as_ref().expect("prepare comes before record");
-            pass.set_pipeline(sort);
-            pass.set_bind_group(0, &bind_groups.sort, &[]);
+            pass.set_pipeline(&prepared.sort);
+            pass.set_bind_group(0, &prepared.groups.sort, &[]);
             let groups = storage.options.map_size.map(|texels| texels.div_ceil(TILE));
             pass.dispatch_workgroups(groups.x, groups.y, 1);
         });
@@ -507,26 +525,6 @@ impl TexelLists {
         }
     }
 
-    /// The fragments: `array<vec2u>`; after [`Self::prepare`].
-    pub(crate) fn fragments(&self) -> Option<&wgpu::Buffer> {
-        self.storage.as_ref().map(|storage| &*storage.fragments)
-    }
-
-    /// (first, count) of each texel's list, row by row, then the owner's.
-    pub(crate) fn lists(&self) -> Option<&wgpu::Buffer> {
-        self.storage.as_ref().map(|storage| &*storage.lists)
-    }
-
-    /// `ListCounters`: how many fragments the casters have, and where the room behind the stored ones begins.
-    pub(crate) fn counters(&self) -> Option<&wgpu::Buffer> {
-        self.storage.as_ref().map(|storage| &*storage.counters)
-    }
-
-    /// The right to the buffers, which those that the owner makes of them share.
-    pub(crate) fn lease(&self) -> Option<&Lease> {
-        self.storage.as_ref().map(|storage| &storage.lease)
-    }
-
     /// Bytes of all buffers that are the light's own.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.storage.as_ref().map_or(0, |storage| storage.lease.own_bytes() + self.scan.memory_bytes())
@@ -548,7 +546,7 @@ impl Storage {
             node_count * FRAGMENT_BYTES,
             node_count * 4,
         ];
-        let lease = Lease::new(&gpu.device, bytes.iter().sum::<u64>() + options.owners_bytes);
+        let lease = Arc::new(Lease::new(&gpu.device, bytes.iter().sum::<u64>() + options.owners_bytes));
         // Lights share buffers of a few sizes.
         let rounded = |bytes: u64| if lease.is_own() { bytes } else { bytes.next_power_of_two().min(most_bytes) };
         let buffer = |scratch, label, bytes: u64| {

@@ -130,13 +130,13 @@ fn gpu_lists(light: &Light, meshes: &[TestMesh], options: &ListOptions) -> Optio
     let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
     let casters: Vec<_> = meshes.iter().zip(&on_gpu).map(|(mesh, on_gpu)| mesh.caster(on_gpu)).collect();
     let mut block = TexelLists::new(gpu);
-    block.prepare(&Stage::at_once(gpu), &view_of(light, meshes), &casters, options);
+    let prepared = block.prepare(&Stage::at_once(gpu), &view_of(light, meshes), &casters, options);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    block.record(&mut Recorder::new(&mut encoder, None), &casters);
+    block.record(&mut Recorder::new(&mut encoder, None), &casters, &prepared);
     gpu.queue().submit([encoder.finish()]);
-    let fragments: Vec<[u32; 2]> = read_storage(gpu, block.fragments().expect("prepared"));
-    let lists: Vec<[u32; 2]> = read_storage(gpu, block.lists().expect("prepared"));
-    let counters: Vec<u32> = read_storage(gpu, block.counters().expect("prepared"));
+    let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.fragments);
+    let lists: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists);
+    let counters: Vec<u32> = read_storage(gpu, &prepared.counters);
     if options.layers == 0 && options.join.is_none() && options.samples == 1 {
         let stored: u32 = lists.iter().map(|list| list[1]).sum();
         assert_eq!(stored, counters[0].min(options.capacity));
@@ -331,12 +331,12 @@ fn minified_textures_stop_their_mean() {
     for (what, opacity, want) in [("tinted", tinted, [0.25f32, 0.5, 0.5]), ("masked", masked, [0.5; 3])] {
         let casters = [MeshCaster { opacity, ..on_gpu.caster() }];
         let mut block = TexelLists::new(gpu);
-        block.prepare(&Stage::at_once(gpu), &from_light, &casters, &options(Gather::Arrays, true));
+        let prepared = block.prepare(&Stage::at_once(gpu), &from_light, &casters, &options(Gather::Arrays, true));
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        block.record(&mut Recorder::new(&mut encoder, None), &casters);
+        block.record(&mut Recorder::new(&mut encoder, None), &casters, &prepared);
         gpu.queue().submit([encoder.finish()]);
-        let fragments: Vec<[u32; 2]> = read_storage(gpu, block.fragments().expect("prepared"));
-        let lists: Vec<[u32; 2]> = read_storage(gpu, block.lists().expect("prepared"));
+        let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.fragments);
+        let lists: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists);
         let stopped: Vec<[f32; 3]> = lists
             .iter()
             .filter(|list| list[1] == 1)

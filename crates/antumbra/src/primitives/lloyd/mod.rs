@@ -101,7 +101,7 @@ pub(crate) struct Lloyd {
 }
 
 fn pipeline_of(gpu: &Gpu, layout: &wgpu::BindGroupLayout, teleport: Teleport) -> wgpu::ComputePipeline {
-    let constants = [("0", f64::from(u8::from(teleport == Teleport::Weight)))];
+    let constants = [("BY_WEIGHT", f64::from(u8::from(teleport == Teleport::Weight)))];
     compute_entry(gpu, "lloyd", shaders::LLOYD_UPDATE, None, &constants, &[layout])
 }
 

@@ -4,11 +4,13 @@
 //!
 //! A reader of some channels reads the words that hold them and no others.
 
+use std::sync::Arc;
+
 use glam::{IVec2, UVec2};
 
 use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, compute_entry, create_uniform, gpu_structs,
+    Bindings, Cached, Gpu, Recorder, Span, Stage, array_view, bindings, compute_entry, create_uniform, gpu_structs,
     level_views, slice_views, texels, upload_storage, write_uniform,
 };
 use crate::shaders;
@@ -164,7 +166,7 @@ struct Maps {
     drawn: Vec<wgpu::TextureView>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Pipelines {
     blur: wgpu::ComputePipeline,
     halve: wgpu::ComputePipeline,
@@ -176,12 +178,32 @@ pub(crate) struct PackedMap {
     blur_layout: wgpu::BindGroupLayout,
     halve_layout: wgpu::BindGroupLayout,
     /// For the packing that is prepared.
-    pipelines: Option<(Packing, Pipelines)>,
+    pipelines: Cached<Packing, Pipelines>,
     rows: wgpu::Buffer,
     columns: wgpu::Buffer,
     weights: Option<wgpu::Buffer>,
     is_drawn: bool,
-    maps: Option<Maps>,
+    maps: Option<Arc<Maps>>,
+}
+
+/// A map of one frame, its blur and its mips.
+#[derive(Debug)]
+pub(crate) struct PreparedPackedMap {
+    maps: Arc<Maps>,
+    weights: wgpu::Buffer,
+    pipelines: Pipelines,
+}
+
+impl Pipelines {
+    /// `layouts` are of the blur and of the mips.
+    fn new(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 2], packing: Packing) -> Self {
+        let constants = [("PACKING", f64::from(packing as u32))];
+        let make = |label, wgsl, layout| compute_entry(gpu, label, wgsl, None, &constants, &[layout]);
+        Self {
+            blur: make("packed blur", shaders::PACKED_BLUR, layouts[0]),
+            halve: make("packed mips", shaders::PACKED_HALVE, layouts[1]),
+        }
+    }
 }
 
 /// Threads along each side of a workgroup of the blur, and of the mips.
@@ -194,7 +216,7 @@ impl PackedMap {
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self {
-            pipelines: None,
+            pipelines: Cached::default(),
             blur_layout: Blur::layout(gpu),
             halve_layout: Halve::layout(gpu),
             rows: create_uniform::<BlurUniform>(gpu, "antumbra blur rows"),
@@ -210,11 +232,6 @@ impl PackedMap {
         self.is_drawn = is_drawn;
     }
 
-    /// The first level of each word, for drawing, where that is set; after [`Self::prepare`].
-    pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
-        &self.maps().drawn
-    }
-
     /// Allocates a map of `words` words a texel, and its passes.
     pub(crate) fn prepare(
         &mut self,
@@ -224,30 +241,26 @@ impl PackedMap {
         packing: Packing,
         kernel: &Kernel,
         with_mips: bool,
-    ) {
+    ) -> PreparedPackedMap {
         let levels = if with_mips { size.max_element().ilog2() + 1 } else { 1 };
         let shape = Shape { size, words, levels, blurred: kernel.radius() > 0, drawn: self.is_drawn };
         for (buffer, direction) in [(&self.rows, IVec2::X), (&self.columns, IVec2::Y)] {
             let uniform = BlurUniform { direction, radius: kernel.radius() as i32, padding: 0 };
             write_uniform(stage, buffer, &uniform);
         }
-        if self.pipelines.as_ref().is_none_or(|(made_for, _)| *made_for != packing) {
-            let constants = [("PACKING", f64::from(packing as u32))];
-            let make = |label, wgsl, layout| compute_entry(stage, label, wgsl, None, &constants, &[layout]);
-            let blur = make("packed blur", shaders::PACKED_BLUR, &self.blur_layout);
-            let halve = make("packed mips", shaders::PACKED_HALVE, &self.halve_layout);
-            self.pipelines = Some((packing, Pipelines { blur, halve }));
-        }
+        let layouts = [&self.blur_layout, &self.halve_layout];
+        let pipelines = self.pipelines.get_or_make(packing, || Pipelines::new(stage, layouts, packing)).clone();
         let weights = kernel.with_running_sums();
         let bytes = size_of_val(weights.as_slice()) as u64;
         let weights_stay = self.weights.as_ref().is_some_and(|buffer| buffer.size() == bytes);
-        upload_storage(stage, &mut self.weights, "antumbra blur weights", &weights);
-        if !(weights_stay && self.maps.as_ref().is_some_and(|maps| maps.shape == shape)) {
-            self.maps = Some(self.allocate(stage, shape));
-        }
+        let weights = upload_storage(stage, &mut self.weights, "antumbra blur weights", &weights).clone();
+        let made = self.maps.take().filter(|maps| weights_stay && maps.shape == shape);
+        let maps = made.unwrap_or_else(|| Arc::new(self.allocate(stage, shape, &weights)));
+        self.maps = Some(Arc::clone(&maps));
+        PreparedPackedMap { maps, weights, pipelines }
     }
 
-    fn allocate(&self, gpu: &Gpu, shape: Shape) -> Maps {
+    fn allocate(&self, gpu: &Gpu, shape: Shape, weights: &wgpu::Buffer) -> Maps {
         let texture = create_texture(gpu, "antumbra packed map", shape, shape.words, shape.levels);
         let levels = level_views(gpu, &texture);
         let halve = |pair: &[wgpu::TextureView]| {
@@ -255,7 +268,7 @@ impl PackedMap {
         };
         Maps {
             shape,
-            blurs: if shape.blurred { self.blurs(gpu, shape, &texture) } else { Vec::new() },
+            blurs: if shape.blurred { self.blurs(gpu, shape, &texture, weights) } else { Vec::new() },
             halves: levels.windows(2).map(halve).collect(),
             all: array_view(gpu, &texture),
             first: levels[0].clone(),
@@ -265,34 +278,20 @@ impl PackedMap {
     }
 
     /// Rows, then columns, of each word of a map.
-    fn blurs(&self, gpu: &Gpu, shape: Shape, map: &wgpu::Texture) -> Vec<[wgpu::BindGroup; 2]> {
+    fn blurs(&self, gpu: &Gpu, shape: Shape, map: &wgpu::Texture, weights: &wgpu::Buffer) -> Vec<[wgpu::BindGroup; 2]> {
         // One word's rows at a time: the map in between has one layer, whatever the number of words.
         let between = create_texture(gpu, "antumbra packed blur", Shape { drawn: false, ..shape }, 1, 1);
         let between = gpu.device.create_view(&between, &wgpu::TextureViewDescriptor::default());
         let blur = |uniform, source, target_layer| {
-            Blur { blur: uniform, weights: self.weights(), source, target_layer }.kept_group(gpu, &self.blur_layout)
+            Blur { blur: uniform, weights, source, target_layer }.kept_group(gpu, &self.blur_layout)
         };
         let of_word = |word| [blur(&self.rows, word, &between), blur(&self.columns, &between, word)];
         slice_views(gpu, map).iter().map(of_word).collect()
     }
 
-    fn maps(&self) -> &Maps {
-        self.maps.as_ref().expect("prepare comes first")
-    }
-
-    /// The first level of every word, for writing; after [`Self::prepare`].
-    pub(crate) fn target(&self) -> &wgpu::TextureView {
-        &self.maps().first
-    }
-
-    /// Every level of every word, for reading; after [`Self::prepare`].
-    pub(crate) fn view(&self) -> &wgpu::TextureView {
-        &self.maps().all
-    }
-
     /// Each level's first word alone, for whoever wants to look at it.
     pub(crate) fn drawn(&self) -> Vec<MapLevel> {
-        let (Some(maps), Some((packing, _))) = (&self.maps, &self.pipelines) else { return Vec::new() };
+        let (Some(maps), Some((packing, _))) = (&self.maps, self.pipelines.pair()) else { return Vec::new() };
         let level = |base_mip_level: u32| MapLevel {
             view: maps.texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
@@ -312,14 +311,49 @@ impl PackedMap {
         (0..maps.shape.levels).map(level).collect()
     }
 
-    /// The kernel's weights, and their running sums; after [`Self::prepare`].
+    /// Bytes of the map with its levels, and of the map between rows and columns.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        self.maps.as_ref().map_or(0, |maps| {
+            let texels = |level: u32| {
+                let size = (maps.shape.size >> level).max(UVec2::ONE);
+                u64::from(size.x) * u64::from(size.y)
+            };
+            let map: u64 = (0..maps.shape.levels).map(texels).sum::<u64>() * u64::from(maps.shape.words);
+            4 * (map + if maps.shape.blurred { texels(0) } else { 0 })
+        })
+    }
+
+    /// The texture, for tests.
+    #[cfg(test)]
+    pub(crate) fn texture(&self) -> &wgpu::Texture {
+        &self.maps.as_ref().expect("a map was prepared").texture
+    }
+}
+
+impl PreparedPackedMap {
+    /// The first level of each word, for drawing, where passes that draw write the map.
+    pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
+        &self.maps.drawn
+    }
+
+    /// The first level of every word, for writing.
+    pub(crate) fn target(&self) -> &wgpu::TextureView {
+        &self.maps.first
+    }
+
+    /// Every level of every word, for reading.
+    pub(crate) fn view(&self) -> &wgpu::TextureView {
+        &self.maps.all
+    }
+
+    /// The kernel's weights, and their running sums.
     pub(crate) fn weights(&self) -> &wgpu::Buffer {
-        self.weights.as_ref().expect("prepare comes first")
+        &self.weights
     }
 
     /// Blurs the first level, where the kernel has a width, and makes the further levels, where there are any.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
-        let (maps, (_, pipelines)) = (self.maps(), self.pipelines.as_ref().expect("prepare comes before record"));
+        let Self { maps, pipelines, .. } = self;
         let size = maps.shape.size;
         if maps.shape.blurred {
             recorder.compute("blur", Span::Only, |pass| {
@@ -347,24 +381,6 @@ impl PackedMap {
                 });
             }
         }
-    }
-
-    /// Bytes of the map with its levels, and of the map between rows and columns.
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.maps.as_ref().map_or(0, |maps| {
-            let texels = |level: u32| {
-                let size = (maps.shape.size >> level).max(UVec2::ONE);
-                u64::from(size.x) * u64::from(size.y)
-            };
-            let map: u64 = (0..maps.shape.levels).map(texels).sum::<u64>() * u64::from(maps.shape.words);
-            4 * (map + if maps.shape.blurred { texels(0) } else { 0 })
-        })
-    }
-
-    /// The texture, for tests.
-    #[cfg(test)]
-    pub(crate) fn texture(&self) -> &wgpu::Texture {
-        &self.maps().texture
     }
 }
 

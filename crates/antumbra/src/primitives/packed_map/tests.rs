@@ -53,7 +53,7 @@ fn gpu_equals_twins_over_a_ladder_of_sizes() {
         let (kernel, packing) = (&kernels[i % 3], packings[i % 4]);
         let (map, words) = (random_map(size), 2);
         let mut packed = PackedMap::new(gpu);
-        packed.prepare(&Stage::at_once(gpu), size, words, packing, kernel, true);
+        let prepared = packed.prepare(&Stage::at_once(gpu), size, words, packing, kernel, true);
         // The first channel of the second word; all else stays 0.
         let bits: Vec<u32> = map.iter().map(|v| pack(*v, packing)).collect();
         gpu.queue().write_texture(
@@ -66,7 +66,7 @@ fn gpu_equals_twins_over_a_ladder_of_sizes() {
             wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
         );
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        packed.record(&mut Recorder::new(&mut encoder, None));
+        prepared.record(&mut Recorder::new(&mut encoder, None));
         gpu.queue().submit([encoder.finish()]);
 
         let stored: Vec<f32> = bits.iter().map(|word| unpack(*word, packing)).collect();

@@ -93,17 +93,20 @@ impl PrefixScan {
 
     /// Scans the items, in one pass of this label.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str) {
+        recorder.compute(label, Span::Only, |pass| self.dispatch(pass));
+    }
+
+    /// Scans the items, in a pass of others'.
+    pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         let Some(levels) = &self.levels else { return };
-        recorder.compute(label, Span::Only, |pass| {
-            let mut step = |pipeline, step: &Step| {
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, &step.bind_group, &[]);
-                pass.dispatch_workgroups(step.block_count, 1, 1);
-            };
-            levels.steps.iter().for_each(|level| step(&self.scan, level));
-            // The last level is one block, with nothing before it.
-            levels.steps.iter().rev().skip(1).for_each(|level| step(&self.add, level));
-        });
+        let mut step = |pipeline, step: &Step| {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &step.bind_group, &[]);
+            pass.dispatch_workgroups(step.block_count, 1, 1);
+        };
+        levels.steps.iter().for_each(|level| step(&self.scan, level));
+        // The last level is one block, with nothing before it.
+        levels.steps.iter().rev().skip(1).for_each(|level| step(&self.add, level));
     }
 
     /// The sum of all items, a `u32` at offset 0, with usages `STORAGE` and `COPY_SRC`; after [`Self::prepare`].

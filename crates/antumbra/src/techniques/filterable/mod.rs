@@ -19,10 +19,10 @@
 use antumbra_light::Aabb;
 use glam::UVec2;
 
-use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::FrameInputs;
+use crate::contract::{CastersKey, DrawnMap, Error, MeshCaster, PreparedCasters, PreparedFrame};
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
-    Bindings, Gpu, GpuStruct, Recorder, Span, Stage, Standing, bindings, compute_entry, compute_pipeline,
+    Bindings, Cached, Content, Gpu, GpuStruct, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline,
     create_uniform, texels, write_uniform,
 };
 use crate::light_map::between::Between;
@@ -31,7 +31,7 @@ use crate::light_map::central_view::fit_light_view;
 use crate::light_map::hosts_map::view_of_hosts_map;
 use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
-use crate::primitives::packed_map::{PackedMap, Packing};
+use crate::primitives::packed_map::{PackedMap, Packing, PreparedPackedMap};
 use crate::shaders;
 
 pub mod convolution;
@@ -122,10 +122,28 @@ pub(crate) struct FrameMap {
     /// What its depths are measured along.
     pub(crate) range: DepthRange,
     settings: FilterSettings,
+    inputs: PreparedInputs,
+    /// An earlier frame has drawn it.
+    is_drawn: bool,
+}
+
+/// The passes of one frame that follow its light map.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedBasis {
+    map: FrameMap,
+    groups: BindGroups,
+    /// Layouts of the groups that passes between the map and the basis bind.
+    encode_layout: wgpu::BindGroupLayout,
+    depth_layout: wgpu::BindGroupLayout,
+    /// `None` where others draw what it would write, or nothing is filtered.
+    encode: Option<wgpu::ComputePipeline>,
+    packed: PreparedPackedMap,
+    resolve: wgpu::ComputePipeline,
 }
 
 /// The pipelines for maps of one sample a texel, or of several.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct MapPipelines {
     encode_layout: wgpu::BindGroupLayout,
     encode: wgpu::ComputePipeline,
@@ -150,7 +168,7 @@ pub(crate) struct Filterable<P> {
     technique: &'static str,
     shaders: BasisShaders,
     /// With the sample count that it draws for.
-    casters: Option<(u32, CasterDepth)>,
+    casters: Cached<u32, CasterDepth>,
     inputs: FrameInputs,
     packed: PackedMap,
     params_layout: wgpu::BindGroupLayout,
@@ -171,9 +189,8 @@ pub(crate) struct Filterable<P> {
     no_buffer: wgpu::Buffer,
     own_map: Option<OwnMap>,
     /// Of it.
-    standing: Standing,
+    content: Content<(CastersKey, Vec<u8>)>,
     frame_map: Option<FrameMap>,
-    bind_groups: Option<BindGroups>,
     _params: std::marker::PhantomData<P>,
 }
 
@@ -188,7 +205,7 @@ impl<P: GpuStruct> Filterable<P> {
         Self {
             technique,
             shaders,
-            casters: None,
+            casters: Cached::default(),
             packed: PackedMap::new(gpu),
             resolve: compute_pipeline(gpu, technique, shaders.resolve, &layouts),
             constants: Vec::new(),
@@ -208,9 +225,8 @@ impl<P: GpuStruct> Filterable<P> {
                 mapped_at_creation: false,
             }),
             own_map: None,
-            standing: Standing::default(),
+            content: Content::default(),
             frame_map: None,
-            bind_groups: None,
             _params: std::marker::PhantomData,
         }
     }
@@ -241,7 +257,7 @@ impl<P: GpuStruct> Filterable<P> {
 
     /// The constant of every pipeline that measures depth.
     pub(crate) fn distance_constant(&self) -> [(&'static str, f64); 1] {
-        [("7", f64::from(u8::from(self.is_distance())))]
+        [("IS_DISTANCE", f64::from(u8::from(self.is_distance())))]
     }
 
     /// Fits and allocates the light map of the frame, and tells of it.
@@ -251,9 +267,9 @@ impl<P: GpuStruct> Filterable<P> {
         frame: &PreparedFrame<'_>,
         settings: &FilterSettings,
     ) -> Result<FrameMap, Error> {
-        self.inputs.prepare(stage, frame);
-        let map = match &frame.casters {
-            PreparedCasters::Draws(_) => self.prepare_own_map(stage, frame, settings)?,
+        let inputs = self.inputs.prepare(stage, frame);
+        let mut map = match &frame.casters {
+            PreparedCasters::Draws(meshes) => self.prepare_own_map(stage, frame, meshes, settings, inputs)?,
             PreparedCasters::HostDepthMap(map) => {
                 self.own_map = None;
                 let view = view_of_hosts_map(self.technique, frame, map)?;
@@ -280,11 +296,14 @@ impl<P: GpuStruct> Filterable<P> {
                     .unwrap_or_else(|| DepthRange::of_view(&view))
                     .up_to(&view, &frame.receivers.corners()),
                     settings: *settings,
+                    inputs,
+                    is_drawn: false,
                 }
             }
         };
         let samples = map.sample_count.to_ne_bytes();
-        self.standing.draw_next(stage.casters(), &[bytemuck::bytes_of(&map.view), &samples]);
+        let of = [bytemuck::bytes_of(&map.view), &samples];
+        map.is_drawn = self.content.ask(stage.casters().map(|casters| (casters, of.concat())));
         write_uniform(stage, &self.view_uniform, &map.view);
         self.frame_map = Some(map.clone());
         Ok(map)
@@ -294,9 +313,10 @@ impl<P: GpuStruct> Filterable<P> {
         &mut self,
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
+        meshes: &[MeshCaster<'_>],
         settings: &FilterSettings,
+        inputs: PreparedInputs,
     ) -> Result<FrameMap, Error> {
-        let PreparedCasters::Draws(meshes) = &frame.casters else { unreachable!("called for meshes alone") };
         let technique = self.technique;
         let size = settings.map_size;
         check_map_size(stage, technique, size, "set a smaller `map_size`")?;
@@ -314,12 +334,8 @@ impl<P: GpuStruct> Filterable<P> {
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
         let view = in_whole_texels(stage, view, UVec2::splat(size));
-        if self.casters.as_ref().is_none_or(|(count, _)| *count != sample_count) {
-            self.casters = Some((sample_count, CasterDepth::multisampled(stage, sample_count)));
-        }
-        if let Some((_, casters)) = &mut self.casters {
-            casters.prepare(stage, &[view.clip_from_world()], meshes);
-        }
+        let casters = self.casters.get_or_make(sample_count, || CasterDepth::multisampled(stage, sample_count));
+        casters.prepare(stage, &[view.clip_from_world()], meshes);
         let range = match settings.depth_axis {
             DepthAxis::Light => None,
             DepthAxis::World => DepthRange::along_world(&view, &between, &receivers),
@@ -327,24 +343,26 @@ impl<P: GpuStruct> Filterable<P> {
         };
         let view = view.to_gpu(size);
         let range = range.unwrap_or_else(|| DepthRange::of_view(&view));
-        Ok(FrameMap { depth, size: UVec2::splat(size), sample_count, view, range, settings: *settings })
+        let size = UVec2::splat(size);
+        Ok(FrameMap { depth, size, sample_count, view, range, settings: *settings, inputs, is_drawn: false })
     }
 
-    /// Allocates the filtered map of `channels` channels and uploads the basis's parameters; after
-    /// [`Self::prepare_map`]. `t_step` is the error in t that storing leaves.
+    /// Allocates the filtered map of `channels` channels and uploads the basis's parameters. `t_step` is the error in t that
+    /// storing leaves.
     pub(crate) fn prepare_basis(
         &mut self,
         stage: &Stage<'_>,
+        map: &FrameMap,
         channels: u32,
         packing: Packing,
         t_step: f32,
         params: &P,
         buffer: Option<&wgpu::Buffer>,
-    ) {
-        let map = self.frame_map.clone().expect("prepare_map comes before prepare_basis");
+    ) -> PreparedBasis {
         let settings = map.settings;
         let kernel = settings.kernel();
-        self.packed.prepare(stage, map.size, channels.div_ceil(packing.channels()), packing, &kernel, settings.mips);
+        let words = channels.div_ceil(packing.channels());
+        let packed = self.packed.prepare(stage, map.size, words, packing, &kernel, settings.mips);
         write_uniform(
             stage,
             &self.filter_uniform,
@@ -365,28 +383,37 @@ impl<P: GpuStruct> Filterable<P> {
 
         let is_exact = settings.resolve == ResolveBy::Exact;
         self.compile_resolve(stage);
-        self.make_map_pipelines(stage, is_exact);
-        let groups = self.bind(stage, &map.depth, buffer.unwrap_or(&self.no_buffer), is_exact);
-        self.bind_groups = Some(groups);
+        let pipelines = self.map_pipelines(stage, is_exact);
+        let groups = self.bind(stage, &map.depth, &packed, &pipelines, buffer.unwrap_or(&self.no_buffer), is_exact);
+        PreparedBasis {
+            map: map.clone(),
+            groups,
+            encode: (!is_exact && !self.is_drawn).then(|| pipelines.encode.clone()),
+            packed,
+            resolve: pipelines.exact.filter(|_| is_exact).unwrap_or_else(|| self.resolve.clone()),
+            encode_layout: pipelines.encode_layout,
+            depth_layout: pipelines.depth_layout,
+        }
     }
 
     fn bind(
         &self,
         stage: &Stage<'_>,
         light_map: &wgpu::TextureView,
+        packed: &PreparedPackedMap,
+        pipelines: &MapPipelines,
         buffer: &wgpu::Buffer,
         is_exact: bool,
     ) -> BindGroups {
-        let pipelines = self.frame_pipelines();
         let (view, settings) = (&self.view_uniform, &self.filter_uniform);
-        let (packed_map, snapped_texels) = (self.packed.view(), stage.snapped_texels());
+        let (packed_map, snapped_texels) = (packed.view(), stage.snapped_texels());
         let filtered = Filtered { light_view: view, settings, packed_map, snapped_texels };
-        let encoded = Encoded { map_view: view, settings, light_map, packed_target: self.packed.target() };
+        let encoded = Encoded { map_view: view, settings, light_map, packed_target: packed.target() };
         BindGroups {
             encode: encoded.group(stage, &pipelines.encode_layout),
             depth: Depth { light_view: view, settings, depth_map: light_map }.group(stage, &pipelines.depth_layout),
             resolve: if is_exact {
-                Exact { filtered, depth_map: light_map, weights: self.packed.weights() }
+                Exact { filtered, depth_map: light_map, weights: packed.weights() }
                     .group(stage, &pipelines.exact_layout)
             } else {
                 filtered.group(stage, &self.resolve_layout)
@@ -395,7 +422,8 @@ impl<P: GpuStruct> Filterable<P> {
         }
     }
 
-    fn make_map_pipelines(&mut self, gpu: &Gpu, with_exact: bool) {
+    /// The pipelines of the frame's map, compiled where they are not yet.
+    fn map_pipelines(&mut self, gpu: &Gpu, with_exact: bool) -> MapPipelines {
         let (multisampled, constants) = (self.is_multisampled(), self.distance_constant());
         let index = pipelines_index(multisampled, self.is_distance());
         let pipelines = self.map_pipelines[index].get_or_insert_with(|| {
@@ -414,17 +442,12 @@ impl<P: GpuStruct> Filterable<P> {
             let layouts = [&self.inputs.layout, &pipelines.exact_layout, &self.params_layout];
             pipelines.exact = Some(compute_pipeline(gpu, "exact", wgsl, &layouts));
         }
-    }
-
-    /// Those of the prepared frame.
-    fn frame_pipelines(&self) -> &MapPipelines {
-        let index = pipelines_index(self.is_multisampled(), self.is_distance());
-        self.map_pipelines[index].as_ref().expect("made by prepare")
+        pipelines.clone()
     }
 
     /// What draws the light map of the prepared frame, where it is ours.
     pub(crate) fn casters(&self) -> Option<&CasterDepth> {
-        self.casters.as_ref().map(|(_, casters)| casters)
+        self.casters.get()
     }
 
     /// The light map of the prepared frame, where it is ours, and what draws it.
@@ -432,40 +455,14 @@ impl<P: GpuStruct> Filterable<P> {
         Some((&self.own_map.as_ref()?.view, self.casters()?))
     }
 
-    /// A view of each word of the packed map, where others draw it; after [`Self::prepare_basis`].
-    pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
-        self.packed.layer_views()
-    }
-
     /// The view's, the filter's and the basis's.
     pub(crate) fn uniforms(&self) -> (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer) {
         (&self.view_uniform, &self.filter_uniform, &self.params_uniform)
     }
 
-    /// Bind group 0 of passes over the light map, and its layout; after [`Self::prepare_basis`].
-    pub(crate) fn encode_group(&self) -> &wgpu::BindGroup {
-        &self.bind_groups.as_ref().expect("prepare_basis comes first").encode
-    }
-
-    /// See [`Self::encode_group`].
-    pub(crate) fn encode_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.frame_pipelines().encode_layout
-    }
-
-    /// Bind group 1 of passes over the receivers that read the light map's depth, beside its view and the filter; its
-    /// layout; and the receivers, group 0. After [`Self::prepare_basis`].
-    pub(crate) fn depth_group(&self) -> &wgpu::BindGroup {
-        &self.bind_groups.as_ref().expect("prepare_basis comes first").depth
-    }
-
-    /// See [`Self::depth_group`].
-    pub(crate) fn depth_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.frame_pipelines().depth_layout
-    }
-
-    /// See [`Self::depth_group`].
-    pub(crate) fn inputs(&self) -> &FrameInputs {
-        &self.inputs
+    /// The layout of group 0 of passes over the receivers.
+    pub(crate) fn inputs_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.inputs.layout
     }
 
     /// Whether the prepared frame's light map has several samples a texel.
@@ -478,48 +475,18 @@ impl<P: GpuStruct> Filterable<P> {
         self.frame_map.as_ref().is_some_and(|map| map.range.is_distance)
     }
 
-    /// Records the light map, where it is ours and does not stand from the frame before.
-    pub(crate) fn record_map(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        if self.standing.stands() {
+    /// Records the light map, where it is ours and no earlier frame has drawn it.
+    pub(crate) fn record_map(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedBasis) {
+        if prepared.map.is_drawn {
             return;
         }
-        if let (PreparedCasters::Draws(meshes), Some(map), Some((_, casters))) =
-            (&frame.casters, &self.own_map, &self.casters)
+        if let (PreparedCasters::Draws(meshes), Some(map), Some(casters)) =
+            (&frame.casters, &self.own_map, self.casters.get())
         {
             recorder.depth_pass("light map", Span::Only, &map.view, CasterDepth::CLEAR_DEPTH, |pass| {
                 casters.draw(pass, 0, meshes);
             });
         }
-    }
-
-    /// Records all that follows the light map.
-    pub(crate) fn record_basis(&self, recorder: &mut Recorder<'_>) {
-        let (Some(map), Some(groups)) = (&self.frame_map, &self.bind_groups) else {
-            unreachable!("prepare comes before record")
-        };
-        let pipelines = self.frame_pipelines();
-        let is_exact = map.settings.resolve == ResolveBy::Exact;
-        if !is_exact {
-            if !self.is_drawn {
-                recorder.compute("encode", Span::Only, |pass| {
-                    pass.set_pipeline(&pipelines.encode);
-                    pass.set_bind_group(0, &groups.encode, &[]);
-                    pass.set_bind_group(1, &groups.params, &[]);
-                    pass.dispatch_workgroups(map.size.x.div_ceil(TILE), map.size.y.div_ceil(TILE), 1);
-                });
-            }
-            self.packed.record(recorder);
-        }
-        recorder.compute("resolve", Span::Only, |pass| {
-            pass.set_pipeline(match &pipelines.exact {
-                Some(exact) if is_exact => exact,
-                _ => &self.resolve,
-            });
-            self.inputs.bind(pass);
-            pass.set_bind_group(1, &groups.resolve, &[]);
-            pass.set_bind_group(2, &groups.params, &[]);
-            self.inputs.dispatch(pass);
-        });
     }
 
     /// The light map of the frame prepared last, and the levels of what is filtered from it.
@@ -536,6 +503,61 @@ impl<P: GpuStruct> Filterable<P> {
     pub(crate) fn memory_bytes(&self) -> u64 {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * u64::from(map.sample_count) * 4);
         map + self.packed.memory_bytes()
+    }
+}
+
+impl PreparedBasis {
+    /// Group 0 of passes over the light map.
+    pub(crate) fn encode_group(&self) -> &wgpu::BindGroup {
+        &self.groups.encode
+    }
+
+    /// Layout of [`Self::encode_group`].
+    pub(crate) fn encode_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.encode_layout
+    }
+
+    /// Group 1 of passes over the receivers that read the light map's depth, beside its view and the filter.
+    pub(crate) fn depth_group(&self) -> &wgpu::BindGroup {
+        &self.groups.depth
+    }
+
+    /// Layout of [`Self::depth_group`].
+    pub(crate) fn depth_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.depth_layout
+    }
+
+    /// The receivers: group 0 of passes over them.
+    pub(crate) fn inputs(&self) -> &PreparedInputs {
+        &self.map.inputs
+    }
+
+    /// A view of each word of the packed map, where others draw it.
+    pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
+        self.packed.layer_views()
+    }
+
+    /// Records all that follows the light map.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
+        let Self { map, groups, .. } = self;
+        if let Some(encode) = &self.encode {
+            recorder.compute("encode", Span::Only, |pass| {
+                pass.set_pipeline(encode);
+                pass.set_bind_group(0, &groups.encode, &[]);
+                pass.set_bind_group(1, &groups.params, &[]);
+                pass.dispatch_workgroups(map.size.x.div_ceil(TILE), map.size.y.div_ceil(TILE), 1);
+            });
+        }
+        if map.settings.resolve != ResolveBy::Exact {
+            self.packed.record(recorder);
+        }
+        recorder.compute("resolve", Span::Only, |pass| {
+            pass.set_pipeline(&self.resolve);
+            map.inputs.bind(pass);
+            pass.set_bind_group(1, &groups.resolve, &[]);
+            pass.set_bind_group(2, &groups.params, &[]);
+            map.inputs.dispatch(pass);
+        });
     }
 }
 

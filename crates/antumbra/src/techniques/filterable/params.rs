@@ -118,9 +118,7 @@ macro_rules! filterable_params {
         $crate::contract::params! {
             $(#[$outer])*
             pub struct $name {
-                /// Texels along a side of the light map.
-                map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
-                    more "Sharper edges and a narrower blur; memory and time grow with the square.";
+                shared map_size, more "Sharper edges and a narrower blur; memory and time grow with the square.";
                 /// Samples of each texel of the light map, averaged after encoding.
                 msaa: $crate::techniques::filterable::Multisampling =
                     $crate::techniques::filterable::Multisampling::One,
@@ -148,9 +146,7 @@ macro_rules! filterable_params {
                 resolve: $crate::techniques::filterable::ResolveBy =
                     $crate::techniques::filterable::ResolveBy::Basis,
                     more "exact compares every texel under the kernel: the truth that the technique approximates.";
-                /// Scale of the automatic bias.
-                bias_scale: f32 = 1.0, in 0.0..=8.0,
-                    more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+                shared bias_scale;
             }
             // The blur is as wide in the world at each.
             Fast { map_size: 512, kernel_size: 3.5, anisotropy: 4, }

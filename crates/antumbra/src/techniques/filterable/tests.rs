@@ -276,8 +276,9 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
             let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
             let made = case.with_prepared(&casters, |frame| {
                 let map = passes.prepare_map(&Stage::at_once(gpu), frame, &settings)?;
-                passes.prepare_basis(
+                let prepared = passes.prepare_basis(
                     &Stage::at_once(gpu),
+                    &map,
                     basis.channels,
                     basis.packing,
                     0.0,
@@ -286,7 +287,7 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
                 );
                 let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
                 draw_samples(gpu, &mut encoder, &map.depth, map.sample_count);
-                passes.record_basis(&mut Recorder::new(&mut encoder, None));
+                prepared.record(&mut Recorder::new(&mut encoder, None));
                 gpu.queue.submit([encoder.finish()]);
                 Ok(map)
             });

@@ -5,7 +5,7 @@ use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet}
 use glam::{Vec2, Vec3};
 
 use crate::contract::SeenPoint;
-use crate::gpu::{Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
+use crate::gpu::{Cached, Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
 use crate::light_map::between::Between;
 use crate::light_map::light_view::{Followed, LightView, ViewFit};
 
@@ -46,19 +46,12 @@ pub(crate) struct PointChoice {
 
 /// The points of the unit cube for a choice, kept while the choice lasts: Poisson-disc sets are dear.
 #[derive(Debug, Default)]
-pub(crate) struct UnitPoints {
-    made: Option<(u32, SampleSet, u32)>,
-    points: Vec<Vec3>,
-}
+pub(crate) struct UnitPoints(Cached<(u32, SampleSet, u32), Vec<Vec3>>);
 
 impl UnitPoints {
     fn of(&mut self, choice: &PointChoice) -> &[Vec3] {
-        let wanted = (choice.samples, choice.sample_set, choice.seed);
-        if self.made != Some(wanted) {
-            self.points = choice.sample_set.points(choice.samples, choice.seed);
-            self.made = Some(wanted);
-        }
-        &self.points
+        let PointChoice { samples, sample_set, seed, .. } = *choice;
+        self.0.get_or_make((samples, sample_set, seed), || sample_set.points(samples, seed))
     }
 }
 
@@ -141,6 +134,9 @@ pub(crate) struct Batch {
     pub(crate) first: u32,
     pub(crate) count: u32,
     uniform: wgpu::Buffer,
+    /// Of all light points.
+    views: wgpu::Buffer,
+    samples: wgpu::Buffer,
 }
 
 /// What a batch's comparisons need beside its points.
@@ -197,8 +193,8 @@ impl SampleViews {
             })
             .collect();
         let gpu_views: Vec<_> = views.iter().map(|view| view.to_gpu(comparison.view_size)).collect();
-        upload_storage(stage, &mut self.views, "antumbra sample views", &gpu_views);
-        upload_storage(stage, &mut self.samples, "antumbra light points", &samples);
+        let gpu_views = upload_storage(stage, &mut self.views, "antumbra sample views", &gpu_views).clone();
+        let samples = upload_storage(stage, &mut self.samples, "antumbra light points", &samples).clone();
         let point_count = points.len() as u32;
         let firsts = || (0..point_count).step_by(batch_size as usize);
         let firsts = channels.iter().flat_map(|channel| firsts().map(move |first| (*channel, first)));
@@ -224,7 +220,7 @@ impl SampleViews {
                         ..ViewBatch::default()
                     },
                 );
-                Batch { first, count, uniform }
+                Batch { first, count, uniform, views: gpu_views.clone(), samples: samples.clone() }
             })
             .collect();
     }
@@ -233,14 +229,15 @@ impl SampleViews {
         &self.batches
     }
 
-    /// The bindings for a batch.
-    pub(crate) fn bindings<'a>(&'a self, batch: &'a Batch) -> BatchBindings<'a> {
-        let buffer = |buffer: &'a Option<wgpu::Buffer>| buffer.as_ref().expect("prepare comes before bindings");
-        BatchBindings { batch: &batch.uniform, views: buffer(&self.views), samples: buffer(&self.samples) }
-    }
-
     pub(crate) fn memory_bytes(&self) -> u64 {
         [&self.views, &self.samples].into_iter().flatten().map(wgpu::Buffer::size).sum()
+    }
+}
+
+impl Batch {
+    /// The bindings of the batch.
+    pub(crate) fn bindings(&self) -> BatchBindings<'_> {
+        BatchBindings { batch: &self.uniform, views: &self.views, samples: &self.samples }
     }
 }
 

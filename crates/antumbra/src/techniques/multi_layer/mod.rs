@@ -99,19 +99,18 @@
 //! light's centre alone: sides of thick occluders that face the light's rim are missed. Penumbrae wider than the last
 //! level are cut. Lights act as rectangles: of their variance where they are round or their emission varies, about its mean. A mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
 
-use glam::UVec2;
-
 use crate::contract::{
-    DrawnLists, Error, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow, PreparedCasters, PreparedFrame,
+    CastersKey, DrawnLists, Error, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow, PreparedCasters,
+    PreparedFrame,
 };
 use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{Resolve, ResolveShader};
+use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{
-    Bindings, Feedback, Gpu, Lease, Recorder, Span, Stage, Standing, bindings, compute_pipeline_without_zeroing,
+    Bindings, Cached, Content, Feedback, Gpu, Recorder, Span, Stage, bindings, compute_pipeline_without_zeroing,
     create_uniform, upload_with_room, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
-use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, TexelLists};
+use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, PreparedLists, TexelLists};
 use crate::shaders;
 use crate::techniques::Technique;
 
@@ -127,7 +126,7 @@ mod tests;
 
 use gpu_types::{FilterStep, MultiLayerLadder, MultiLayerUniform};
 use levels::{Level, list_count};
-use nearest::{NearestSquares, Squares, all_squares};
+use nearest::{NearestSquares, PreparedNearest, all_squares};
 pub use params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
     MultiLayerHierarchy, MultiLayerLevelAccumulation, MultiLayerLevelWeights, MultiLayerLightParts,
@@ -150,7 +149,7 @@ bindings! {
         2 lists: Storage,
         3 fragments: Storage,
         4 nearest_in: Storage,
-        5 ladder: Numbers,
+        5 ladder: Uniform,
     }
 }
 
@@ -173,7 +172,7 @@ pub struct MultiLayer {
     inputs: FrameInputs,
     filter_layout: wgpu::BindGroupLayout,
     /// With whether it averages depths by count.
-    filter: Option<(FilterDesign, wgpu::ComputePipeline)>,
+    filter: Cached<FilterDesign, wgpu::ComputePipeline>,
     nearest: NearestSquares,
     lookup_layout: wgpu::BindGroupLayout,
     resolve: Resolve,
@@ -185,11 +184,12 @@ pub struct MultiLayer {
     feedback: Feedback,
     capacity: u32,
     /// Of lists, levels and squares.
-    standing: Standing,
+    content: Content<(CastersKey, Vec<u8>)>,
     /// What the frames that the feedback is of had.
     map_size: u32,
     overflow: Option<Overflow>,
-    prepared: Option<Prepared>,
+    /// Of the frame prepared last, where they are the light's own.
+    drawn_lists: Option<DrawnLists>,
 }
 
 /// What the lookup is compiled for: the constants of `resolve.wesl`.
@@ -205,16 +205,16 @@ struct LookupDesign {
 }
 
 impl LookupDesign {
-    /// By their ids.
+    /// By their names.
     fn constants(self) -> [(&'static str, f64); 7] {
         [
-            ("0", f64::from(u8::from(self.colored))),
-            ("1", f64::from(self.list_accumulation as u32)),
-            ("2", f64::from(self.level_accumulation as u32)),
-            ("3", f64::from(self.light_parts.count())),
-            ("4", f64::from(self.level_weights as u32)),
-            ("5", f64::from(self.lists as u32)),
-            ("6", f64::from(u8::from(self.planes))),
+            ("COLORED", f64::from(u8::from(self.colored))),
+            ("LIST_ACCUMULATION", f64::from(self.list_accumulation as u32)),
+            ("LEVEL_ACCUMULATION", f64::from(self.level_accumulation as u32)),
+            ("LIGHT_PARTS", f64::from(self.light_parts.count())),
+            ("LEVEL_WEIGHTS", f64::from(self.level_weights as u32)),
+            ("LISTS_APART", f64::from(self.lists as u32)),
+            ("HAS_PLANES", f64::from(u8::from(self.planes))),
         ]
     }
 }
@@ -228,22 +228,29 @@ struct FilterDesign {
 }
 
 impl FilterDesign {
-    /// By their ids.
+    /// By their names.
     fn constants(self) -> [(&'static str, f64); 3] {
         [
-            ("0", f64::from(u8::from(self.averages_by_count))),
-            ("1", f64::from(u8::from(self.colored))),
-            ("2", f64::from(self.list_accumulation as u32)),
+            ("AVERAGES_BY_COUNT", f64::from(u8::from(self.averages_by_count))),
+            ("COLORED", f64::from(u8::from(self.colored))),
+            ("LIST_ACCUMULATION", f64::from(self.list_accumulation as u32)),
         ]
     }
 }
 
-/// What `record` needs of the frame.
+/// The passes of one frame.
 #[derive(Debug)]
-struct Prepared {
+#[doc(hidden)]
+pub struct PreparedMultiLayer {
+    lists: PreparedLists,
+    /// An earlier frame has made the lists, their levels and squares.
+    are_made: bool,
     levels: Vec<Level>,
+    filter: wgpu::ComputePipeline,
     filter_group: wgpu::BindGroup,
+    nearest: PreparedNearest,
     lookup_group: wgpu::BindGroup,
+    resolve: PreparedResolve,
     #[cfg(test)]
     texel_in_plane: f32,
 }
@@ -251,6 +258,7 @@ struct Prepared {
 impl Technique for MultiLayer {
     const NAME: &'static str = "multi_layer";
     type Params = MultiLayerParams;
+    type Prepared = PreparedMultiLayer;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let inputs = FrameInputs::new(gpu);
@@ -258,7 +266,7 @@ impl Technique for MultiLayer {
         let lookup_layout = LookedUp::layout(gpu);
         Ok(Self {
             lists: TexelLists::new(gpu),
-            filter: None,
+            filter: Cached::default(),
             filter_layout,
             nearest: NearestSquares::new(gpu),
             lookup_layout,
@@ -269,10 +277,10 @@ impl Technique for MultiLayer {
             filter_steps: None,
             feedback: Feedback::new(gpu, 2),
             capacity: 0,
-            standing: Standing::default(),
+            content: Content::default(),
             map_size: 0,
             overflow: None,
-            prepared: None,
+            drawn_lists: None,
             inputs,
         })
     }
@@ -282,7 +290,7 @@ impl Technique for MultiLayer {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         params: &MultiLayerParams,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedMultiLayer, Error> {
         let technique = Self::NAME;
         let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
@@ -292,53 +300,66 @@ impl Technique for MultiLayer {
                 needed: "meshes: lists hold every fragment, a depth map the first".into(),
             });
         };
-        self.resolve.prepare(stage, &mut self.inputs, frame, params.sub);
         let plan = FramePlan::new(stage, frame, meshes, params);
         self.make_room(stage, params.map_size, &plan.levels)?;
         let list_options = plan.list_options(self.capacity);
-        self.lists.prepare(stage, &plan.view, meshes, &list_options);
+        let lists = self.lists.prepare(stage, &plan.view, meshes, &list_options);
         write_uniform(stage, &self.view_uniform, &plan.gpu_view);
         let squares = all_squares(plan.map_size);
         let (lookup, ladder) = plan.lookup(&squares);
         write_uniform(stage, &self.lookup_uniform, &lookup);
         write_uniform(stage, &self.ladder_uniform, &ladder);
-        self.make_filter(stage, plan.filter_design());
+        let filter = self.filter(stage, plan.filter_design());
         let shader = ResolveShader {
             label: "multi_layer resolve",
             wgsl: shaders::MULTI_LAYER_RESOLVE,
             constants: &plan.design().constants(),
             layouts: &[&self.lookup_layout],
         };
-        self.resolve.compile(stage, &self.inputs, &shader);
+        let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, params.sub, &shader);
         let steps = plan.filter_steps(self.capacity);
         // Their order is that of the fields; floats that print alike are alike.
         let options = format!("{list_options:?} {squares:?} {:?}", plan.filter_design());
-        let casters = stage.casters().filter(|_| self.lists.lease().is_some_and(Lease::is_own));
-        self.standing.draw_next(casters, &[bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps]);
+        let casters = stage.casters().filter(|_| lists.lease.is_own());
+        let of = [bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps];
+        let are_made = self.content.ask(casters.map(|casters| (casters, of.concat())));
         let largest = ladder.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
-        let Some([filter_group, lookup_group]) = self.bind(stage, &steps, &squares, largest, plan.map_size) else {
-            return Ok(());
+        let filter_group = self.bind_filter(stage, &lists, &steps);
+        let room_bytes = NearestSquares::bytes_of(self.map_size);
+        let nearest = self.nearest.prepare(stage, &lists, room_bytes, &squares, largest, plan.map_size);
+        let lookup = LookedUp {
+            light_view: &self.view_uniform,
+            multi_layer: &self.lookup_uniform,
+            lists: &lists.lists,
+            fragments: &lists.fragments,
+            nearest_in: &nearest.depths,
+            ladder: &self.ladder_uniform,
         };
-        self.prepared = Some(Prepared {
-            filter_group,
-            lookup_group,
+        let lookup_group = lookup.group(stage, &self.lookup_layout);
+        self.drawn_lists = lists.lease.is_own().then(|| drawn_lists(&lists, &plan.levels));
+        Ok(PreparedMultiLayer {
+            lists,
+            are_made,
             #[cfg(test)]
             texel_in_plane: plan.gpu_view.texel_in_plane,
             levels: plan.levels,
-        });
-        Ok(())
+            filter,
+            filter_group,
+            nearest,
+            lookup_group,
+            resolve,
+        })
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        let (PreparedCasters::Draws(meshes), Some(prepared)) = (&frame.casters, &self.prepared) else { return };
-        if !self.standing.stands() {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMultiLayer) {
+        let PreparedCasters::Draws(meshes) = &frame.casters else { return };
+        if !prepared.are_made {
             self.record_lists(recorder, prepared, meshes);
         }
-        if let Some(counters) = self.lists.counters().filter(|_| !self.standing.stands() || self.feedback.is_missing())
-        {
-            self.feedback.record(recorder, counters);
+        if !prepared.are_made || self.feedback.is_missing() {
+            self.feedback.record(recorder, &prepared.lists.counters);
         }
-        self.resolve.record(recorder, &self.inputs, |pass| pass.set_bind_group(1, &prepared.lookup_group, &[]));
+        prepared.resolve.record(recorder, |pass| pass.set_bind_group(1, &prepared.lookup_group, &[]));
     }
 
     /// Whether there was room for all is learnt some frames later.
@@ -347,18 +368,7 @@ impl Technique for MultiLayer {
     }
 
     fn drawn_lists(&self) -> Vec<DrawnLists> {
-        let (Some(prepared), Some(lists)) = (&self.prepared, self.lists.lists()) else { return Vec::new() };
-        if !self.lists.lease().is_some_and(Lease::is_own) {
-            return Vec::new();
-        }
-        let level = |level: &Level| ListLevel { first: level.first, size_texels: level.size };
-        vec![DrawnLists {
-            words: lists.clone(),
-            lengths: ListLengths::Counted,
-            listed: "fragments",
-            order: ListOrder::Rows,
-            levels: prepared.levels.iter().map(level).collect(),
-        }]
+        self.drawn_lists.iter().cloned().collect()
     }
 
     fn memory_bytes(&self) -> u64 {
@@ -372,53 +382,32 @@ impl Technique for MultiLayer {
 
 impl MultiLayer {
     /// Gathers the lists, and makes their levels.
-    fn record_lists(&self, recorder: &mut Recorder<'_>, prepared: &Prepared, meshes: &[MeshCaster<'_>]) {
-        self.lists.record(recorder, meshes);
+    fn record_lists(&self, recorder: &mut Recorder<'_>, prepared: &PreparedMultiLayer, meshes: &[MeshCaster<'_>]) {
+        self.lists.record(recorder, meshes, &prepared.lists);
         recorder.compute("filter", Span::Only, |pass| {
-            let (_, filter) = self.filter.as_ref().expect("prepare comes before record");
-            pass.set_pipeline(filter);
+            pass.set_pipeline(&prepared.filter);
             for (level, i) in prepared.levels[1..].iter().zip(0..) {
                 pass.set_bind_group(0, &prepared.filter_group, &[i * STEP_STRIDE]);
                 let groups = level.size.map(|texels| texels.div_ceil(TILE));
                 pass.dispatch_workgroups(groups.x, groups.y, 1);
             }
         });
-        recorder.compute("nearest", Span::Only, |pass| self.nearest.record(pass));
+        recorder.compute("nearest", Span::Only, |pass| self.nearest.record(pass, &prepared.nearest));
     }
 
-    /// Groups of the filter and of the lookup, and the squares between them.
-    fn bind(
-        &mut self,
-        stage: &Stage<'_>,
-        steps: &[u8],
-        squares: &[Squares],
-        largest: u32,
-        map_size: UVec2,
-    ) -> Option<[wgpu::BindGroup; 2]> {
+    fn bind_filter(&mut self, stage: &Stage<'_>, of_frame: &PreparedLists, steps: &[u8]) -> wgpu::BindGroup {
         let filter_step = upload_with_room(stage, &mut self.filter_steps, "antumbra multi_layer filter", steps);
-        let (lists, fragments) = (self.lists.lists()?, self.lists.fragments()?);
-        let filter = FilteredLists { filter_step, lists, fragments, counters: self.lists.counters()? };
-        let room_bytes = NearestSquares::bytes_of(self.map_size);
-        self.nearest.prepare(stage, self.lists.lease()?, room_bytes, squares, largest, map_size, lists, fragments);
-        let lookup = LookedUp {
-            light_view: &self.view_uniform,
-            multi_layer: &self.lookup_uniform,
-            lists,
-            fragments,
-            nearest_in: self.nearest.depths()?,
-            ladder: &self.ladder_uniform,
-        };
-        Some([filter.group(stage, &self.filter_layout), lookup.group(stage, &self.lookup_layout)])
+        let PreparedLists { lists, fragments, counters, .. } = of_frame;
+        FilteredLists { filter_step, lists, fragments, counters }.group(stage, &self.filter_layout)
     }
 
-    /// Compiles the filter where it is not compiled for this.
-    fn make_filter(&mut self, gpu: &Gpu, design: FilterDesign) {
-        if self.filter.as_ref().is_some_and(|(made, _)| *made == design) {
-            return;
-        }
-        let (wgsl, layouts) = (shaders::MULTI_LAYER_FILTER, [&self.filter_layout]);
-        let filter = compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &design.constants(), &layouts);
-        self.filter = Some((design, filter));
+    /// The filter, compiled where it is not compiled for this.
+    fn filter(&mut self, gpu: &Gpu, design: FilterDesign) -> wgpu::ComputePipeline {
+        let make = || {
+            let (wgsl, layouts) = (shaders::MULTI_LAYER_FILTER, [&self.filter_layout]);
+            compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &design.constants(), &layouts)
+        };
+        self.filter.get_or_make(design, make).clone()
     }
 
     /// Sets the capacity by what the last frames needed, and says whether they had it.
@@ -451,5 +440,17 @@ impl MultiLayer {
             self.capacity = wanted.max(first).clamp(1024, largest);
         }
         Ok(())
+    }
+}
+
+/// The lists of a map and of its levels, as hosts may look at them.
+fn drawn_lists(lists: &PreparedLists, levels: &[Level]) -> DrawnLists {
+    let level = |level: &Level| ListLevel { first: level.first, size_texels: level.size };
+    DrawnLists {
+        words: (*lists.lists).clone(),
+        lengths: ListLengths::Counted,
+        listed: "fragments",
+        order: ListOrder::Rows,
+        levels: levels.iter().map(level).collect(),
     }
 }

@@ -6,7 +6,8 @@ use glam::UVec2;
 
 use super::gpu_types::NearestStep;
 use super::{STEP_STRIDE, TILE};
-use crate::gpu::{Bindings, Gpu, Lease, Scratch, Stage, bindings, compute_entry, upload_with_room};
+use crate::gpu::{Bindings, Gpu, Scratch, Stage, bindings, compute_entry, upload_with_room};
+use crate::light_map::texel_lists::PreparedLists;
 use crate::shaders;
 
 bindings! {
@@ -62,10 +63,19 @@ pub(crate) struct NearestSquares {
     steps: Option<wgpu::Buffer>,
     /// And whether they are the light's own.
     depths: Option<(Arc<wgpu::Buffer>, bool)>,
-    prepared: Option<(wgpu::BindGroup, Vec<UVec2>)>,
     /// How many squares are made, for tests.
     #[cfg(test)]
     pub(crate) made: u64,
+}
+
+/// The passes of one frame.
+#[derive(Debug)]
+pub(crate) struct PreparedNearest {
+    /// Depths, metres, size after size.
+    pub(crate) depths: Arc<wgpu::Buffer>,
+    group: wgpu::BindGroup,
+    /// Squares of each step.
+    steps: Vec<UVec2>,
 }
 
 impl NearestSquares {
@@ -80,7 +90,6 @@ impl NearestSquares {
             layout,
             steps: None,
             depths: None,
-            prepared: None,
             #[cfg(test)]
             made: 0,
         }
@@ -97,14 +106,13 @@ impl NearestSquares {
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
-        lease: &Lease,
+        of_frame: &PreparedLists,
         room_bytes: u64,
         all: &[Squares],
         largest: u32,
         map_size: UVec2,
-        lists: &wgpu::Buffer,
-        fragments: &wgpu::Buffer,
-    ) {
+    ) -> PreparedNearest {
+        let PreparedLists { lists, fragments, lease, .. } = of_frame;
         let steps: Vec<&[Squares]> =
             all.chunks(SIZES_A_STEP as usize).take_while(|sizes| sizes[0].shift <= largest).collect();
         let mut bytes = vec![0; STEP_STRIDE as usize * steps.len()];
@@ -141,16 +149,12 @@ impl NearestSquares {
         }));
         let nearest_step = upload_with_room(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
         let group = Nearest { nearest_step, lists, fragments, nearest }.group(stage, &self.layout);
-        self.prepared = Some((group, steps.iter().map(|sizes| sizes[0].count).collect()));
+        let steps = steps.iter().map(|sizes| sizes[0].count).collect();
+        PreparedNearest { depths: Arc::clone(nearest), group, steps }
     }
 
-    /// Depths, metres, size after size.
-    pub(crate) fn depths(&self) -> Option<&wgpu::Buffer> {
-        self.depths.as_ref().map(|(depths, _)| &**depths)
-    }
-
-    pub(crate) fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
-        let Some((group, steps)) = &self.prepared else { return };
+    pub(crate) fn record(&self, pass: &mut wgpu::ComputePass<'_>, prepared: &PreparedNearest) {
+        let PreparedNearest { group, steps, .. } = prepared;
         for (squares, i) in steps.iter().zip(0..) {
             pass.set_pipeline(if i == 0 { &self.of_lists } else { &self.of_squares });
             pass.set_bind_group(0, group, &[i * STEP_STRIDE]);

@@ -234,15 +234,11 @@ params! {
         /// How fragments are gathered.
         gather: MultiLayerGather = MultiLayerGather::Arrays,
             more "linked draws the casters once instead of twice, and packs lists with scattered reads.";
-        /// Look up every other pixel in both directions, and interpolate.
-        sub: bool = false,
-            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
+        shared sub;
         /// Least blur at a receiver, for anti-aliasing.
         footprint: f32 = 0.0, in 0.0..=4.0, unit "pixels",
             more "Smoother shadow edges that are finer than pixels.";
-        /// Scale of the automatic bias.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+        shared bias_scale;
     }
     Fast { map_size: 512, light_parts: MultiLayerLightParts::One, gather: MultiLayerGather::Linked, sub: true, }
     High { map_size: 2048, }

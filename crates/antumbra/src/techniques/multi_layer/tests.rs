@@ -6,7 +6,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
 use super::nearest::{all_squares, squares_for};
 use super::plan::light_extent;
-use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerParams, cpu};
+use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerParams, PreparedMultiLayer, cpu};
 use crate::TechniqueKind;
 use crate::contract::{Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -118,7 +118,13 @@ fn what_levels_leave_out_is_not_missed() {
 }
 
 /// Records a frame on a technique whose parameters are at hand.
-fn record(gpu: &Gpu, technique: &mut MultiLayer, light: &Light, meshes: &[TestMesh], params: &MultiLayerParams) {
+fn record(
+    gpu: &Gpu,
+    technique: &mut MultiLayer,
+    light: &Light,
+    meshes: &[TestMesh],
+    params: &MultiLayerParams,
+) -> PreparedMultiLayer {
     let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
     let casters: Vec<_> = meshes.iter().zip(&on_gpu).map(|(mesh, on_gpu)| mesh.caster(on_gpu)).collect();
     let size = UVec2::splat(16);
@@ -130,11 +136,12 @@ fn record(gpu: &Gpu, technique: &mut MultiLayer, light: &Light, meshes: &[TestMe
         receivers: test_receivers(size, &depth),
         mask: &mask,
     };
-    technique.prepare(&Stage::at_once(gpu), &frame, params).expect("a good frame");
+    let prepared = technique.prepare(&Stage::at_once(gpu), &frame, params).expect("a good frame");
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    technique.record(&mut Recorder::new(&mut encoder, None), &frame);
+    technique.record(&mut Recorder::new(&mut encoder, None), &frame, &prepared);
     gpu.queue().submit([encoder.finish()]);
     gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
+    prepared
 }
 
 #[test]
@@ -155,17 +162,17 @@ fn every_level_equals_its_twin() {
             let mut technique = MultiLayer::new(gpu).expect("default limits");
             technique.capacity = 1 << 20;
             technique.map_size = 96;
-            record(gpu, &mut technique, &light, &meshes, &params);
-            let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
-            let entries: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
+            let prepared = record(gpu, &mut technique, &light, &meshes, &params);
+            let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.fragments);
+            let entries: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.lists);
             let colored = meshes.iter().any(|mesh| mesh.opacity < 1.0);
-            let levels = &technique.prepared.as_ref().expect("prepared").levels;
+            let levels = &prepared.levels;
             let lists_of = |i: usize| -> Vec<_> {
                 let level = &levels[i];
                 let entries = &entries[level.first as usize..][..level.size.element_product() as usize];
                 entries.iter().map(|entry| unpack(&fragments, *entry, colored)).collect()
             };
-            let texel = technique.prepared.as_ref().expect("prepared").texel_in_plane;
+            let texel = prepared.texel_in_plane;
             for i in 1..levels.len() {
                 let widths = params.epsilon * texel * std::f32::consts::SQRT_2.powf(levels[i].octave);
                 let epsilon = if light.is_distant() {
@@ -193,12 +200,12 @@ fn squares_know_their_nearest_fragment() {
         let params = MultiLayerParams { map_size: 84, ..MultiLayerParams::default() };
         let mut technique = MultiLayer::new(gpu).expect("default limits");
         (technique.capacity, technique.map_size) = (1 << 20, 84);
-        record(gpu, &mut technique, &light, &meshes, &params);
-        let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
-        let entries: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
-        let mut depths: Vec<f32> = read_storage(gpu, technique.nearest.depths().expect("prepared"));
+        let prepared = record(gpu, &mut technique, &light, &meshes, &params);
+        let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.fragments);
+        let entries: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.lists);
+        let mut depths: Vec<f32> = read_storage(gpu, &prepared.nearest.depths);
         depths.truncate(technique.nearest.made as usize);
-        let map_size = technique.prepared.as_ref().expect("prepared").levels[0].size;
+        let map_size = prepared.levels[0].size;
         let nearest_in = |texel: UVec2| {
             let [first, count] = entries[(texel.y * map_size.x + texel.x) as usize];
             let depths = fragments[first as usize..][..count as usize].iter().map(|[z, _]| f32::from_bits(*z));
@@ -243,14 +250,15 @@ fn a_frame_without_room_says_so_and_the_next_has_it() {
     let mut technique = MultiLayer::new(gpu).expect("default limits");
     (technique.capacity, technique.map_size) = (10_000, 96);
     let mut overflows = Vec::new();
+    let mut counters = Vec::new();
     for _ in 0..6 {
-        record(gpu, &mut technique, &light, &meshes, &params);
+        let prepared = record(gpu, &mut technique, &light, &meshes, &params);
         overflows.extend(technique.overflow());
+        counters = read_storage::<u32>(gpu, &prepared.lists.counters);
     }
     assert!(!overflows.is_empty() && overflows.len() < 5, "{overflows:?}");
     assert!(overflows.iter().all(|overflow| overflow.needed > overflow.had));
     assert_eq!(technique.overflow(), None, "there is room at last");
-    let counters: Vec<u32> = read_storage(gpu, technique.lists.counters().expect("prepared"));
     assert!(counters[1] <= technique.capacity);
 }
 

@@ -12,7 +12,7 @@ use super::light_points::{
 };
 use super::pipelines::{Evaluator, Way};
 use super::plan::FramePlan;
-use super::raster::{Draw, Hulls, Raster};
+use super::raster::{Draw, Hulls, Raster, RasterTargets};
 use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES};
 use super::{Options, settings_uniform, stride_of};
 use crate::frame::inputs::FrameInputs;
@@ -34,7 +34,7 @@ pub(super) enum Evaluation {
         walked: Option<OverGroups>,
         /// Before the first batch: the light points in front of each receiver's own surface.
         before: Option<OverGroups>,
-        draw: Draw,
+        draw: Box<Draw>,
         /// After the last batch: what the bits that are left weigh.
         after: Option<OverGroups>,
     },
@@ -83,7 +83,7 @@ pub(super) struct Evaluations<'a> {
     pub(super) base: &'a SampleSettings,
     pub(super) table: &'a wgpu::TextureView,
     /// Where triangles are drawn.
-    pub(super) draw_arguments: Option<&'a wgpu::Buffer>,
+    pub(super) raster_targets: Option<&'a RasterTargets>,
 }
 
 impl Evaluations<'_> {
@@ -99,8 +99,8 @@ impl Evaluations<'_> {
             let passes = turns.div_ceil(u64::from(step.most_turns)).max(1) as u32;
             self.over_groups(way, &step, light, &self.evaluators[&evaluator], passes)
         };
-        let drawn = raster.zip(self.draw_arguments).zip(plan.windows);
-        let Some(((raster, draw_arguments), windows)) = drawn.filter(|_| plan.is_drawn(batch)) else {
+        let drawn = raster.zip(self.raster_targets).zip(plan.windows);
+        let Some(((raster, targets), windows)) = drawn.filter(|_| plan.is_drawn(batch)) else {
             return Evaluation::Groups(walked(Way::Either));
         };
         let without_triangles = |pipeline| self.over_groups(Way::Drawn, &step, light, pipeline, 1);
@@ -125,7 +125,7 @@ impl Evaluations<'_> {
             window.group(stage, &raster.layout)
         };
         let settings = settings_uniform(stage, &step);
-        let arguments = DrawArguments { settings: &settings, state, totals, draw: draw_arguments };
+        let arguments = DrawArguments { settings: &settings, state, totals, draw: &targets.arguments };
         let hulls_of_windows = |raster: &mut Raster| {
             let (layout, pipeline) = raster.hulls(stage, self.inputs);
             let ellipsoid = &stage.storage("view-sample light ellipsoid", &windows.ellipsoid);
@@ -140,14 +140,16 @@ impl Evaluations<'_> {
             walked: plan.chooses().then(|| walked(Way::Walked)),
             before: (index == 0).then(|| without_triangles(&raster.before)),
             after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(&raster.after)),
-            draw: Draw {
+            draw: Box::new(Draw {
+                targets: targets.clone(),
+                make_arguments: raster.arguments.clone(),
                 windows: (0..windows.count).map(window_group).collect(),
                 arguments: arguments.group(stage, &raster.arguments_layout),
                 hulls: plan.makes_hulls.then(|| hulls_of_windows(raster)),
                 silhouettes: plan.draws_silhouettes().then(|| raster.silhouettes(stage, self.inputs)),
                 stencil: self.options.drawn.stencil.then(|| raster.stencil(stage)),
                 pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator, self.options.drawn),
-            },
+            }),
         }
     }
 

@@ -75,7 +75,7 @@ bindings! {
         1 list: Storage,
         2 triangles: Storage,
         3 boxes: Storage,
-        4 light_words: Numbers,
+        4 light_words: Uniform,
         5 bits: ReadWrite,
         6 totals: Storage,
         7 lookup: Texture3d(texels::UINT),
@@ -95,7 +95,7 @@ bindings! {
 
     pub(super) struct MadeTable = "view-sample table", COMPUTE, group 0 of [VIEW_SAMPLES_MAKE_LOOKUP] {
         0 settings: Uniform,
-        1 light_words: Numbers,
+        1 light_words: Uniform,
         2 table: WrittenTexture3d(TABLE_FORMAT),
     }
 
@@ -127,7 +127,7 @@ bindings! {
         1 list: Storage,
         2 triangles: Storage in VERTEX_FRAGMENT,
         3 state: Storage in VERTEX,
-        4 light_words: Numbers,
+        4 light_words: Uniform,
         5 bits: ReadWrite,
         /// Where each list begins.
         6 firsts: Storage,

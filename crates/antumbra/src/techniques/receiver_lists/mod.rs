@@ -69,7 +69,7 @@ use antumbra_light::{Light, LightShape};
 use glam::UVec2;
 
 use crate::contract::{DrawnLists, Error, ListLengths, ListLevel, ListOrder, PreparedFrame, param_choice};
-use crate::frame::inputs::{FrameInputs, clip_depth_rows, matrix_rounding_m};
+use crate::frame::inputs::{FrameInputs, PreparedInputs, clip_depth_rows, matrix_rounding_m};
 use crate::gpu::{Gpu, Recorder, Span, Stage, white_texture};
 use crate::light_map::caster_triangles::readable_meshes;
 use crate::primitives::prefix_scan::PrefixScan;
@@ -167,12 +167,26 @@ pub(crate) struct ViewSamples {
     no_texture: (wgpu::TextureView, wgpu::Sampler),
     table: Option<Table>,
     no_table: wgpu::TextureView,
-    frame: Option<Prepared>,
+    /// Of the frame prepared last.
+    windows: Option<ListWindows>,
 }
 
-/// The bind groups of a frame.
+/// Layout of a frame's lists.
+#[derive(Clone, Copy, Debug)]
+struct ListWindows {
+    /// `None` where receivers are sorted into cells: see [`FramePlan`].
+    count: Option<u32>,
+    side: u32,
+    /// The device chooses between windows and cells.
+    are_chosen: bool,
+}
+
+/// The passes of one frame.
 #[derive(Debug)]
-struct Prepared {
+#[doc(hidden)]
+pub struct PreparedSamples {
+    inputs: PreparedInputs,
+    dispatches: wgpu::Buffer,
     clears: Clears,
     lists: wgpu::BindGroup,
     stores_positions: bool,
@@ -182,9 +196,6 @@ struct Prepared {
     edges: wgpu::BindGroup,
     passes: wgpu::BindGroup,
     batches: Vec<PreparedBatch>,
-    /// Of the lists: see [`FramePlan`].
-    window_count: Option<u32>,
-    window_side: u32,
 }
 
 #[derive(Debug)]
@@ -246,7 +257,7 @@ impl ViewSamples {
             no_texture: (white_texture(gpu), gpu.device.create_sampler(&wgpu::SamplerDescriptor::default())),
             table: None,
             no_table: gpu.device.create_view(&no_table, &wgpu::TextureViewDescriptor::default()),
-            frame: None,
+            windows: None,
         }
     }
 
@@ -256,10 +267,10 @@ impl ViewSamples {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         options: &Options,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedSamples, Error> {
         let technique = self.technique;
         let meshes = readable_meshes(technique, frame, None)?;
-        self.inputs.prepare(stage, frame);
+        let inputs = self.inputs.prepare(stage, frame);
         let plan =
             FramePlan::new(technique, frame, meshes, options, stage.device.limits().max_storage_buffer_binding_size)?;
         let point_batches: Vec<&[LocalPoint]> = options.points.chunks(plan.words * WORD).collect();
@@ -283,8 +294,7 @@ impl ViewSamples {
         let base_uniform = settings_uniform(stage, &base);
         let point_batches: Vec<PointBatch<'_>> =
             (point_batches.iter().enumerate()).map(|(i, points)| PointBatch::new(stage, i, points)).collect();
-        let draw_arguments =
-            self.raster.as_mut().map(|raster| raster.prepare(stage, plan.window_side, options.drawn).clone());
+        let raster_targets = self.raster.as_mut().map(|raster| raster.prepare(stage, plan.window_side, options.drawn));
         let layouts = &self.layouts;
         let groups = FrameGroups { stage, layouts, buffers };
         let evaluations = Evaluations {
@@ -295,7 +305,7 @@ impl ViewSamples {
             options,
             base: &base,
             table: self.table.as_ref().map_or(&self.no_table, |table| &table.view),
-            draw_arguments: draw_arguments.as_ref(),
+            raster_targets: raster_targets.as_ref(),
         };
         let prepare_batch = |(i, batch): (usize, &Batch)| {
             let settings = settings_uniform(stage, &SampleSettings { triangle_stride: stride_of(batch), ..base });
@@ -311,7 +321,9 @@ impl ViewSamples {
                 clusters: if plan.is_drawn(batch) && !plan.chooses() { 0 } else { batch.triangles().div_ceil(64) },
             }
         };
-        self.frame = Some(Prepared {
+        let prepared = PreparedSamples {
+            inputs,
+            dispatches: buffers.dispatches.clone(),
             clears: Clears::new(&groups),
             lists: groups.lists(&base_uniform),
             stores_positions: plan.stores_positions,
@@ -320,13 +332,16 @@ impl ViewSamples {
             edges: groups.casters(&base_uniform),
             batches: plan.batches.iter().enumerate().map(prepare_batch).collect(),
             edge_runs: run_groups(stage, layouts, meshes, plan.silhouette_runs()),
-            window_count: plan.windows.map(|windows| windows.count),
-            window_side: plan.window_side,
+        };
+        self.windows = Some(ListWindows {
+            count: plan.windows.map(|windows| windows.count),
+            side: plan.window_side,
+            are_chosen: plan.chooses(),
         });
         if let Some(table) = &mut self.table {
             table.bind(stage, &layouts.make_lookup, &base_uniform, &point_batches[0].words);
         }
-        Ok(())
+        Ok(prepared)
     }
 
     /// Makes the pipelines that the frame's batches ask for and that are not there.
@@ -349,9 +364,8 @@ impl ViewSamples {
         }
     }
 
-    /// Records every pass of the frame that [`Self::prepare`] saw last.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
-        let frame = self.frame.as_ref().expect("prepare comes before record");
+    /// Records every pass of a frame.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedSamples) {
         let pipelines = &self.pipelines;
         if let Some(table) = &self.table
             && let Some(group) = &table.bind_group
@@ -364,9 +378,9 @@ impl ViewSamples {
         }
         let over_pixels = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline| {
             pass.set_pipeline(pipeline);
-            self.inputs.bind(pass);
+            frame.inputs.bind(pass);
             pass.set_bind_group(1, &frame.lists, &[]);
-            self.inputs.dispatch(pass);
+            frame.inputs.dispatch(pass);
         };
         recorder.compute("view-sample lists", Span::Only, |pass| {
             clear(pass, pipelines, &frame.clears.state);
@@ -413,8 +427,7 @@ impl ViewSamples {
                                 clear(pass, pipelines, &frame.clears.penumbrae);
                             });
                         }
-                        let raster = self.raster.as_ref().expect("made by prepare");
-                        raster.record(recorder, &self.inputs, &batch.surface, draw);
+                        draw.record(recorder, &frame.inputs, &batch.surface);
                         if let Some(over) = after {
                             self.record_groups(recorder, over, &batch.surface, frame);
                         }
@@ -430,25 +443,24 @@ impl ViewSamples {
         recorder: &mut Recorder<'_>,
         over: &OverGroups,
         surface: &wgpu::BindGroup,
-        frame: &Prepared,
+        frame: &PreparedSamples,
     ) {
-        let dispatches = self.buffers.dispatches.as_ref().expect("made by prepare");
         recorder.compute("visibility", Span::Only, |pass| {
             for i in 0..over.passes {
                 pass.set_pipeline(if i == 0 { self.pipelines.begin(over.way) } else { &self.pipelines.advance });
                 pass.set_bind_group(0, &frame.passes, &[]);
                 pass.dispatch_workgroups(1, 1, 1);
                 pass.set_pipeline(&over.pipeline);
-                self.inputs.bind(pass);
+                frame.inputs.bind(pass);
                 pass.set_bind_group(1, &over.group, &[]);
                 pass.set_bind_group(2, surface, &[]);
-                pass.dispatch_workgroups_indirect(dispatches, 0);
+                pass.dispatch_workgroups_indirect(&frame.dispatches, 0);
             }
         });
     }
 
     /// Sorts a batch's triangles.
-    fn record_sort(&self, recorder: &mut Recorder<'_>, batch: &PreparedBatch, frame: &Prepared) {
+    fn record_sort(&self, recorder: &mut Recorder<'_>, batch: &PreparedBatch, frame: &PreparedSamples) {
         let pipelines = &self.pipelines;
         recorder.compute("triangles", Span::Only, |pass| {
             clear(pass, pipelines, &frame.clears.cells);
@@ -472,29 +484,29 @@ impl ViewSamples {
         });
     }
 
-    /// What group 0 of every pass over the receivers is; prepared with the frame.
+    /// Group 0 of every pass over the receivers.
     pub(crate) fn inputs(&self) -> &FrameInputs {
         &self.inputs
     }
 
     /// The lists of each window that receivers are seen through, or those of the cells that they are sorted into.
     pub(crate) fn drawn_lists(&self) -> Vec<DrawnLists> {
-        let (Some(frame), Some(counts)) = (&self.frame, &self.buffers.counts) else { return Vec::new() };
-        let side = frame.window_side;
+        let (Some(windows), Some(counts)) = (self.windows, &self.buffers.counts) else { return Vec::new() };
+        let side = windows.side;
         let of_window = |window: u32| DrawnLists {
             words: counts.clone(),
             // The scan has made places of counts.
             lengths: ListLengths::Between,
             listed: "receivers",
-            order: match frame.window_count {
+            order: match windows.count {
                 // Behind the total of all windows' lists.
-                Some(_) if frame.chooses => ListOrder::Told { word: side * side + 1 },
+                Some(_) if windows.are_chosen => ListOrder::Told { word: side * side + 1 },
                 Some(_) => ListOrder::Rows,
                 None => ListOrder::Halvings,
             },
             levels: vec![ListLevel { first: window * side * side, size_texels: UVec2::splat(side) }],
         };
-        (0..frame.window_count.unwrap_or(1)).map(of_window).collect()
+        (0..windows.count.unwrap_or(1)).map(of_window).collect()
     }
 
     /// The bits of every pixel, where they are kept: words of pixel after pixel, row after row.
@@ -514,6 +526,13 @@ impl ViewSamples {
             + self.cell_scan.memory_bytes()
             + self.table.as_ref().map_or(0, |table| table.bytes)
             + self.raster.as_ref().map_or(0, Raster::memory_bytes)
+    }
+}
+
+impl PreparedSamples {
+    /// Group 0 of every pass over the receivers.
+    pub(crate) fn inputs(&self) -> &PreparedInputs {
+        &self.inputs
     }
 }
 

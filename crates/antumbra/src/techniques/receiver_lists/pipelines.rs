@@ -93,7 +93,7 @@ impl Evaluator {
             ("HAS_HOLES", value(self.has_holes)),
             ("HAS_TINT", value(self.has_tint)),
             ("COUNTS", value(self.counts)),
-            ("0", value(self.is_flat)),
+            ("IS_FLAT", value(self.is_flat)),
         ]
     }
 }

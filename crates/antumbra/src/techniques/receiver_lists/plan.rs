@@ -82,7 +82,7 @@ impl FramePlan {
         let makes_hulls = windows.is_some() && options.drawn.region == Region::Hexagons;
         // Of hulls that makes 44 MiB.
         let most = if makes_hulls { BATCH_TRIANGLES / 4 } else { BATCH_TRIANGLES };
-        let batches = batches_of(meshes, sees_within(frame), most, options.points.len() > 1);
+        let batches = batches_of(meshes, frame.sees_within(), most, options.points.len() > 1);
         let is_textured = batches.iter().any(|batch| batch.surfaces != Surfaces::Opaque);
         let stored_words = (BITS_BUDGET_BYTES / (4 * pixels)).max(1) as usize;
         let words = stored_words.min(if is_textured { TEXTURED_WORDS } else { MAX_WORDS });
@@ -228,17 +228,5 @@ impl FramePlan {
             window_light_max: windows.light.max,
             ..base
         }
-    }
-}
-
-/// Whether the camera's near plane may lie within a box that the light is outside of. A room's box, which holds both its lamp and
-/// the camera, tells nothing of the walls, which hold neither.
-fn sees_within(frame: &PreparedFrame<'_>) -> impl Fn(&Aabb) -> bool {
-    let near = frame.receivers.near_box();
-    let light = (!frame.light.is_distant()).then_some(frame.light.center);
-    move |bounds| {
-        let meets_near = bounds.min.cmple(near.max).all() && bounds.max.cmpge(near.min).all();
-        let holds_light = light.is_some_and(|x| x.cmpge(bounds.min).all() && x.cmple(bounds.max).all());
-        meets_near && !holds_light
     }
 }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use glam::UVec2;
 
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, depth_state, dispatch_threads,
     sized_buffer, with_early_depth_test,
@@ -33,7 +33,7 @@ pub(crate) struct Drawn {
 pub(super) struct Raster {
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) arguments_layout: wgpu::BindGroupLayout,
-    arguments: wgpu::ComputePipeline,
+    pub(super) arguments: wgpu::ComputePipeline,
     /// Over the listed receivers before all draws, and after them.
     pub(super) before: wgpu::ComputePipeline,
     pub(super) after: wgpu::ComputePipeline,
@@ -47,9 +47,21 @@ pub(super) struct Raster {
     draw: Option<wgpu::Buffer>,
 }
 
+/// Attachments of a frame's draws, and the buffer of their arguments.
+#[derive(Clone, Debug)]
+pub(super) struct RasterTargets {
+    no_depth: wgpu::TextureView,
+    /// Where lists' stencils are drawn.
+    stencil_map: Option<wgpu::TextureView>,
+    pub(super) arguments: wgpu::Buffer,
+}
+
 /// A batch's triangles over all windows.
 #[derive(Debug)]
 pub(super) struct Draw {
+    pub(super) targets: RasterTargets,
+    /// Writes the arguments.
+    pub(super) make_arguments: wgpu::ComputePipeline,
     pub(super) pipeline: wgpu::RenderPipeline,
     /// Tells where penumbrae can fall.
     pub(super) silhouettes: Option<wgpu::RenderPipeline>,
@@ -127,19 +139,19 @@ impl Raster {
         }
     }
 
-    /// Makes room for windows of so many texels a side; the buffer is of the draw's arguments.
-    pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32, drawn: Drawn) -> &wgpu::Buffer {
+    /// Makes room for windows of so many texels a side.
+    pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32, drawn: Drawn) -> RasterTargets {
         let size = UVec2::splat(window_side);
-        if self.no_depth.as_ref().is_none_or(|no_depth| no_depth.size() != size) {
-            self.no_depth = Some(NoDepth::new(stage, size, 1));
-        }
-        if !drawn.stencil {
-            self.stencil_map = None;
-        } else if self.stencil_map.as_ref().is_none_or(|map| map.size != size) {
-            self.stencil_map = Some(StencilMap::new(stage, size));
-        }
+        let made = self.no_depth.take().filter(|no_depth| no_depth.size() == size);
+        let no_depth = self.no_depth.insert(made.unwrap_or_else(|| NoDepth::new(stage, size, 1))).view.clone();
+        let made = self.stencil_map.take().filter(|map| map.size == size);
+        self.stencil_map = drawn.stencil.then(|| made.unwrap_or_else(|| StencilMap::new(stage, size)));
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
-        sized_buffer(stage, &mut self.draw, "view-sample draw", 16, usage)
+        RasterTargets {
+            no_depth,
+            stencil_map: self.stencil_map.as_ref().map(|map| map.view.clone()),
+            arguments: sized_buffer(stage, &mut self.draw, "view-sample draw", 16, usage).clone(),
+        }
     }
 
     /// The pipeline for such casters.
@@ -199,24 +211,24 @@ impl Raster {
         })
     }
 
+    pub(super) fn memory_bytes(&self) -> u64 {
+        self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
+            + self.stencil_map.as_ref().map_or(0, StencilMap::memory_bytes)
+            + self.draw.as_ref().map_or(0, wgpu::Buffer::size)
+    }
+}
+
+impl Draw {
     /// Records a batch's draws.
-    pub(super) fn record(
-        &self,
-        recorder: &mut Recorder<'_>,
-        inputs: &FrameInputs,
-        surface: &wgpu::BindGroup,
-        draw: &Draw,
-    ) {
-        let (Some(no_depth), Some(arguments)) = (&self.no_depth, &self.draw) else {
-            unreachable!("prepare comes before record");
-        };
+    pub(super) fn record(&self, recorder: &mut Recorder<'_>, inputs: &PreparedInputs, surface: &wgpu::BindGroup) {
+        let RasterTargets { no_depth, stencil_map, arguments } = &self.targets;
         recorder.compute("regions of influence", Span::Only, |pass| {
-            pass.set_pipeline(&self.arguments);
-            pass.set_bind_group(0, &draw.arguments, &[]);
+            pass.set_pipeline(&self.make_arguments);
+            pass.set_bind_group(0, &self.arguments, &[]);
             pass.dispatch_workgroups(1, 1, 1);
         });
-        for (i, window) in draw.windows.iter().enumerate() {
-            if let Some(hulls) = &draw.hulls {
+        for (i, window) in self.windows.iter().enumerate() {
+            if let Some(hulls) = &self.hulls {
                 recorder.compute("regions' hulls", Span::Only, |pass| {
                     pass.set_pipeline(&hulls.pipeline);
                     inputs.bind(pass);
@@ -224,38 +236,32 @@ impl Raster {
                     dispatch_threads(pass, hulls.triangles);
                 });
             }
-            if let Some(pipeline) = &draw.silhouettes {
-                recorder.render_pass("silhouettes", Span::Only, &[], &no_depth.view, None, |pass| {
+            if let Some(pipeline) = &self.silhouettes {
+                recorder.render_pass("silhouettes", Span::Only, &[], no_depth, None, |pass| {
                     pass.set_pipeline(pipeline);
                     inputs.bind_drawn(pass);
                     pass.set_bind_group(1, window, &[]);
                     pass.draw_indirect(arguments, 0);
                 });
             }
-            let stencil = draw.stencil.as_ref().zip(self.stencil_map.as_ref());
+            let stencil = self.stencil.as_ref().zip(stencil_map.as_ref());
             if let Some((pipeline, map)) = stencil {
                 let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store };
-                recorder.render_pass("lists' stencil", Span::Only, &[], &map.view, Some(ops), |pass| {
+                recorder.render_pass("lists' stencil", Span::Only, &[], map, Some(ops), |pass| {
                     pass.set_pipeline(pipeline);
                     pass.set_bind_group(1, window, &[]);
                     pass.draw(0..3, 0..1);
                 });
             }
-            let depth = stencil.map_or(&no_depth.view, |(_, map)| &map.view);
+            let depth = stencil.map_or(no_depth, |(_, map)| map);
             recorder.render_pass("regions of influence", Span::Only, &[], depth, None, |pass| {
-                pass.set_pipeline(&draw.pipeline);
+                pass.set_pipeline(&self.pipeline);
                 inputs.bind_drawn(pass);
                 pass.set_bind_group(1, window, &[]);
                 pass.set_bind_group(2, surface, &[]);
                 pass.draw_indirect(arguments, 0);
             });
         }
-    }
-
-    pub(super) fn memory_bytes(&self) -> u64 {
-        self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
-            + self.stencil_map.as_ref().map_or(0, StencilMap::memory_bytes)
-            + self.draw.as_ref().map_or(0, wgpu::Buffer::size)
     }
 }
 
@@ -286,7 +292,7 @@ fn pipeline(
     let has = |name: &str| match name {
         "HAS_TINT" => false,
         // Of one light point nothing is counted or looked up.
-        "USES_TABLE" | "COUNTS" | "0" => !drawn.light_planes,
+        "USES_TABLE" | "COUNTS" | "IS_FLAT" => !drawn.light_planes,
         _ => true,
     };
     let mut constants: Vec<_> = evaluator.constants().into_iter().filter(|(name, _)| has(name)).collect();

@@ -4,10 +4,10 @@
 use bytemuck::Pod;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
-use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{Resolve, ResolveShader};
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
+use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage, write_uniform};
-use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
+use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
 pub mod hard;
 pub mod pcf;
@@ -52,11 +52,28 @@ pub(crate) struct MapResolve<P> {
     inputs: FrameInputs,
     params_layout: wgpu::BindGroupLayout,
     wgsl: &'static str,
+    /// Of groups behind the map's and the parameters'.
+    further_layouts: Vec<wgpu::BindGroupLayout>,
     resolve: Resolve,
     params_uniform: wgpu::Buffer,
     taps: Option<wgpu::Buffer>,
-    params_group: Option<wgpu::BindGroup>,
     _params: std::marker::PhantomData<P>,
+}
+
+/// The map and the pass of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedMapResolve {
+    map: PreparedMap,
+    params_group: wgpu::BindGroup,
+    resolve: PreparedResolve,
+}
+
+impl PreparedMapResolve {
+    /// The frame's inputs, for a pass behind the resolve.
+    pub(crate) fn inputs(&self) -> &PreparedInputs {
+        self.resolve.inputs()
+    }
 }
 
 impl<P: GpuStruct> MapResolve<P> {
@@ -68,22 +85,35 @@ impl<P: GpuStruct> MapResolve<P> {
         constants: &[(&'static str, f64)],
         search: MapSearch,
     ) -> Self {
+        Self::with_groups(gpu, technique, wgsl, constants, search, Vec::new())
+    }
+
+    /// The same with groups of the technique's own behind the map's and the parameters'.
+    pub(crate) fn with_groups(
+        gpu: &Gpu,
+        technique: &'static str,
+        wgsl: &'static str,
+        constants: &[(&'static str, f64)],
+        search: MapSearch,
+        further_layouts: Vec<wgpu::BindGroupLayout>,
+    ) -> Self {
         let inputs = FrameInputs::new(gpu);
         let map = LightMap::new(gpu, technique, search);
         let params_layout = ResolveParams::layout(gpu);
         let mut resolve = Resolve::default();
-        let shader = ResolveShader { label: technique, wgsl, constants, layouts: &[&map.layout, &params_layout] };
-        resolve.compile(gpu, &inputs, &shader);
+        let layouts = &layouts(&map, &params_layout, &further_layouts);
+        let shader = ResolveShader { label: technique, wgsl, constants, layouts };
+        resolve.compile_ahead(gpu, &inputs, &shader);
         Self {
             technique,
             map,
             inputs,
             params_layout,
+            further_layouts,
             wgsl,
             resolve,
             params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
             taps: None,
-            params_group: None,
             _params: std::marker::PhantomData,
         }
     }
@@ -97,32 +127,48 @@ impl<P: GpuStruct> MapResolve<P> {
         pass: &ResolvePass<'_>,
         params: &P,
         taps: &[T],
-    ) -> Result<(), Error> {
-        self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse);
-        self.map.prepare(stage, frame, pass.map)?;
+    ) -> Result<PreparedMapResolve, Error> {
+        let map = self.map.prepare(stage, frame, pass.map)?;
         let shader = ResolveShader {
             label: self.technique,
             wgsl: self.wgsl,
             constants: pass.constants,
-            layouts: &[&self.map.layout, &self.params_layout],
+            layouts: &layouts(&self.map, &self.params_layout, &self.further_layouts),
         };
-        self.resolve.compile(stage, &self.inputs, &shader);
+        let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse, &shader);
         write_uniform(stage, &self.params_uniform, params);
         let taps: &[T] = if taps.is_empty() { &[T::zeroed()] } else { taps };
         let taps = upload_storage(stage, &mut self.taps, "antumbra taps", taps);
         let params = ResolveParams { params: &self.params_uniform, taps };
-        self.params_group = Some(params.group(stage, &self.params_layout));
-        Ok(())
+        Ok(PreparedMapResolve { map, params_group: params.group(stage, &self.params_layout), resolve })
     }
 
     /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.map.record(recorder, frame);
-        let params_group = self.params_group.as_ref().expect("prepare comes before record");
-        self.resolve.record(recorder, &self.inputs, |pass| {
-            pass.set_bind_group(1, self.map.bind_group(), &[]);
-            pass.set_bind_group(2, params_group, &[]);
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.record_with(recorder, frame, prepared, &[]);
+    }
+
+    /// The same with the technique's own groups.
+    pub(crate) fn record_with(
+        &self,
+        recorder: &mut Recorder<'_>,
+        frame: &PreparedFrame<'_>,
+        prepared: &PreparedMapResolve,
+        further: &[&wgpu::BindGroup],
+    ) {
+        self.map.record(recorder, frame, &prepared.map);
+        prepared.resolve.record(recorder, |pass| {
+            pass.set_bind_group(1, &prepared.map.group, &[]);
+            pass.set_bind_group(2, &prepared.params_group, &[]);
+            for (index, group) in (3..).zip(further) {
+                pass.set_bind_group(index, *group, &[]);
+            }
         });
+    }
+
+    /// The inputs, for a pass behind the resolve.
+    pub(crate) fn inputs(&self) -> &FrameInputs {
+        &self.inputs
     }
 
     /// The map that the technique has drawn, for pictures of it.
@@ -134,4 +180,13 @@ impl<P: GpuStruct> MapResolve<P> {
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.map.memory_bytes() + self.resolve.memory_bytes()
     }
+}
+
+/// In the order of their groups.
+fn layouts<'a>(
+    map: &'a LightMap,
+    params: &'a wgpu::BindGroupLayout,
+    further: &'a [wgpu::BindGroupLayout],
+) -> Vec<&'a wgpu::BindGroupLayout> {
+    [&map.layout, params].into_iter().chain(further).collect()
 }

@@ -97,13 +97,13 @@ impl TapsProgram {
         }
     }
 
-    /// By their ids.
+    /// By their names.
     pub(crate) fn constants(self) -> [(&'static str, f64); 4] {
         [
-            ("0", f64::from(self.light_kind)),
-            ("1", f64::from(self.layers)),
-            ("3", f64::from(u8::from(self.has_emission))),
-            ("4", f64::from(u8::from(self.is_progressive))),
+            ("LIGHT_KIND", f64::from(self.light_kind)),
+            ("LAYER_COUNT", f64::from(self.layers)),
+            ("HAS_EMISSION", f64::from(u8::from(self.has_emission))),
+            ("IS_PROGRESSIVE", f64::from(u8::from(self.is_progressive))),
         ]
     }
 }

@@ -57,7 +57,7 @@ impl BasisPass {
             (_, Sums::Integer) => (BasisBindings::layout_with(gpu, adapt), shaders::SOFT_ENCODE),
             (_, Sums::Float) => (BasisBindings::layout_with(gpu, adapt), shaders::SOFT_ENCODE_FLOAT),
         };
-        let basis = [("0", f64::from(design.basis as u32))];
+        let basis = [("BASIS", f64::from(design.basis as u32))];
         let constants = if design.basis == Basis::Tiles { &[][..] } else { &basis };
         let [a, b, c] = groups;
         let encode = compute_entry(gpu, "depth basis", wgsl, None, constants, &[a, b, c, &layout]);

@@ -65,7 +65,7 @@ pub mod vssm;
 
 pub use params::TableSums;
 pub(crate) use params::{shared_settings, table_params};
-pub(crate) use soft_filter::SoftFilter;
+pub(crate) use soft_filter::{PreparedSoft, SoftFilter};
 
 /// What the tables hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -232,17 +232,18 @@ pub struct SoftTechnique<P> {
 impl<P: SoftParams> Technique for SoftTechnique<P> {
     const NAME: &'static str = P::NAME;
     type Params = P;
+    type Prepared = PreparedSoft;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self { filter: SoftFilter::new(gpu, P::NAME), _params: PhantomData })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &P) -> Result<(), Error> {
+    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &P) -> Result<PreparedSoft, Error> {
         self.filter.prepare(stage, frame, params.design(), &params.settings())
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.filter.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedSoft) {
+        self.filter.record(recorder, frame, prepared);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

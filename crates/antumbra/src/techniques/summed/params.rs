@@ -47,9 +47,7 @@ macro_rules! table_params {
         $crate::contract::params! {
             $(#[$outer])*
             pub struct $name {
-                /// Texels along a side of the light map.
-                map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
-                    more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+                shared map_size, more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
                 /// Parts along each side of a kernel.
                 subdivisions: u32 = $subdivisions, in 1..=16,
                     more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
@@ -65,12 +63,8 @@ macro_rules! table_params {
                 /// Visibility up to this is taken for none, and the rest is stretched.
                 bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
                     more "Less light bleeding, and thinner penumbrae.";
-                /// Look up every other pixel in both directions, and interpolate.
-                sub: bool = false,
-                    more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
-                /// Scale of the automatic bias of what is read from the map.
-                bias_scale: f32 = 1.0, in 0.0..=8.0,
-                    more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+                shared sub;
+                shared bias_scale;
             }
             Fast { map_size: 512, search_scales: 2, }
             High { map_size: 2048, subdivisions: 5, search_scales: 5, }

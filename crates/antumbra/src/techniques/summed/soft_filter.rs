@@ -9,10 +9,10 @@ use super::texture::texture;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{Resolve, ResolveShader};
+use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, create_uniform, texels, write_uniform};
 use crate::light_map::light_spread::LightSpread;
-use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings};
+use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 use crate::shaders;
 use crate::techniques::summed::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
 
@@ -53,7 +53,16 @@ pub(crate) struct SoftFilter {
     pub(crate) test_shader: Option<&'static str>,
     resolve: Resolve,
     passes: Option<Passes>,
-    prepared: Option<Prepared>,
+    made: Option<Made>,
+}
+
+/// Map, tables and resolve of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedSoft {
+    map: PreparedMap,
+    table_group: wgpu::BindGroup,
+    resolve: PreparedResolve,
 }
 
 /// Pipelines of one design.
@@ -69,12 +78,11 @@ struct Passes {
 
 /// What is made for one size of map.
 #[derive(Debug)]
-struct Prepared {
+struct Made {
     size: UVec2,
     tile_side: u32,
     tiles: Option<wgpu::TextureView>,
     basis: Option<BasisTexture>,
-    table_group: wgpu::BindGroup,
 }
 
 impl SoftFilter {
@@ -101,7 +109,7 @@ impl SoftFilter {
             test_shader: None,
             resolve: Resolve::default(),
             passes: None,
-            prepared: None,
+            made: None,
         }
     }
 
@@ -115,7 +123,7 @@ impl SoftFilter {
                 let wgsl = if sums == Sums::Float { shaders::SOFT_TABLE_FLOAT } else { shaders::SOFT_TABLE };
                 let parts = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
                 let of_part = |part| {
-                    let constants = [("0", basis), ("1", f64::from(part))];
+                    let constants = [("BASIS", basis), ("PART", f64::from(part))];
                     SummedAreaTable::new(gpu, table, &Source::Encoded { wgsl, constants: &constants, layouts })
                 };
                 (0..parts).map(of_part).collect()
@@ -131,27 +139,34 @@ impl SoftFilter {
         }
     }
 
-    /// Compiles the resolve shader where it is not compiled for this.
-    fn compile(&mut self, gpu: &Gpu, design: SoftDesign, specialisation: Specialisation) {
-        let Some(passes) = &self.passes else { return };
+    /// The resolve pass of a frame, compiled where it is not compiled for this.
+    fn prepare_resolve(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        design: SoftDesign,
+        settings: &SoftSettings,
+        table_layout: &wgpu::BindGroupLayout,
+    ) -> PreparedResolve {
+        let specialisation = Specialisation::of(design, settings);
         let wgsl = if design.sums() == Sums::Float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
         #[cfg(test)]
         let wgsl = self.test_shader.unwrap_or(wgsl);
         let mut constants = vec![
-            ("0", f64::from(design.basis as u32)),
-            ("3", f64::from(u8::from(specialisation.has_search_taps))),
-            ("4", f64::from(u8::from(specialisation.is_one_piece))),
-            ("5", f64::from(specialisation.refinements)),
-            ("6", f64::from(u8::from(specialisation.one_window))),
-            ("7", f64::from(u8::from(specialisation.cuts_squares))),
-            ("8", f64::from(u8::from(specialisation.second_look))),
+            ("BASIS", f64::from(design.basis as u32)),
+            ("HAS_SEARCH_TAPS", f64::from(u8::from(specialisation.has_search_taps))),
+            ("IS_ONE_PIECE", f64::from(u8::from(specialisation.is_one_piece))),
+            ("REFINEMENTS", f64::from(specialisation.refinements)),
+            ("IS_ONE_WINDOW", f64::from(u8::from(specialisation.one_window))),
+            ("CUTS_SQUARES", f64::from(u8::from(specialisation.cuts_squares))),
+            ("HAS_SECOND_LOOK", f64::from(u8::from(specialisation.second_look))),
         ];
         if design.filter == Filter::Mips {
-            constants.push(("2", 1.0));
+            constants.push(("IS_MIPS", 1.0));
         }
-        let layouts = [&self.map.layout, &self.params_layout, &passes.table_layout];
+        let layouts = [&self.map.layout, &self.params_layout, table_layout];
         let shader = ResolveShader { label: self.technique, wgsl, constants: &constants, layouts: &layouts };
-        self.resolve.compile(gpu, &self.inputs, &shader);
+        self.resolve.prepare(stage, &mut self.inputs, frame, settings.is_sparse, &shader)
     }
 
     /// Fits the map, allocates the tables, and uploads everything.
@@ -161,25 +176,31 @@ impl SoftFilter {
         frame: &PreparedFrame<'_>,
         design: SoftDesign,
         settings: &SoftSettings,
-    ) -> Result<(), Error> {
-        self.resolve.prepare(stage, &mut self.inputs, frame, settings.is_sparse);
+    ) -> Result<PreparedSoft, Error> {
         let own = OwnMapSettings { window: settings.window, ..OwnMapSettings::square(settings.map_size) };
         let map = self.map.prepare(stage, frame, own)?;
-        if self.passes.as_ref().is_none_or(|passes| passes.design != design) {
-            self.passes = Some(self.make_passes(stage, design));
-            self.prepared = None;
-        }
-        self.compile(stage, design, Specialisation::of(design, settings));
+        let made = self.passes.take().filter(|passes| passes.design == design);
+        let mut passes = made.unwrap_or_else(|| {
+            self.made = None;
+            self.make_passes(stage, design)
+        });
+        let resolve = self.prepare_resolve(stage, frame, design, settings, &passes.table_layout);
         let light = LightSpread::of(frame.light);
         let fit = TableFit::of(design, settings, &light, &map);
         write_uniform(stage, &self.uniform, &soft_uniform(settings, &light, fit, map.empty_depth));
-        self.prepare_tables(stage, map.size_px, fit.tile_side);
-        Ok(())
+        let table_group = self.prepare_tables(stage, &mut passes, map.size_px, fit.tile_side);
+        self.passes = Some(passes);
+        Ok(PreparedSoft { map, table_group, resolve })
     }
 
-    fn prepare_tables(&mut self, stage: &Stage<'_>, size: UVec2, tile_side: u32) {
-        let passes = self.passes.as_mut().expect("made by prepare");
-        let made = self.prepared.take().filter(|made| (made.size, made.tile_side) == (size, tile_side));
+    fn prepare_tables(
+        &mut self,
+        stage: &Stage<'_>,
+        passes: &mut Passes,
+        size: UVec2,
+        tile_side: u32,
+    ) -> wgpu::BindGroup {
+        let made = self.made.take().filter(|made| (made.size, made.tile_side) == (size, tile_side));
         let (tiles, basis) = made.map_or((None, None), |made| (made.tiles, made.basis));
         let tiles = tiles.or_else(|| {
             (passes.design.basis == Basis::Tiles).then(|| {
@@ -215,22 +236,24 @@ impl SoftFilter {
             table_4: table(4),
         };
         let table_group = bound.group(stage, &passes.table_layout);
-        self.prepared = Some(Prepared { size, tile_side, tiles, basis, table_group });
+        self.made = Some(Made { size, tile_side, tiles, basis });
+        table_group
     }
 
     /// Records map, pyramid, tables and resolve.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        let (Some(passes), Some(prepared)) = (&self.passes, &self.prepared) else { return };
-        self.map.record(recorder, frame);
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedSoft) {
+        let (Some(passes), Some(made)) = (&self.passes, &self.made) else { return };
+        let PreparedSoft { map, table_group, resolve } = prepared;
+        self.map.record(recorder, frame, map);
         let bind_map = |pass: &mut wgpu::ComputePass<'_>| {
-            pass.set_bind_group(1, self.map.bind_group(), &[]);
+            pass.set_bind_group(1, &map.group, &[]);
             pass.set_bind_group(2, &self.params_group, &[]);
         };
         let bind = |pass: &mut wgpu::ComputePass<'_>| {
-            self.inputs.bind(pass);
+            resolve.inputs().bind(pass);
             bind_map(pass);
         };
-        if let (Some(pass), Some(basis)) = (&passes.basis, &prepared.basis) {
+        if let (Some(pass), Some(basis)) = (&passes.basis, &made.basis) {
             pass.record(recorder, basis, bind);
         }
         for table in &passes.tables {
@@ -240,9 +263,9 @@ impl SoftFilter {
                 }
             });
         }
-        self.resolve.record(recorder, &self.inputs, |pass| {
+        resolve.record(recorder, |pass| {
             bind_map(pass);
-            pass.set_bind_group(3, &prepared.table_group, &[]);
+            pass.set_bind_group(3, table_group, &[]);
         });
     }
 
@@ -254,7 +277,7 @@ impl SoftFilter {
     /// Bytes of map, pyramid, basis and tables, and of the lists of a sparse pass.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let tables: u64 = self.passes.iter().flat_map(|passes| &passes.tables).map(SummedAreaTable::memory_bytes).sum();
-        let made = self.prepared.as_ref().map_or(0, |made| {
+        let made = self.made.as_ref().map_or(0, |made| {
             let count = made.size.map(|n| n.div_ceil(made.tile_side.max(1)));
             let planes = made.tiles.as_ref().map_or(0, |_| 16 * u64::from(count.x) * u64::from(count.y));
             planes + made.basis.as_ref().map_or(0, BasisTexture::memory_bytes)

@@ -75,9 +75,10 @@ impl Staged {
             version: None,
         };
         let frame = PreparedFrame { light, casters, receivers, mask: &mask };
-        filter.prepare(&Stage::at_once(gpu), &frame, params.design(), &params.settings()).expect("a good frame");
+        let prepared =
+            filter.prepare(&Stage::at_once(gpu), &frame, params.design(), &params.settings()).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        filter.record(&mut Recorder::new(&mut encoder, None), &frame);
+        filter.record(&mut Recorder::new(&mut encoder, None), &frame, &prepared);
         gpu.queue.submit([encoder.finish()]);
         (0..3).map(|layer| bytemuck::pod_collect_to_vec(&read_layer(gpu, mask.texture(), layer))).collect()
     }

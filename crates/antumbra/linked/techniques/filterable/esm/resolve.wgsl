@@ -510,7 +510,6 @@ struct source_FilterUniform {
     padding: f32
 }
 
-@id(7)
 override source_IS_DISTANCE: bool = false;
 
 fn source_depth_direction(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f) -> vec3f {

@@ -7,7 +7,6 @@ struct LvsmHistogramUniform {
     padding: u32
 }
 
-@id(0)
 override AS_PRINTED: bool = false;
 
 const BIN_COUNT = 4096.0;
@@ -96,7 +95,6 @@ struct source_FilterUniform {
     padding: f32
 }
 
-@id(7)
 override source_IS_DISTANCE: bool = false;
 
 fn source_along_axis_m(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {

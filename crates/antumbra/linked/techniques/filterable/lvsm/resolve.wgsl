@@ -6,10 +6,8 @@ var<uniform> lvsm: encode_LvsmUniform;
 @group(2) @binding(1)
 var<storage, read> splits: array<f32>;
 
-@id(0)
 override IS_MIXED: bool = false;
 
-@id(1)
 override IS_CHEBYSHEV: bool = false;
 
 fn layer_of(t: f32) -> u32 {
@@ -685,7 +683,6 @@ struct source_FilterUniform {
     padding: f32
 }
 
-@id(7)
 override source_IS_DISTANCE: bool = false;
 
 fn source_depth_direction(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f) -> vec3f {

@@ -193,7 +193,6 @@ struct source_FilterUniform {
     padding: f32
 }
 
-@id(7)
 override source_IS_DISTANCE: bool = false;
 
 fn source_along_axis_m(view: space_LightViewGpu, range: source_FilterUniform, uv: vec2f, z_m: f32) -> f32 {

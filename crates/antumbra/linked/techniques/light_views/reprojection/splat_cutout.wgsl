@@ -142,7 +142,6 @@ fn thresholds_stochastic_threshold(point: u32, seed: u32) -> f32 {
     return (f32(scrambled >> 8u) + 0.5) / 16777216.0;
 }
 
-@id(4)
 override rasterised_IS_SURFEL: bool = false;
 
 @group(2) @binding(1)
@@ -197,16 +196,12 @@ struct splat_ViewGroup {
     padding_2: array<vec4u, 11>
 }
 
-@id(0)
 override splat_SYNCHRONIZED: bool = true;
 
-@id(1)
 override splat_IS_AFFINE: bool = false;
 
-@id(2)
 override splat_TRIES_FACES: bool = false;
 
-@id(3)
 override splat_HAS_REACH: bool = false;
 
 const splat_MOST_TEXELS = 4.0;

@@ -38,7 +38,6 @@ fn layer_gradient_of(depth: f32) -> vec2f {
     return select(vec2f(), gradient, depth < 1.0);
 }
 
-@id(4)
 override rasterised_IS_SURFEL: bool = false;
 
 @group(2) @binding(1)
@@ -93,16 +92,12 @@ struct splat_ViewGroup {
     padding_2: array<vec4u, 11>
 }
 
-@id(0)
 override splat_SYNCHRONIZED: bool = true;
 
-@id(1)
 override splat_IS_AFFINE: bool = false;
 
-@id(2)
 override splat_TRIES_FACES: bool = false;
 
-@id(3)
 override splat_HAS_REACH: bool = false;
 
 const splat_MOST_TEXELS = 4.0;

@@ -11,7 +11,6 @@ var central_central_depth: texture_depth_2d_array;
 @group(2) @binding(1)
 var<uniform> group_views: splat_ViewGroup;
 
-@id(5)
 override points_BRINGS_TOGETHER: bool = true;
 
 const points_NOWHERE = 4294967295u;
@@ -35,12 +34,13 @@ struct points_Stores {
 
 fn points_stores_of(quad: points_Quad, i: u32) -> points_Stores {
     let m = group_views.target_from_central[i];
-    var x = m[0].x * quad.x + (m[1].x * quad.y + (m[2].x * quad.depth + m[3].x));
-    var y = m[0].y * quad.x + (m[1].y * quad.y + (m[2].y * quad.depth + m[3].y));
-    var z = m[0].z * quad.x + (m[1].z * quad.y + (m[2].z * quad.depth + m[3].z));
+    let moved = m[3];
+    var x = m[0].x * quad.x + (m[1].x * quad.y + (m[2].x * quad.depth + moved.x));
+    var y = m[0].y * quad.x + (m[1].y * quad.y + (m[2].y * quad.depth + moved.y));
+    var z = m[0].z * quad.x + (m[1].z * quad.y + (m[2].z * quad.depth + moved.z));
     var is_stored = quad.depth > vec4f(0.0);
     if !splat_IS_AFFINE {
-        let w = m[0].w * quad.x + (m[1].w * quad.y + (m[2].w * quad.depth + m[3].w));
+        let w = m[0].w * quad.x + (m[1].w * quad.y + (m[2].w * quad.depth + moved.w));
         x /= w;
         y /= w;
         z /= w;
@@ -147,16 +147,12 @@ struct splat_ViewGroup {
     padding_2: array<vec4u, 11>
 }
 
-@id(0)
 override splat_SYNCHRONIZED: bool = true;
 
-@id(1)
 override splat_IS_AFFINE: bool = false;
 
-@id(2)
 override splat_TRIES_FACES: bool = false;
 
-@id(3)
 override splat_HAS_REACH: bool = false;
 
 @group(2) @binding(0)

@@ -71,13 +71,10 @@ struct splat_ViewGroup {
     padding_2: array<vec4u, 11>
 }
 
-@id(0)
 override splat_SYNCHRONIZED: bool = true;
 
-@id(1)
 override splat_IS_AFFINE: bool = false;
 
-@id(2)
 override splat_TRIES_FACES: bool = false;
 
 const splat_MOST_TEXELS = 4.0;

@@ -18,7 +18,6 @@ struct PcssUniform {
 @group(2) @binding(0)
 var<uniform> pcss: PcssUniform;
 
-@id(2)
 override MEANS_OF_RANGES: bool = false;
 
 const NEAR_SHARE = 0.7;
@@ -652,7 +651,6 @@ fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
 @group(1) @binding(4)
 var behind_further_layers: texture_depth_2d_array;
 
-@id(1)
 override behind_LAYER_COUNT: u32 = 1u;
 
 fn horizon_has_horizon_share() -> bool {
@@ -878,13 +876,10 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-@id(0)
 override light_taps_LIGHT_KIND: u32 = 0u;
 
-@id(3)
 override light_taps_HAS_EMISSION: bool = false;
 
-@id(4)
 override light_taps_IS_PROGRESSIVE: bool = false;
 
 @group(2) @binding(1)

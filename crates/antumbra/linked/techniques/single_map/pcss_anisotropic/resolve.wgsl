@@ -658,10 +658,8 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-@id(0)
 override light_taps_LIGHT_KIND: u32 = 0u;
 
-@id(4)
 override light_taps_IS_PROGRESSIVE: bool = false;
 
 @group(2) @binding(1)
@@ -855,7 +853,6 @@ struct resolve_PcssUniform {
 @group(2) @binding(0)
 var<uniform> resolve_pcss: resolve_PcssUniform;
 
-@id(2)
 override resolve_MEANS_OF_RANGES: bool = false;
 
 const resolve_ENOUGH_BLOCKERS = 4u;

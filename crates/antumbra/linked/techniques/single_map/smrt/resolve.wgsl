@@ -9,18 +9,27 @@ struct SmrtUniform {
     bias_scale: f32,
     light_extent: vec2f,
     light_extent_axis: f32,
-    padding: u32,
-    thickness_texels: vec2f
+    cells: f32,
+    thickness_texels: vec2f,
+    narrow_half_extent: f32,
+    padding: u32
 }
 
 @group(2) @binding(0)
 var<uniform> smrt: SmrtUniform;
+
+override IS_SMOOTHED: bool = false;
+
+@group(3) @binding(0)
+var noisy: texture_storage_2d<r32uint, write>;
 
 const TEXEL_BIAS = 2.0;
 
 const TILE_PROBES = 16u;
 
 const PIXEL_PROBES = 32u;
+
+const WIDE_PX = 8.0;
 
 const GOLDEN = 0.618033989;
 
@@ -31,6 +40,9 @@ struct Open {
     visibility: f32,
     shift: vec2f,
     most_g: f32,
+    magnification_per_g: f32,
+    least_magnification: f32,
+    pixel_m: f32,
     fan: fan_Fan,
     light: light_taps_LightPlane
 }
@@ -58,10 +70,14 @@ fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
     let extent = blocker_range_seen_extent(smrt.light_extent, smrt.light_extent_axis, receiver_in_light);
     let shift = shift_of(pixel);
     let fan = fan_fan_of(plane, receiver_in_light.z, smrt.thickness_texels);
-    return Open(true, share, shift, blocker_range_largest_g(plane, extent), fan, light_taps_light_plane(receiver, receiver_in_light, shift));
+    let per_g = select(1.0, receiver_in_light.z, map_light_view.perspective == 1u);
+    let texel_magnification = per_g * map_light_view.texel_in_plane / (2.0 * smrt.narrow_half_extent);
+    let light = light_taps_light_plane(receiver, receiver_in_light, shift);
+    let pixel_m = inputs_snapped_m(1.0, receiver.pos_in_world);
+    return Open(true, share, shift, blocker_range_largest_g(plane, extent), per_g, texel_magnification, pixel_m, fan, light);
 }
 
-fn is_free(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> bool {
+fn blocker_g(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> f32 {
     var along = jitter.z;
     for (var rest = steps.some; rest > 0u; rest &= rest - 1u) {
         let step = countTrailingZeros(rest);
@@ -69,24 +85,43 @@ fn is_free(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> boo
         let g = bins_g_in_step(fan.at, steps, step, along);
         along = fract(along + GOLDEN);
         let texel = floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter.xy - 0.5), g));
-        if map_receiver_is_texel(texel) && fan_blocks(fan, texel, begin_g, begin_g + steps.width_g) {
-            return false;
+        if map_receiver_is_texel(texel) {
+            let hit_g = fan_blocker_g_in(fan, texel, begin_g, begin_g + steps.width_g);
+            if hit_g < map_receiver_NO_G {
+                return hit_g;
+            }
         }
     }
-    return true;
+    return map_receiver_NO_G;
 }
 
-fn follow(open: Open, steps: bins_Steps, begin: u32, end: u32) -> vec2f {
+fn end_of(light: light_taps_LightPlane, tap: vec3f) -> vec3f {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE {
+        let in_cells = smrt.cells * tap.xy;
+        return vec3f(2.0 * (floor(in_cells) + fract(in_cells + light.shift)) / smrt.cells - 1.0, 0.0);
+    }
+    return light_taps_place_of(light, tap);
+}
+
+struct Rays {
+    weight: f32,
+    free: f32,
+    least_g: f32
+}
+
+fn follow(open: Open, steps: bins_Steps, before: Rays, begin: u32, end: u32) -> Rays {
     let first = vec3f(open.shift, fract(open.shift.x + GOLDEN * open.shift.y));
-    var sums = vec2f();
+    var sums = before;
     for (var i = begin; i < min(end, smrt.ray_count); i++) {
-        let place = light_taps_place_of(open.light, light_taps_taps[smrt.tile_search_count + i].xyz);
-        var is_lit = light_taps_is_above_horizon(open.light, place);
-        if is_lit {
+        let place = end_of(open.light, light_taps_taps[smrt.tile_search_count + i].xyz);
+        let weight = light_taps_weight_of(place);
+        sums.weight += weight;
+        if light_taps_is_above_horizon(open.light, place) {
             let jitter = fract(first + f32(i) * R3);
-            is_lit = is_free(open.fan, light_taps_texels_of(open.light, place), steps, jitter);
+            let g = blocker_g(open.fan, light_taps_texels_of(open.light, place), steps, jitter);
+            sums.free += select(0.0, weight, g == map_receiver_NO_G);
+            sums.least_g = min(sums.least_g, g);
         }
-        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, 1.0, is_lit));
     }
     return sums;
 }
@@ -107,6 +142,26 @@ const BLOCKED = 2u;
 
 fn tile_bins() -> bins_Bins {
     return bins_bins_between(bins_depth_of_bits(atomicLoad(&farthest_bits)), bins_depth_of_bits(atomicLoad(&nearest_bits)));
+}
+
+fn magnification(open: Open, least_g: f32) -> f32 {
+    if least_g == map_receiver_NO_G {
+        return noisy_NO_MAGNIFICATION;
+    }
+    return max(open.magnification_per_g * least_g, open.least_magnification);
+}
+
+fn is_narrow(open: Open, least_g: f32) -> bool {
+    return 2.0 * smrt.narrow_half_extent * magnification(open, least_g) < WIDE_PX * open.pixel_m;
+}
+
+fn write_pixel(pixel: vec2u, visibility: f32, magnification: f32) {
+    if IS_SMOOTHED {
+        textureStore(noisy, pixel, vec4u(noisy_packed_noisy(visibility, magnification)));
+    }
+    else {
+        inputs_write_visibility(pixel, visibility);
+    }
 }
 
 @compute @workgroup_size(8, 8)
@@ -141,20 +196,23 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     workgroupBarrier();
     let steps = bins_steps_of(open.fan.at, bins, smrt.most_steps);
     let has_rays = open.has_rays && (steps.some > 0u || !horizon_has_horizon_share());
-    var sums = vec2f();
+    var sums = Rays(0.0, 0.0, map_receiver_NO_G);
     if has_rays {
-        sums = follow(open, steps, 0u, probes(TILE_PROBES));
-        atomicOr(&rays_found, select(0u, FREE, sums.y > 0.0) | select(0u, BLOCKED, sums.y < sums.x));
+        sums = follow(open, steps, sums, 0u, probes(TILE_PROBES));
+        atomicOr(&rays_found, select(0u, FREE, sums.free > 0.0) | select(0u, BLOCKED, sums.free < sums.weight));
     }
     workgroupBarrier();
     if has_rays && atomicLoad(&rays_found) == (FREE | BLOCKED) {
-        sums += follow(open, steps, probes(TILE_PROBES), probes(PIXEL_PROBES));
-        if sums.y > 0.0 && sums.y < sums.x {
-            sums += follow(open, steps, probes(PIXEL_PROBES), smrt.ray_count);
+        if !IS_SMOOTHED || is_narrow(open, sums.least_g) {
+            sums = follow(open, steps, sums, probes(TILE_PROBES), probes(PIXEL_PROBES));
+            if sums.free > 0.0 && sums.free < sums.weight {
+                sums = follow(open, steps, sums, probes(PIXEL_PROBES), smrt.ray_count);
+            }
         }
     }
     if is_pixel {
-        inputs_write_visibility(pixel, select(open.visibility, sums.y / max(sums.x, 1e-20), has_rays));
+        let visibility = select(open.visibility, sums.free / max(sums.weight, 1e-20), has_rays);
+        write_pixel(pixel, visibility, magnification(open, sums.least_g));
     }
 }
 
@@ -230,6 +288,14 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
     let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn inputs_snapped_m(snapped_px: f32, pos_in_world: vec3f) -> f32 {
+    return inputs_snapped_at_w(snapped_px, abs(dot(inputs_receiver_view.clip_w_row, vec4f(pos_in_world, 1.0))));
+}
+
+fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
+    return snapped_px * inputs_receiver_view.pixel_m_per_w * w;
 }
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
@@ -347,6 +413,12 @@ fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
     return vec2f(noise_blue_noise(pixel), noise_blue_noise(pixel + vec2u(noise_SECOND_TILE_X, noise_SECOND_TILE_Y)));
 }
 
+const noisy_NO_MAGNIFICATION = 65504.0;
+
+fn noisy_packed_noisy(visibility: f32, magnification: f32) -> u32 {
+    return pack2x16float(vec2f(visibility, min(magnification, noisy_NO_MAGNIFICATION)));
+}
+
 const bias_HALF_TEXEL = 0.5;
 
 const bias_SNAPPED_TEXELS = 0.00390625;
@@ -421,7 +493,6 @@ fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
 @group(1) @binding(4)
 var behind_further_layers: texture_depth_2d_array;
 
-@id(1)
 override behind_LAYER_COUNT: u32 = 1u;
 
 fn horizon_has_horizon_share() -> bool {
@@ -634,13 +705,10 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-@id(0)
 override light_taps_LIGHT_KIND: u32 = 0u;
 
-@id(3)
 override light_taps_HAS_EMISSION: bool = false;
 
-@id(4)
 override light_taps_IS_PROGRESSIVE: bool = false;
 
 @group(2) @binding(1)
@@ -971,22 +1039,22 @@ fn fan_stored_depth(texel: vec2f, layer: u32) -> f32 {
     return map_light_view.depth_sign * textureLoad(behind_further_layers, vec2i(texel), layer - 1u, 0);
 }
 
-fn fan_blocks(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> bool {
+fn fan_blocker_g_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> f32 {
     let least = max(map_receiver_plane_depth(fan.at, texel), fan.at.depth + begin_g / fan.at.g_per_depth);
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(texel, layer);
         if depth <= least {
-            return false;
+            return map_receiver_NO_G;
         }
-        if fan_far_side(fan, depth, layer) <= end_g {
-            return true;
+        let g = fan_g_of(fan.at, depth);
+        if fan_far_side(fan, g, layer) <= end_g {
+            return g;
         }
     }
-    return false;
+    return map_receiver_NO_G;
 }
 
-fn fan_far_side(fan: fan_Fan, depth: f32, layer: u32) -> f32 {
-    let g = fan_g_of(fan.at, depth);
+fn fan_far_side(fan: fan_Fan, g: f32, layer: u32) -> f32 {
     let thickness = select(fan.thickness, fan.thickness_of_last, layer + 1u == behind_LAYER_COUNT);
     return g - (thickness.x + thickness.y * g);
 }

@@ -57,7 +57,7 @@ fn tile_side() -> u32 {
 
 fn source_at(texel: vec2u) -> Sum {
     if any(texel >= shape.size) {
-        return Sum();
+        return Sum(0);
     }
     return source_value_at(texel);
 }
@@ -80,7 +80,7 @@ fn block_sums(origin: vec2u, t: u32) -> array<Sum, 4> {
     }
     runs[row][run] = a[3];
     workgroupBarrier();
-    var left = Sum();
+    var left = Sum(0);
     for (var i = 0u; i < run; i++) {
         left += runs[row][i];
     }
@@ -96,7 +96,7 @@ fn block_sums(origin: vec2u, t: u32) -> array<Sum, 4> {
     }
     runs[column][part] = a[3];
     workgroupBarrier();
-    var top = Sum();
+    var top = Sum(0);
     for (var i = 0u; i < part; i++) {
         top += runs[column][i];
     }
@@ -128,7 +128,7 @@ fn sum_blocks(@builtin(workgroup_id) block: vec3u, @builtin(local_invocation_ind
 fn carry(@builtin(global_invocation_id) id: vec3u) {
     let count = blocks();
     let padded = count * BLOCK;
-    var sum = Sum();
+    var sum = Sum(0);
     if id.x < padded.x {
         for (var by = 0u; by < count.y; by++) {
             let i = by * padded.x + id.x;
@@ -154,7 +154,7 @@ fn carry_corners(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= count.y {
         return;
     }
-    var sum = Sum();
+    var sum = Sum(0);
     for (var bx = 0u; bx < count.x; bx++) {
         corner[id.x * count.x + bx] = sum;
         sum += above[id.x * count.x * BLOCK + bx * BLOCK + BLOCK - 1u];
@@ -184,7 +184,7 @@ var<workgroup> column_totals: array<Sum, 64>;
 fn total_blocks(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) t: u32) {
     let origin = group.xy * vec2u(PANEL, BLOCK);
     begin(origin, PANEL, 0u, t);
-    var total = Sum();
+    var total = Sum(0);
     for (var y = 0u; y < BLOCK; y++) {
         total += source_at(origin + vec2u(t, y));
     }
@@ -286,10 +286,10 @@ fn sum_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
     let segment = t % SEGMENT;
     let first_segment = ((segment * SEGMENT) & ~(side - 1u)) / SEGMENT;
     for (var panel = 0u; panel < end.x; panel += PANEL) {
-        var down = Sum();
+        var down = Sum(0);
         for (var y = 0u; y < end.y; y += STRIP) {
             if (y & (side - 1u)) == 0u {
-                down = Sum();
+                down = Sum(0);
             }
             for (var i = 0u; i < STRIP; i++) {
                 down += source_at(origin + vec2u(panel + t, y + i));
@@ -297,7 +297,7 @@ fn sum_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
             }
             workgroupBarrier();
             var along: array<Sum, 8>;
-            var sum = Sum();
+            var sum = Sum(0);
             if segment == 0u && panel > 0u {
                 sum = panels_before[y + row];
             }
@@ -307,7 +307,7 @@ fn sum_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
             }
             segment_ends[row][segment] = sum;
             workgroupBarrier();
-            var left = Sum();
+            var left = Sum(0);
             for (var i = first_segment; i < segment; i++) {
                 left += segment_ends[row][i];
             }
@@ -462,7 +462,6 @@ fn depth_range_t_of_depth(range: depth_range_DepthRange, depth: f32) -> f32 {
     return saturate(depth_range_t_of_z(range, space_z_of_depth(map_light_view, depth)));
 }
 
-@id(1)
 override encode_PART: u32 = 0u;
 
 fn encode_encode(range: depth_range_DepthRange, stored: f32) -> vec4f {
@@ -714,7 +713,6 @@ fn tile_basis_tile_plane(slope: vec2f, least: f32, greatest: f32, side: u32) -> 
     return tile_basis_TilePlane(least, slope, uniform_soft.exponent * (greatest - least));
 }
 
-@id(0)
 override uniform_BASIS: u32 = 0u;
 
 const uniform_BASIS_TILES = 0u;

@@ -1,18 +1,13 @@
 // Linked from src/techniques/summed/resolve.wesl with blockers by `cargo xtask shaders`: edit that, not this.
 
-@id(3)
 override HAS_SEARCH_TAPS: bool = false;
 
-@id(4)
 override IS_ONE_PIECE: bool = false;
 
-@id(5)
 override REFINEMENTS: u32 = 0u;
 
-@id(6)
 override IS_ONE_WINDOW: bool = false;
 
-@id(8)
 override HAS_SECOND_LOOK: bool = false;
 
 fn plane_about(compared: compared_Compared, place: vec2f) -> space_ReceiverPlane {
@@ -1293,7 +1288,6 @@ fn variance_blocker_depth_of_sums(mean: f32, lit_sum: f32, t: f32, visibility: f
 @group(3) @binding(1)
 var answer_tiles: texture_2d<f32>;
 
-@id(2)
 override answer_IS_MIPS: bool = false;
 
 const answer_TILE_TOLERANCE = 0.002;
@@ -1675,7 +1669,7 @@ fn sums_load_table(which: u32, texel: vec2i) -> sums_Sum {
 }
 
 fn sums_corner(which: u32, x: i32, y: i32, is_first: bool) -> sums_Sum {
-    return select(sums_load_table(which, max(vec2i(x, y) - 1, vec2i(0))), sums_Sum(), is_first);
+    return select(sums_load_table(which, max(vec2i(x, y) - 1, vec2i(0))), sums_Sum(0), is_first);
 }
 
 struct sums_Rows {
@@ -1793,7 +1787,6 @@ fn tile_basis_plane_nearness(tile: tile_basis_TilePlane, offset: vec2f) -> f32 {
     return tile.x + dot(tile.yz, offset);
 }
 
-@id(0)
 override uniform_BASIS: u32 = 0u;
 
 const uniform_BASIS_TILES = 0u;
@@ -1808,7 +1801,6 @@ const uniform_BASIS_MOMENT = 4u;
 
 const uniform_BASIS_CONVOLUTION = 5u;
 
-@id(7)
 override uniform_CUTS_SQUARES: bool = false;
 
 struct uniform_SoftUniform {

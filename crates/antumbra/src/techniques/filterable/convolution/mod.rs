@@ -17,7 +17,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::filterable::{BasisShaders, Filterable, PreparedBasis};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -34,6 +34,7 @@ pub struct Convolution {
 impl Technique for Convolution {
     const NAME: &'static str = "convolution";
     type Params = ConvolutionParams;
+    type Prepared = PreparedBasis;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let shaders = BasisShaders {
@@ -49,20 +50,19 @@ impl Technique for Convolution {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         params: &ConvolutionParams,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedBasis, Error> {
         let uniform = ConvolutionUniform {
             term_count: params.terms,
             depth_scale: 1.0 - 1.0 / params.terms as f32,
             ..ConvolutionUniform::default()
         };
-        self.map.prepare_map(stage, frame, &params.settings())?;
-        self.map.prepare_basis(stage, 2 * params.terms, Packing::Unorm8, 0.0, &uniform, None);
-        Ok(())
+        let map = self.map.prepare_map(stage, frame, &params.settings())?;
+        Ok(self.map.prepare_basis(stage, &map, 2 * params.terms, Packing::Unorm8, 0.0, &uniform, None))
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.map.record_map(recorder, frame);
-        self.map.record_basis(recorder);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedBasis) {
+        self.map.record_map(recorder, frame, prepared);
+        prepared.record(recorder);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

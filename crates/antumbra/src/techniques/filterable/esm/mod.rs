@@ -15,7 +15,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::filterable::{BasisShaders, Filterable, PreparedBasis};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -32,6 +32,7 @@ pub struct Esm {
 impl Technique for Esm {
     const NAME: &'static str = "esm";
     type Params = EsmParams;
+    type Prepared = PreparedBasis;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let shaders = BasisShaders {
@@ -42,18 +43,22 @@ impl Technique for Esm {
         Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &EsmParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &EsmParams,
+    ) -> Result<PreparedBasis, Error> {
         let packing = Packing::Float32;
         let uniform = EsmUniform { exponent: params.exponent, ..EsmUniform::default() };
-        self.map.prepare_map(stage, frame, &params.settings())?;
+        let map = self.map.prepare_map(stage, frame, &params.settings())?;
         // Floats are exact to a fraction of e^{cz}, whose derivative is c e^{cz}.
-        self.map.prepare_basis(stage, 1, packing, packing.step() / params.exponent, &uniform, None);
-        Ok(())
+        Ok(self.map.prepare_basis(stage, &map, 1, packing, packing.step() / params.exponent, &uniform, None))
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.map.record_map(recorder, frame);
-        self.map.record_basis(recorder);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedBasis) {
+        self.map.record_map(recorder, frame, prepared);
+        prepared.record(recorder);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

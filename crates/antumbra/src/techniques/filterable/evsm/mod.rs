@@ -22,7 +22,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::filterable::{BasisShaders, Filterable, PreparedBasis};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -39,6 +39,7 @@ pub struct Evsm {
 impl Technique for Evsm {
     const NAME: &'static str = "evsm";
     type Params = EvsmParams;
+    type Prepared = PreparedBasis;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let shaders = BasisShaders {
@@ -49,7 +50,12 @@ impl Technique for Evsm {
         Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &EvsmParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &EvsmParams,
+    ) -> Result<PreparedBasis, Error> {
         let packing = Packing::from(params.storage);
         // e^{2c} is the largest value stored: half of the format's largest exponent.
         let largest = match packing {
@@ -64,14 +70,13 @@ impl Technique for Evsm {
         let uniform = EvsmUniform { exponents, component_count, padding: 0 };
         // Floats are exact to a fraction of the warped depth w, and dw = 2c w dt.
         let t_step = packing.step() / (2.0 * exponents.min_element());
-        self.map.prepare_map(stage, frame, &params.settings())?;
-        self.map.prepare_basis(stage, component_count, packing, t_step, &uniform, None);
-        Ok(())
+        let map = self.map.prepare_map(stage, frame, &params.settings())?;
+        Ok(self.map.prepare_basis(stage, &map, component_count, packing, t_step, &uniform, None))
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.map.record_map(recorder, frame);
-        self.map.record_basis(recorder);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedBasis) {
+        self.map.record_map(recorder, frame, prepared);
+        prepared.record(recorder);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

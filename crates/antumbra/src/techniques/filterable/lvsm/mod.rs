@@ -45,7 +45,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::filterable::{BasisShaders, Filterable, FrameMap, Multisampling, ResolveBy};
+use crate::techniques::filterable::{BasisShaders, Filterable, FrameMap, Multisampling, PreparedBasis, ResolveBy};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -59,8 +59,19 @@ mod tests;
 pub use params::{
     LayerPlacement, LvsmBound, LvsmLayersBy, LvsmParams, LvsmShow, LvsmTeleport, LvsmTransition, RelaxOver,
 };
-use relaxation::LayerRelaxation;
-use targets::LayerTargets;
+use relaxation::{LayerRelaxation, PreparedRelaxation};
+use targets::{LayerTargets, PreparedLayers};
+
+/// The passes of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedLvsm {
+    basis: PreparedBasis,
+    /// `None` where splits are given.
+    relaxation: Option<PreparedRelaxation>,
+    /// `None` where layers are encoded from depth.
+    layers: Option<PreparedLayers>,
+}
 
 /// Layered variance shadow maps.
 #[derive(Debug)]
@@ -73,6 +84,7 @@ pub struct Lvsm {
 impl Technique for Lvsm {
     const NAME: &'static str = "lvsm";
     type Params = LvsmParams;
+    type Prepared = PreparedLvsm;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let shaders = BasisShaders {
@@ -87,7 +99,12 @@ impl Technique for Lvsm {
         })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &LvsmParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &LvsmParams,
+    ) -> Result<PreparedLvsm, Error> {
         let is_drawn = self.draws_layers(frame, params)?;
         self.map.set_drawn(is_drawn);
         let map = self.map.prepare_map(stage, frame, &params.settings())?;
@@ -104,34 +121,41 @@ impl Technique for Lvsm {
             ..LvsmUniform::default()
         };
         let constants = [
-            ("0", f64::from(u8::from(params.transition == LvsmTransition::Mixed))),
-            ("1", f64::from(u8::from(params.bound == LvsmBound::Chebyshev))),
+            ("IS_MIXED", f64::from(u8::from(params.transition == LvsmTransition::Mixed))),
+            ("IS_CHEBYSHEV", f64::from(u8::from(params.bound == LvsmBound::Chebyshev))),
         ];
         self.map.specialise(&constants);
-        self.map.prepare_basis(stage, 2 * params.layers, packing, 0.0, &uniform, Some(self.relaxation.splits()));
-        self.targets.rest();
-        if let Some(casters) = self.map.casters().filter(|_| is_drawn) {
-            self.targets.prepare(stage, &self.map, casters, packing, self.relaxation.splits());
-        }
-        match splits {
-            Some(splits) => self.relaxation.set(stage, &splits),
-            None => self.relaxation.prepare(stage, &self.map, &map, frame.receivers.size_px, params, overlap),
-        }
-        Ok(())
+        let channels = 2 * params.layers;
+        let splits_buffer = Some(self.relaxation.splits());
+        let basis = self.map.prepare_basis(stage, &map, channels, packing, 0.0, &uniform, splits_buffer);
+        let casters = self.map.casters().filter(|_| is_drawn);
+        let layers = casters
+            .map(|casters| self.targets.prepare(stage, &self.map, &basis, casters, packing, self.relaxation.splits()));
+        let relaxation = if let Some(splits) = splits {
+            self.relaxation.set(stage, &splits);
+            None
+        } else {
+            let view_size = frame.receivers.size_px;
+            Some(self.relaxation.prepare(stage, &self.map, &basis, &map, view_size, params, overlap))
+        };
+        Ok(PreparedLvsm { basis, relaxation, layers })
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedLvsm) {
+        let PreparedLvsm { basis, relaxation, layers } = prepared;
         // Where nothing is relaxed before the layers are drawn, depth is drawn with them.
-        if !self.targets.are_drawn() || self.relaxation.is_due() {
-            self.map.record_map(recorder, frame);
+        if layers.is_none() || relaxation.is_some() {
+            self.map.record_map(recorder, frame, basis);
         }
-        self.relaxation.record(recorder, &self.map);
-        if let (true, PreparedCasters::Draws(meshes), Some((depth, casters))) =
-            (self.targets.are_drawn(), &frame.casters, self.map.own_depth())
+        if let Some(relaxation) = relaxation {
+            self.relaxation.record(recorder, basis, relaxation);
+        }
+        if let (Some(layers), PreparedCasters::Draws(meshes), Some((depth, casters))) =
+            (layers, &frame.casters, self.map.own_depth())
         {
-            self.targets.record(recorder, depth, self.map.layer_views(), casters, meshes);
+            self.targets.record(recorder, depth, basis.layer_views(), casters, meshes, layers);
         }
-        self.map.record_basis(recorder);
+        basis.record(recorder);
     }
 
     /// Splits glide from frame to frame until they are where they belong.

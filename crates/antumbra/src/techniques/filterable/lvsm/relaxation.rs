@@ -7,7 +7,7 @@ use super::params::{LvsmParams, LvsmTeleport, RelaxOver};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, write_uniform};
 use crate::primitives::lloyd::{Lloyd, Relaxation, Teleport};
 use crate::shaders;
-use crate::techniques::filterable::{Filterable, FrameMap, pipelines_index};
+use crate::techniques::filterable::{Filterable, FrameMap, PreparedBasis, pipelines_index};
 
 bindings! {
     /// Group 1 over the map, 2 over the receivers.
@@ -68,6 +68,13 @@ pub(super) struct LayerRelaxation {
     gathering: Option<Gathering>,
 }
 
+/// What moves the splits of one frame.
+#[derive(Debug)]
+pub(super) struct PreparedRelaxation {
+    gathering: Gathering,
+    pipeline: wgpu::ComputePipeline,
+}
+
 impl LayerRelaxation {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let lloyd = Lloyd::new(gpu);
@@ -88,16 +95,17 @@ impl LayerRelaxation {
         self.lloyd.set(stage, splits);
     }
 
-    /// Makes ready for the GPU to find the splits of the next frame; after `passes` has prepared its basis.
+    /// Makes ready for the GPU to find the splits of the next frame, of whose map `passes` has made `basis`.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
         passes: &Filterable<LvsmUniform>,
+        basis: &PreparedBasis,
         map: &FrameMap,
         view_size: UVec2,
         params: &LvsmParams,
         overlap: f32,
-    ) {
+    ) -> PreparedRelaxation {
         let multisampled = map.sample_count > 1;
         let (stride, grid) = match params.relax_over {
             RelaxOver::Map | RelaxOver::MapAsPrinted => {
@@ -128,18 +136,19 @@ impl LayerRelaxation {
         self.lloyd.prepare(stage, params.layers - 1, &how);
         let (layout, pipeline) = (&self.layout, &mut self.pipelines[gathering.index()]);
         let [distance] = passes.distance_constant();
-        pipeline.get_or_insert_with(|| match params.relax_over {
+        let pipeline = pipeline.get_or_insert_with(|| match params.relax_over {
             RelaxOver::Map | RelaxOver::MapAsPrinted => {
-                let as_printed = ("0", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)));
+                let as_printed = ("AS_PRINTED", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)));
                 let constants = [as_printed, distance];
-                let layouts = [passes.encode_layout(), layout];
+                let layouts = [basis.encode_layout(), layout];
                 compute_entry(stage, "second occluders", gathering.shader(), None, &constants, &layouts)
             }
             RelaxOver::View => {
-                let layouts = [&passes.inputs().layout, passes.depth_layout(), layout];
+                let layouts = [passes.inputs_layout(), basis.depth_layout(), layout];
                 compute_entry(stage, "bleeding", gathering.shader(), None, &[distance], &layouts)
             }
         });
+        PreparedRelaxation { gathering, pipeline: pipeline.clone() }
     }
 
     /// Whether the prepared frame's splits are found by the GPU, from its light map.
@@ -153,19 +162,19 @@ impl LayerRelaxation {
     }
 
     /// Records what moves the splits, after the light map and before what reads them.
-    pub(super) fn record(&self, recorder: &mut Recorder<'_>, passes: &Filterable<LvsmUniform>) {
-        let Some(gathering) = self.gathering else { return };
+    pub(super) fn record(&self, recorder: &mut Recorder<'_>, basis: &PreparedBasis, prepared: &PreparedRelaxation) {
+        let PreparedRelaxation { gathering, pipeline } = prepared;
         self.lloyd.record_clear(recorder);
         recorder.compute("splits", Span::First, |pass| {
-            pass.set_pipeline(self.pipelines[gathering.index()].as_ref().expect("made by prepare"));
+            pass.set_pipeline(pipeline);
             match gathering.source {
                 RelaxOver::Map | RelaxOver::MapAsPrinted => {
-                    pass.set_bind_group(0, passes.encode_group(), &[]);
+                    pass.set_bind_group(0, basis.encode_group(), &[]);
                     pass.set_bind_group(1, &self.bind_group, &[]);
                 }
                 RelaxOver::View => {
-                    passes.inputs().bind(pass);
-                    pass.set_bind_group(1, passes.depth_group(), &[]);
+                    basis.inputs().bind(pass);
+                    pass.set_bind_group(1, basis.depth_group(), &[]);
                     pass.set_bind_group(2, &self.bind_group, &[]);
                 }
             }

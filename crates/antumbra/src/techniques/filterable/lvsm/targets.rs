@@ -12,7 +12,7 @@ use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings};
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::primitives::packed_map::{PackedMap, Packing};
 use crate::shaders;
-use crate::techniques::filterable::Filterable;
+use crate::techniques::filterable::{Filterable, PreparedBasis};
 
 bindings! {
     struct LayerTarget = "layer targets", FRAGMENT, group 2 of [LVSM_TARGETS_OPAQUE, LVSM_TARGETS_CUTOUT] {
@@ -41,7 +41,11 @@ pub(super) struct LayerTargets {
     layout: wgpu::BindGroupLayout,
     /// By the number of targets, and whether depths are distances.
     programs: Vec<((usize, bool), CasterProgram)>,
-    /// None where layers are encoded from depth.
+}
+
+/// The draws of one frame.
+#[derive(Debug)]
+pub(super) struct PreparedLayers {
     draws: Vec<Draw>,
     /// The word of what has no caster.
     clear: wgpu::Color,
@@ -59,37 +63,23 @@ struct Draw {
 
 impl LayerTargets {
     pub(super) fn new(gpu: &Gpu) -> Self {
-        Self {
-            layout: LayerTarget::layout(gpu),
-            programs: Vec::new(),
-            draws: Vec::new(),
-            clear: wgpu::Color::TRANSPARENT,
-        }
+        Self { layout: LayerTarget::layout(gpu), programs: Vec::new() }
     }
 
-    /// No layers are drawn in the next frame.
-    pub(super) fn rest(&mut self) {
-        self.draws.clear();
-    }
-
-    /// Whether layers are drawn in the next frame.
-    pub(super) fn are_drawn(&self) -> bool {
-        !self.draws.is_empty()
-    }
-
-    /// Makes ready to draw every word of the map that `passes` has prepared.
+    /// Makes ready to draw every word of the map that `passes` has prepared as `basis`.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
         passes: &Filterable<LvsmUniform>,
+        basis: &PreparedBasis,
         casters: &CasterDepth,
         packing: Packing,
         splits: &wgpu::Buffer,
-    ) {
+    ) -> PreparedLayers {
         // Background lies behind every layer: both moments are 1.
-        self.clear = wgpu::Color { r: f64::from(packing.word_of_ones()), ..wgpu::Color::TRANSPARENT };
-        let word_count = passes.layer_views().len();
-        self.draws.clear();
+        let clear = wgpu::Color { r: f64::from(packing.word_of_ones()), ..wgpu::Color::TRANSPARENT };
+        let word_count = basis.layer_views().len();
+        let mut draws = Vec::new();
         let most = most_targets(stage);
         for first in (0..word_count).step_by(most) {
             let words = first..word_count.min(first + most);
@@ -98,8 +88,9 @@ impl LayerTargets {
                 stage.uniform("antumbra layer draw", &LayerDraw { first_word: first as u32, ..LayerDraw::default() });
             let (light_view, settings, lvsm) = passes.uniforms();
             let group = LayerTarget { light_view, settings, lvsm, splits, draw: &draw }.group(stage, &self.layout);
-            self.draws.push(Draw { group, program, words });
+            draws.push(Draw { group, program, words });
         }
+        PreparedLayers { draws, clear }
     }
 
     /// The index of the program with so many targets.
@@ -141,17 +132,19 @@ impl LayerTargets {
         views: &[wgpu::TextureView],
         casters: &CasterDepth,
         meshes: &[MeshCaster<'_>],
+        prepared: &PreparedLayers,
     ) {
+        let PreparedLayers { draws, clear } = prepared;
         let cleared = |value| wgpu::Operations { load: wgpu::LoadOp::Clear(value), store: wgpu::StoreOp::Store };
         let depth_ops =
             wgpu::Operations { load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH), store: wgpu::StoreOp::Store };
-        for (i, draw) in self.draws.iter().enumerate() {
+        for (i, draw) in draws.iter().enumerate() {
             let attached = |view| {
-                let ops = cleared(self.clear);
+                let ops = cleared(*clear);
                 Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
             };
             let targets: Vec<_> = views[draw.words.clone()].iter().map(attached).collect();
-            let span = Span::of(i, self.draws.len());
+            let span = Span::of(i, draws.len());
             recorder.render_pass("layers", span, &targets, depth, Some(depth_ops), |pass| {
                 pass.set_bind_group(2, &draw.group, &[]);
                 casters.draw_with(&self.programs[draw.program].1, pass, 0, meshes);

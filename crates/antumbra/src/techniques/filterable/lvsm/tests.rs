@@ -29,9 +29,9 @@ fn boards(gpu: &Gpu, height_m: f32) -> Case {
 fn frame(gpu: &Gpu, lvsm: &mut Lvsm, case: &Case, params: &LvsmParams) -> Vec<f32> {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     case.with_prepared(&casters, |frame| {
-        lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
+        let prepared = lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        lvsm.record(&mut Recorder::new(&mut encoder, None), frame);
+        lvsm.record(&mut Recorder::new(&mut encoder, None), frame, &prepared);
         gpu.queue.submit([encoder.finish()]);
     });
     let mut splits: Vec<f32> = read_storage(gpu, lvsm.relaxation.splits());
@@ -103,10 +103,10 @@ fn drawn(gpu: &Gpu, case: &Case, params: &LvsmParams) -> (Vec<&'static str>, Vec
         caster.opacity = Opacity::Translucent { coverage, transmitted: Vec3::ZERO, texture: None };
     }
     let labels = case.with_prepared(&casters, |frame| {
-        lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
+        let prepared = lvsm.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let mut recorder = Recorder::new(&mut encoder, None);
-        lvsm.record(&mut recorder, frame);
+        lvsm.record(&mut recorder, frame, &prepared);
         let labels = recorder.passes().iter().filter(|pass| pass.draws_casters).map(|pass| pass.label).collect();
         gpu.queue.submit([encoder.finish()]);
         labels

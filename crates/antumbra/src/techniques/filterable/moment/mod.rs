@@ -16,7 +16,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::filterable::{BasisShaders, Filterable, PreparedBasis};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -33,6 +33,7 @@ pub struct Moment {
 impl Technique for Moment {
     const NAME: &'static str = "moment";
     type Params = MomentParams;
+    type Prepared = PreparedBasis;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let shaders = BasisShaders {
@@ -43,7 +44,12 @@ impl Technique for Moment {
         Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &MomentParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &MomentParams,
+    ) -> Result<PreparedBasis, Error> {
         // Peters et al. 2017, section 2.3, for 16 bits; in floats the filters' sums round, and single precision solves.
         let (packing, moment_bias) = match params.storage {
             FourMomentStorage::Unorm16 => (Packing::Unorm16, 6e-5),
@@ -54,14 +60,13 @@ impl Technique for Moment {
             is_bounded: (params.problem == MomentProblem::Hausdorff).into(),
             ..MomentUniform::default()
         };
-        self.map.prepare_map(stage, frame, &params.settings())?;
-        self.map.prepare_basis(stage, 4, packing, packing.step(), &uniform, None);
-        Ok(())
+        let map = self.map.prepare_map(stage, frame, &params.settings())?;
+        Ok(self.map.prepare_basis(stage, &map, 4, packing, packing.step(), &uniform, None))
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.map.record_map(recorder, frame);
-        self.map.record_basis(recorder);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedBasis) {
+        self.map.record_map(recorder, frame, prepared);
+        prepared.record(recorder);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

@@ -20,7 +20,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::Packing;
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::filterable::{BasisShaders, Filterable};
+use crate::techniques::filterable::{BasisShaders, Filterable, PreparedBasis};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -37,6 +37,7 @@ pub struct Vsm {
 impl Technique for Vsm {
     const NAME: &'static str = "vsm";
     type Params = VsmParams;
+    type Prepared = PreparedBasis;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let shaders = BasisShaders {
@@ -47,17 +48,21 @@ impl Technique for Vsm {
         Ok(Self { map: Filterable::new(gpu, Self::NAME, shaders) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &VsmParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &VsmParams,
+    ) -> Result<PreparedBasis, Error> {
         let packing = Packing::from(params.storage);
         let uniform = VsmUniform { bleeding_reduction: params.bleeding_reduction, ..VsmUniform::default() };
-        self.map.prepare_map(stage, frame, &params.settings())?;
-        self.map.prepare_basis(stage, 2, packing, packing.step(), &uniform, None);
-        Ok(())
+        let map = self.map.prepare_map(stage, frame, &params.settings())?;
+        Ok(self.map.prepare_basis(stage, &map, 2, packing, packing.step(), &uniform, None))
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.map.record_map(recorder, frame);
-        self.map.record_basis(recorder);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedBasis) {
+        self.map.record_map(recorder, frame, prepared);
+        prepared.record(recorder);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

@@ -77,7 +77,7 @@ use antumbra_light::{Aabb, LightPoint};
 use glam::{Mat4, Vec2, Vec3};
 
 use crate::contract::{DrawnMap, Error, MaskChannels, MeshCaster, Opacity, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, texels};
 use crate::light_map::caster_depth::{CasterDepth, DrawnView, check_map_size};
 use crate::light_map::caster_triangles::maps::TriangleMaps;
@@ -157,15 +157,27 @@ pub struct MultiView {
     sample_views: SampleViews,
     /// What is kept of each pixel from batch to batch.
     bands: Bands,
-    batches: Vec<DrawnBatch>,
+    /// The light points of the frame's last batch, whose maps are there once it is drawn.
+    last_points: Range<u32>,
     /// Of all light points, with texels along a side of their maps.
     views: (Vec<LightView>, u32),
+}
+
+/// The batches of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedViews {
+    inputs: PreparedInputs,
+    /// Adds a batch to the mask.
+    accumulate: wgpu::ComputePipeline,
+    /// Maps are of triangles, not of depths.
+    by_triangles: bool,
+    batches: Vec<DrawnBatch>,
 }
 
 /// Views whose maps are drawn and added to the mask.
 #[derive(Debug)]
 struct DrawnBatch {
-    batch: Batch,
     /// Of all that are drawn, those of this batch: where each colour has views of its own these are others in each.
     views: Range<u32>,
     groups: Vec<BandGroup>,
@@ -198,6 +210,7 @@ impl Accumulation {
 impl Technique for MultiView {
     const NAME: &'static str = "multi_view";
     type Params = MultiViewParams;
+    type Prepared = PreparedViews;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let inputs = FrameInputs::new(gpu);
@@ -214,12 +227,17 @@ impl Technique for MultiView {
             unit_points: UnitPoints::default(),
             sample_views: SampleViews::new(),
             bands: Bands::default(),
-            batches: Vec::new(),
+            last_points: 0..0,
             views: (Vec::new(), 0),
         })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &MultiViewParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &MultiViewParams,
+    ) -> Result<PreparedViews, Error> {
         let technique = Self::NAME;
         let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
@@ -235,7 +253,7 @@ impl Technique for MultiView {
             readable_meshes(technique, frame, Some(WITHOUT_TRIANGLES))?;
         }
         let bands = self.prepare_bands(stage, frame)?;
-        self.inputs.prepare(stage, frame);
+        let inputs = self.inputs.prepare(stage, frame);
         let (points, views) = self.points_and_views(frame, meshes, params);
         let maps = self.batch_of_maps(params.view_size, points.len() as u32);
         let colors = colors_of(frame);
@@ -255,33 +273,40 @@ impl Technique for MultiView {
         let bind = |(i, batch): (usize, &Batch)| {
             let first = (i / of_color * views.len()) as u32 + batch.first;
             DrawnBatch {
-                batch: batch.clone(),
                 views: first..first + batch.count,
                 groups: self.bind(stage, batch, frame.receivers.size_px.y, &bands),
             }
         };
-        self.batches = self.sample_views.batches().iter().enumerate().map(bind).collect();
+        let batches = self.sample_views.batches().iter().enumerate().map(bind).collect();
+        let last_points = self.sample_views.batches().last().map(|batch| batch.first..batch.first + batch.count);
+        self.last_points = last_points.unwrap_or_default();
         self.views = (views, params.view_size);
-        Ok(())
+        Ok(PreparedViews {
+            inputs,
+            accumulate: self.accumulation().pipeline.clone(),
+            by_triangles: self.compare == MultiViewCompare::Triangles,
+            batches,
+        })
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedViews) {
         let PreparedCasters::Draws(meshes) = &frame.casters else { return };
-        let maps = self.triangle_maps.as_ref().filter(|_| self.compare == MultiViewCompare::Triangles);
+        let PreparedViews { inputs, accumulate, by_triangles, batches } = prepared;
+        let maps = self.triangle_maps.as_ref().filter(|_| *by_triangles);
         if let Some(maps) = maps {
             maps.triangles().record(recorder, "triangles");
         }
-        for DrawnBatch { views, groups, .. } in &self.batches {
+        for DrawnBatch { views, groups } in batches {
             match maps {
                 Some(maps) => maps.record(recorder, "depth maps", views.clone()),
                 None => self.layers.record(recorder, "depth maps", views.clone(), meshes),
             }
             recorder.compute("accumulate", Span::Only, |pass| {
-                pass.set_pipeline(&self.accumulation().pipeline);
-                self.inputs.bind(pass);
+                pass.set_pipeline(accumulate);
+                inputs.bind(pass);
                 for BandGroup { rows, group } in groups {
                     pass.set_bind_group(1, group, &[]);
-                    self.inputs.dispatch_rows(pass, *rows);
+                    inputs.dispatch_rows(pass, *rows);
                 }
             });
         }
@@ -289,7 +314,9 @@ impl Technique for MultiView {
 
     /// Those of the last batch: each is drawn over the one before.
     fn drawn_maps(&self) -> Vec<DrawnMap> {
-        let Some(DrawnBatch { batch, .. }) = self.batches.last() else { return Vec::new() };
+        if self.last_points.is_empty() {
+            return Vec::new();
+        }
         let slices = match &self.triangle_maps {
             Some(maps) => maps.depth_slices(),
             None => self.layers.depth_slices(),
@@ -299,7 +326,7 @@ impl Technique for MultiView {
             light_point: Some(point),
             ..views[point as usize].to_gpu(*view_size).drawn_map(depth, 1, CasterDepth::CLEAR_DEPTH)
         };
-        (batch.first..batch.first + batch.count).zip(slices).map(map).collect()
+        self.last_points.clone().zip(slices).map(map).collect()
     }
 
     fn memory_bytes(&self) -> u64 {
@@ -385,7 +412,7 @@ impl MultiView {
     /// A batch's groups: one a band, or one for all of the picture's rows where depths alone are compared.
     fn bind(&self, stage: &Stage<'_>, batch: &Batch, rows: u32, bands: &[Band]) -> Vec<BandGroup> {
         let layout = &self.accumulation().layout;
-        let views = self.sample_views.bindings(batch);
+        let views = batch.bindings();
         let MapSamplers { gather: gather_sampler, comparison: comparison_sampler } = &self.samplers;
         if bands.is_empty() {
             let maps = self.layers.depth_array();
@@ -395,7 +422,7 @@ impl MultiView {
         let snapped_texels = stage.snapped_texels();
         let mut groups = Vec::new();
         for Band { rows, uniform: band, pixels } in bands {
-            let views = self.sample_views.bindings(batch);
+            let views = batch.bindings();
             let group = if let Some(triangle_maps) = &self.triangle_maps {
                 let (maps, caster_triangles) = (triangle_maps.depth_array(), triangle_maps.triangles().buffer());
                 let (triangle_maps, life_tables) = (triangle_maps.id_array(), pixels);

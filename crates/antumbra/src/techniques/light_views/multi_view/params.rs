@@ -49,12 +49,8 @@ params! {
             more "triangles finds edges where they are, for 32 bytes a pixel and 48 and more a triangle; sharp finds them \
                   between the views, for 24 bytes a pixel; gather keeps nothing; hardware is the papers' form and \
                   detaches grazing contacts.";
-        /// Picks the light points.
-        seed: u32 = 1, in 0..=65535,
-            more "Another set of the same quality.";
-        /// Scale of the automatic bias.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+        shared seed;
+        shared bias_scale;
     }
     Fast { view_size: 512, samples: 16, }
     High { samples: 256, }

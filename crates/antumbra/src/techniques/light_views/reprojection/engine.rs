@@ -11,7 +11,7 @@ use super::resolve::{PreparedResolve, Resolve};
 use super::scatter::{PreparedScatter, Scatter, Targets};
 use super::settings::{ReprojectionFilter, Settings, Splat};
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{Gpu, Recorder, Stage, sized_buffer};
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
@@ -36,7 +36,8 @@ pub(crate) struct Engine {
     scatter: Scatter,
     resolve: Resolve,
     target_buffer: Option<wgpu::Buffer>,
-    prepared: Option<Prepared>,
+    /// Views of the frame's central maps; none where maps are drawn from the light's points alone.
+    central: Vec<LightViewGpu>,
     frame_number: u32,
     #[cfg(test)]
     matrices_on_cpu: Vec<Mat4>,
@@ -44,11 +45,12 @@ pub(crate) struct Engine {
     widths: Vec<(f32, f32)>,
 }
 
-/// What `record` needs.
+/// The passes of one frame.
 #[derive(Debug)]
-struct Prepared {
+#[doc(hidden)]
+pub struct PreparedEngine {
+    inputs: PreparedInputs,
     needs_central_map: bool,
-    central: Vec<LightViewGpu>,
     faces: u32,
     targets: Targets,
     scatter: PreparedScatter,
@@ -83,7 +85,7 @@ impl Engine {
             scatter: Scatter::new(gpu),
             resolve: Resolve::new(technique),
             target_buffer: None,
-            prepared: None,
+            central: Vec::new(),
             frame_number: 0,
             #[cfg(test)]
             matrices_on_cpu: Vec::new(),
@@ -114,7 +116,7 @@ impl Engine {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         settings: &Settings,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedEngine, Error> {
         let technique = self.technique;
         let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
@@ -126,7 +128,7 @@ impl Engine {
         };
         let largest = settings.central_size.max(settings.view_size);
         check_map_size(stage, technique, largest, "set a smaller `view_size` or `central_scale`")?;
-        self.inputs.prepare(stage, frame);
+        let inputs = self.inputs.prepare(stage, frame);
 
         let light = frame.light;
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
@@ -171,14 +173,14 @@ impl Engine {
         );
         let resolve = self.resolve.prepare(stage, settings.filter, &self.inputs, &self.sample_views, &targets);
         let needs_central_map = settings.source.needs_central_map();
-        let central = views.central.iter().map(|view| view.to_gpu(views.central_size)).collect();
-        self.prepared = Some(Prepared { needs_central_map, central, faces, targets, scatter, resolve });
+        let drawn = if needs_central_map { &views.central[..] } else { &[] };
+        self.central = drawn.iter().map(|view| view.to_gpu(views.central_size)).collect();
         #[cfg(test)]
         {
             self.widths = views.central.iter().map(|v| v.depth_per_texel(views.central_size, 1.0)).collect();
             self.matrices_on_cpu = matrices.target_from_central;
         }
-        Ok(())
+        Ok(PreparedEngine { inputs, needs_central_map, faces, targets, scatter, resolve })
     }
 
     /// The integer maps of as many of `point_count` light points as the budget holds, and how many that are.
@@ -204,9 +206,8 @@ impl Engine {
         Ok((Targets { buffer, view_size, row_texels, map_count: in_batch * faces }, in_batch))
     }
 
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedEngine) {
         let PreparedCasters::Draws(meshes) = &frame.casters else { return };
-        let prepared = self.prepared.as_ref().expect("prepare comes before record");
         if prepared.needs_central_map {
             self.layers.record(recorder, "central depth map", 0..self.layers.size().views, meshes);
         }
@@ -214,21 +215,21 @@ impl Engine {
             let targets = &prepared.targets;
             self.scatter.record(recorder, &self.layers, targets, &prepared.scatter, index, meshes);
             let map_count = batch.count * prepared.faces;
-            self.resolve.record(recorder, &self.inputs, targets, &prepared.resolve, index, map_count);
+            self.resolve.record(recorder, &prepared.inputs, targets, &prepared.resolve, index, map_count);
         }
     }
 
     /// The central maps, with their layers, where there are such: maps of the light's points are words of a buffer.
     pub(crate) fn drawn_maps(&self) -> Vec<DrawnMap> {
-        let Some(prepared) = self.prepared.as_ref().filter(|prepared| prepared.needs_central_map) else {
+        if self.central.is_empty() {
             return Vec::new();
-        };
+        }
         let layers = self.layers.size().layers as usize;
         let map = |(view, slices): (&LightViewGpu, &[wgpu::TextureView])| DrawnMap {
             layers_behind: slices[1..].to_vec(),
             ..view.drawn_map(&slices[0], 1, CasterDepth::CLEAR_DEPTH)
         };
-        prepared.central.iter().zip(self.layers.depth_slices().chunks_exact(layers)).map(map).collect()
+        self.central.iter().zip(self.layers.depth_slices().chunks_exact(layers)).map(map).collect()
     }
 
     /// Bytes of central maps, one batch of integer maps, what they are copied into, and the lists.

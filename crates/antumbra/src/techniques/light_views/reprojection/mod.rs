@@ -55,7 +55,7 @@ mod surfel_list;
 #[cfg(test)]
 mod tests;
 
-use engine::Engine;
+use engine::{Engine, PreparedEngine};
 pub use params::{ReprojectionBias, ReprojectionParams};
 pub use settings::{ReprojectionFilter, ReprojectionPath, ReprojectionProjection};
 use settings::{Settings, Source, Splat};
@@ -69,6 +69,7 @@ pub struct Reprojection {
 impl Technique for Reprojection {
     const NAME: &'static str = "reprojection";
     type Params = ReprojectionParams;
+    type Prepared = PreparedEngine;
 
     fn coverage(params: &ReprojectionParams) -> Coverage {
         params.projection.coverage()
@@ -83,7 +84,7 @@ impl Technique for Reprojection {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         params: &ReprojectionParams,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedEngine, Error> {
         let settings = Settings {
             view_size: params.view_size,
             central_size: params.view_size * params.central_scale,
@@ -109,8 +110,8 @@ impl Technique for Reprojection {
         self.engine.prepare(stage, frame, &settings)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.engine.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedEngine) {
+        self.engine.record(recorder, frame, prepared);
     }
 
     fn drawn_maps(&self) -> Vec<DrawnMap> {

@@ -1,6 +1,6 @@
 //! Compute pipelines over a central map.
 
-use crate::gpu::{Gpu, shader_module};
+use crate::gpu::{Gpu, overrides, shader_module};
 
 /// A compute pipeline of group 1, the central map, and group 2, the splat.
 pub(super) fn compute_program(
@@ -9,6 +9,8 @@ pub(super) fn compute_program(
     layouts: &[Option<&wgpu::BindGroupLayout>],
     constants: &[(&str, f64)],
 ) -> wgpu::ComputePipeline {
+    let constants = overrides::linked(&crate::shaders::text_of(wgsl), constants);
+    let constants: Vec<_> = constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("reprojection"),
         bind_group_layouts: layouts,
@@ -20,7 +22,7 @@ pub(super) fn compute_program(
         module: &shader_module(gpu, "reprojection", wgsl),
         entry_point: None,
         compilation_options: wgpu::PipelineCompilationOptions {
-            constants,
+            constants: &constants,
             ..wgpu::PipelineCompilationOptions::default()
         },
         cache: None,

@@ -3,7 +3,7 @@
 use super::gpu_types::DrawMaps;
 use super::scatter::Targets;
 use super::settings::ReprojectionFilter;
-use crate::frame::inputs::FrameInputs;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, DrawPipeline, Gpu, Recorder, Span, Stage, array_view, bindings, compute_pipeline, depth_state, samples,
     slice_views, texels,
@@ -60,9 +60,11 @@ struct Filterable {
 /// What `record` needs.
 #[derive(Debug)]
 pub(super) struct PreparedResolve {
-    /// One a batch.
-    accumulate: Vec<wgpu::BindGroup>,
-    draw: Option<wgpu::BindGroup>,
+    accumulate: wgpu::ComputePipeline,
+    /// Of `accumulate`, one a batch.
+    batches: Vec<wgpu::BindGroup>,
+    /// Draws integer maps into textures.
+    draw: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
 }
 
 impl Resolve {
@@ -88,7 +90,7 @@ impl Resolve {
         let filterable = self.filterable.as_ref();
         let MapSamplers { gather: gather_sampler, comparison: comparison_sampler } = &accumulate.samplers;
         let bind_accumulate = |batch: &Batch| {
-            let (layout, views) = (&accumulate.layout, sample_views.bindings(batch));
+            let (layout, views) = (&accumulate.layout, batch.bindings());
             match (filterable.map(|filterable| &filterable.array), &accumulate.draw) {
                 (None, _) => IntegerMapsBatch { views, maps: &targets.buffer }.group(stage, layout),
                 (Some(maps), None) => CopiedMapsBatch { views, maps, gather_sampler }.group(stage, layout),
@@ -97,13 +99,14 @@ impl Resolve {
                 }
             }
         };
-        let draw = accumulate.draw.as_ref().map(|(layout, _)| {
+        let draw = accumulate.draw.as_ref().map(|(layout, pipeline)| {
             let draw_maps =
                 DrawMaps { view_size: targets.view_size, row_texels: targets.row_texels, ..DrawMaps::default() };
             let uniform = stage.uniform("antumbra draw maps", &draw_maps);
-            DrawnMaps { draw_maps: &uniform, stored: &targets.buffer }.group(stage, layout)
+            (pipeline.clone(), DrawnMaps { draw_maps: &uniform, stored: &targets.buffer }.group(stage, layout))
         });
-        PreparedResolve { accumulate: sample_views.batches().iter().map(bind_accumulate).collect(), draw }
+        let batches = sample_views.batches().iter().map(bind_accumulate).collect();
+        PreparedResolve { accumulate: accumulate.pipeline.clone(), batches, draw }
     }
 
     fn make_filterable(&mut self, stage: &Stage<'_>, filter: ReprojectionFilter, targets: &Targets) {
@@ -141,25 +144,22 @@ impl Resolve {
     pub(super) fn record(
         &self,
         recorder: &mut Recorder<'_>,
-        inputs: &FrameInputs,
+        inputs: &PreparedInputs,
         targets: &Targets,
         prepared: &PreparedResolve,
         index: usize,
         map_count: u32,
     ) {
-        let (_, accumulate) = self.accumulate.as_ref().expect("prepare comes before record");
         if let Some(filterable) = &self.filterable {
-            match (&accumulate.draw, &prepared.draw) {
-                (Some((_, pipeline)), Some(bind_group)) => {
-                    record_draw(recorder, filterable, pipeline, bind_group, map_count);
-                }
-                _ => record_copy(recorder, filterable, targets, map_count),
+            match &prepared.draw {
+                Some((pipeline, bind_group)) => record_draw(recorder, filterable, pipeline, bind_group, map_count),
+                None => record_copy(recorder, filterable, targets, map_count),
             }
         }
         recorder.compute("accumulate", Span::Only, |pass| {
-            pass.set_pipeline(&accumulate.pipeline);
+            pass.set_pipeline(&prepared.accumulate);
             inputs.bind(pass);
-            pass.set_bind_group(1, &prepared.accumulate[index], &[]);
+            pass.set_bind_group(1, &prepared.batches[index], &[]);
             inputs.dispatch(pass);
         });
     }

@@ -1,6 +1,6 @@
 //! Fragments of the central views, into a batch of integer maps.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use antumbra_light::{Aabb, LightPoint};
 use glam::UVec2;
@@ -28,7 +28,7 @@ bindings! {
         group 2 of [REPROJECTION_SPLAT_POINTS, REPROJECTION_SPLAT_SURFELS, REPROJECTION_SPLAT_SCREEN]
     {
         0 batch: Uniform,
-        1 views: DynamicNumbers(size_of::<ViewGroup>()),
+        1 views: DynamicUniform(size_of::<ViewGroup>()),
         2 targets: ReadWrite,
     }
 
@@ -72,7 +72,7 @@ pub(super) struct Scatter {
     group_layout: wgpu::BindGroupLayout,
     rasterised_layout: wgpu::BindGroupLayout,
     central_layout: wgpu::BindGroupLayout,
-    program: Option<(Makings, Program)>,
+    program: Option<(PipelineKey, Arc<Program>)>,
     /// Of surfels by compute; made when such are first asked for.
     list: Option<SurfelList>,
     limits: Limits,
@@ -81,9 +81,9 @@ pub(super) struct Scatter {
     no_depth: Option<NoDepth>,
 }
 
-/// What the pipelines depend on.
+/// Key of the pipelines.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Makings {
+struct PipelineKey {
     scattering: Scattering,
     is_surfel: bool,
     synchronized: bool,
@@ -118,6 +118,7 @@ enum Program {
 /// What `record` needs.
 #[derive(Debug)]
 pub(super) struct PreparedScatter {
+    program: Arc<Program>,
     central: Option<wgpu::BindGroup>,
     list: Option<PreparedList>,
     /// Batch by batch, central view by central view.
@@ -163,18 +164,18 @@ impl Scatter {
         let buffer =
             sized_buffer(stage, &mut self.groups, "antumbra targets from central", bytes.len() as u64, usage).clone();
         stage.upload(&buffer, 0, bytes);
-        let makings = Makings::of(settings, views, is_affine);
-        let is_listed = makings.scattering == Scattering::Compute && makings.is_surfel;
+        let key = PipelineKey::of(settings, views, is_affine);
+        let is_listed = key.scattering == Scattering::Compute && key.is_surfel;
         if is_listed {
             self.list.get_or_insert_with(|| SurfelList::new(stage, &self.group_layout));
         } else {
             self.list = None;
         }
-        if self.program.as_ref().is_none_or(|(made, _)| *made != makings) {
-            self.program = Some((makings, self.make_program(stage, layers, makings)));
-        }
+        let made = self.program.take().filter(|(made, _)| *made == key);
+        let program = made.map_or_else(|| Arc::new(self.make_program(stage, layers, key)), |(_, program)| program);
+        self.program = Some((key, Arc::clone(&program)));
         let screen_size = UVec2::splat(layers.size().size.div_ceil(FRAGMENT_TEXELS));
-        self.no_depth = (makings.scattering == Scattering::Screen).then(|| match self.no_depth.take() {
+        self.no_depth = (key.scattering == Scattering::Screen).then(|| match self.no_depth.take() {
             Some(no_depth) if no_depth.size() == screen_size => no_depth,
             _ => NoDepth::new(stage, screen_size, 1),
         });
@@ -182,7 +183,7 @@ impl Scatter {
             let batch = splat_batch(settings, views, view, groups, layers, targets, points, receivers);
             let uniform = stage.uniform("antumbra splat", &batch);
             let (batch, targets) = (&uniform, &targets.buffer);
-            let bind_group = match makings.scattering {
+            let bind_group = match key.scattering {
                 Scattering::Raster { .. } => {
                     RasterisedSplat { batch, view_groups: &buffer, targets }.group(stage, &self.rasterised_layout)
                 }
@@ -197,18 +198,21 @@ impl Scatter {
         let list = self.list.as_mut().map(|list| list.prepare(stage, layers, self.limits));
         let central = (settings.source.needs_central_map() && !is_listed)
             .then(|| CentralMap { central_depth: layers.depth_array() }.group(stage, &self.central_layout));
-        PreparedScatter { central, list, batches }
+        PreparedScatter { program, central, list, batches }
     }
 
-    fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, makings: Makings) -> Program {
-        let constant = |key: &'static str, value: bool| (key, f64::from(u8::from(value)));
-        let of_all =
-            [constant("0", makings.synchronized), constant("1", makings.is_affine), constant("2", makings.tries_faces)];
-        let of_points = [of_all.as_slice(), &[constant("3", makings.has_reach)]].concat();
-        let of_quads = [of_points.as_slice(), &[constant("5", makings.brings_together)]].concat();
-        let of_rasterised = [of_points.as_slice(), &[constant("4", makings.is_surfel)]].concat();
-        match makings.scattering {
-            Scattering::Compute if makings.is_surfel => {
+    fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, key: PipelineKey) -> Program {
+        let constant = |name: &'static str, value: bool| (name, f64::from(u8::from(value)));
+        let of_all = [
+            constant("SYNCHRONIZED", key.synchronized),
+            constant("IS_AFFINE", key.is_affine),
+            constant("TRIES_FACES", key.tries_faces),
+        ];
+        let of_points = [of_all.as_slice(), &[constant("HAS_REACH", key.has_reach)]].concat();
+        let of_quads = [of_points.as_slice(), &[constant("BRINGS_TOGETHER", key.brings_together)]].concat();
+        let of_rasterised = [of_points.as_slice(), &[constant("IS_SURFEL", key.is_surfel)]].concat();
+        match key.scattering {
+            Scattering::Compute if key.is_surfel => {
                 let list = self.list.as_ref().expect("made before its program");
                 let layouts = [None, Some(list.listed_layout()), Some(&self.group_layout)];
                 Program::Surfels(compute_program(gpu, shaders::REPROJECTION_SPLAT_SURFELS, &layouts, &of_all))
@@ -284,7 +288,7 @@ impl Scatter {
         index: usize,
         meshes: &[MeshCaster<'_>],
     ) {
-        let (_, program) = self.program.as_ref().expect("prepare comes before record");
+        let program = &*prepared.program;
         let splats = &prepared.batches[index];
         let held = layers.size();
         let offsets = |groups: GroupRange| {
@@ -365,7 +369,7 @@ impl Scatter {
     }
 }
 
-impl Makings {
+impl PipelineKey {
     fn of(settings: &Settings, views: &Views, is_affine: bool) -> Self {
         let scattering = match settings.source {
             Source::LayersByCompute(_) => Scattering::Compute,

@@ -72,6 +72,8 @@ pub(super) struct SurfelList {
 #[derive(Debug)]
 pub(super) struct PreparedList {
     pieces: Pieces,
+    /// Of each piece, as arguments of a dispatch.
+    counts: wgpu::Buffer,
     collect: wgpu::BindGroup,
     /// Group 1 of what scatters.
     pub(super) listed: wgpu::BindGroup,
@@ -159,7 +161,7 @@ impl SurfelList {
             CollectSurfels { central_depth, central_gradient, piece, names, counts }.group(stage, &self.collect_layout);
         let listed =
             ListedSurfels { central_depth, central_gradient, piece, names, counts }.group(stage, &self.listed_layout);
-        PreparedList { pieces, collect, listed }
+        PreparedList { pieces, counts: counts.clone(), collect, listed }
     }
 
     /// Before a batch: empties the counts where they are the frame before's or the batch before's, and lists the
@@ -175,7 +177,7 @@ impl SurfelList {
         if !is_first_batch && pieces.are_kept {
             return;
         }
-        recorder.clear_buffer(self.counts.as_ref().expect("prepare comes before record"));
+        recorder.clear_buffer(&prepared.counts);
         if pieces.are_kept {
             recorder.compute(COLLECT, Span::Only, |pass| {
                 for piece in &pieces.all {
@@ -196,7 +198,6 @@ impl SurfelList {
         scatter: &wgpu::ComputePipeline,
         splats: &[(&wgpu::BindGroup, Vec<u32>)],
     ) {
-        let counts = self.counts.as_ref().expect("prepare comes before record");
         recorder.compute(label, Span::Last, |pass| {
             for piece in &prepared.pieces.all {
                 let (splat, offsets) = &splats[piece.view as usize];
@@ -207,7 +208,7 @@ impl SurfelList {
                 pass.set_bind_group(1, &prepared.listed, &[piece.offset()]);
                 for group in offsets {
                     pass.set_bind_group(2, *splat, &[*group]);
-                    pass.dispatch_workgroups_indirect(counts, u64::from(piece.gpu.first_count) * 4);
+                    pass.dispatch_workgroups_indirect(&prepared.counts, u64::from(piece.gpu.first_count) * 4);
                 }
             }
         });

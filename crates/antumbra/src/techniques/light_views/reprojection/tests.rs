@@ -127,9 +127,9 @@ fn side(settings: &Settings) -> u32 {
 fn run(gpu: &Gpu, case: &Case, engine: &mut Engine, settings: &Settings) -> (Vec<u32>, Vec<f32>) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     case.with_prepared(&casters, |frame| {
-        engine.prepare(&Stage::at_once(gpu), frame, settings).expect("a good frame");
+        let prepared = engine.prepare(&Stage::at_once(gpu), frame, settings).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        engine.record(&mut Recorder::new(&mut encoder, None), frame);
+        engine.record(&mut Recorder::new(&mut encoder, None), frame, &prepared);
         gpu.queue.submit([encoder.finish()]);
         let stored: Vec<u32> = read_storage(gpu, engine.parts().targets);
         let size = side(settings) as usize;
@@ -451,9 +451,9 @@ fn run_above(gpu: &Gpu, lowest_m: f32, settings: &Settings) -> (Vec<f32>, u32) {
         let mut frame = *frame;
         frame.receivers.bounds = Some(box_above(lowest_m));
         frame.receivers.hull = &hull;
-        engine.prepare(&Stage::at_once(gpu), &frame, settings).expect("a good frame");
+        let prepared = engine.prepare(&Stage::at_once(gpu), &frame, settings).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        engine.record(&mut Recorder::new(&mut encoder, None), &frame);
+        engine.record(&mut Recorder::new(&mut encoder, None), &frame, &prepared);
         gpu.queue.submit([encoder.finish()]);
         bytemuck::pod_collect_to_vec(&read_texture(gpu, frame.mask.texture(), 0, UVec2::splat(96)))
     });

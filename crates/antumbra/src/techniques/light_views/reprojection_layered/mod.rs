@@ -62,7 +62,7 @@ use glam::Vec2;
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::light_views::PointChoice;
-use crate::techniques::light_views::reprojection::engine::Engine;
+use crate::techniques::light_views::reprojection::engine::{Engine, PreparedEngine};
 use crate::techniques::light_views::reprojection::settings::{Settings, Source, Splat};
 use crate::techniques::{Coverage, Technique};
 
@@ -82,6 +82,7 @@ pub struct ReprojectionLayered {
 impl Technique for ReprojectionLayered {
     const NAME: &'static str = "reprojection_layered";
     type Params = ReprojectionLayeredParams;
+    type Prepared = PreparedEngine;
 
     fn coverage(params: &ReprojectionLayeredParams) -> Coverage {
         params.projection.coverage()
@@ -96,7 +97,7 @@ impl Technique for ReprojectionLayered {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         params: &ReprojectionLayeredParams,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedEngine, Error> {
         let settings = Settings {
             view_size: params.view_size,
             central_size: params.view_size * params.central_scale,
@@ -125,8 +126,8 @@ impl Technique for ReprojectionLayered {
         self.engine.prepare(stage, frame, &settings)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.engine.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedEngine) {
+        self.engine.record(recorder, frame, prepared);
     }
 
     fn drawn_maps(&self) -> Vec<DrawnMap> {

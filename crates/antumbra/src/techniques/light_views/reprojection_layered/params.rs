@@ -63,12 +63,8 @@ params! {
         /// Other light points every frame, the same points moved together.
         jitter: bool = false,
             more "The frames' mean converges; a single frame is no better.";
-        /// Picks the light points.
-        seed: u32 = 1, in 0..=65535,
-            more "Another set of the same quality.";
-        /// Scale of the automatic bias.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows, below 1 risks acne.";
+        shared seed;
+        shared bias_scale;
     }
     Fast { view_size: 512, samples: 16, }
     High { samples: 256, }

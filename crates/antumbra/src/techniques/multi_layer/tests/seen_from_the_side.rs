@@ -141,13 +141,12 @@ fn fragments_lie_between_the_view_s_planes() {
             receivers: test_receivers(size, &depth),
             mask: &mask,
         };
-        technique.prepare(&Stage::at_once(gpu), &frame, &params).expect("a good frame");
+        let prepared = technique.prepare(&Stage::at_once(gpu), &frame, &params).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        technique.record(&mut Recorder::new(&mut encoder, None), &frame);
+        technique.record(&mut Recorder::new(&mut encoder, None), &frame, &prepared);
         gpu.queue().submit([encoder.finish()]);
-        let fragments: Vec<[u32; 2]> = read_storage(gpu, technique.lists.fragments().expect("prepared"));
-        let lists: Vec<[u32; 2]> = read_storage(gpu, technique.lists.lists().expect("prepared"));
-        let prepared = technique.prepared.as_ref().expect("prepared");
+        let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.fragments);
+        let lists: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.lists);
         let base = prepared.levels[0].size.element_product() as usize;
         let depths: Vec<f32> = lists[..base]
             .iter()

@@ -23,7 +23,7 @@ use glam::Vec3;
 use crate::contract::{DrawnLists, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
-    CULL_FACING, CUT_BY_PLANE, Drawn, LocalPoint, Options, Region, STOP_WHEN_OCCLUDED, ViewSamples,
+    CULL_FACING, CUT_BY_PLANE, Drawn, LocalPoint, Options, PreparedSamples, Region, STOP_WHEN_OCCLUDED, ViewSamples,
 };
 use crate::techniques::{Coverage, Technique};
 
@@ -40,6 +40,7 @@ pub struct AliasFree {
 impl Technique for AliasFree {
     const NAME: &'static str = "alias_free";
     type Params = AliasFreeParams;
+    type Prepared = PreparedSamples;
 
     fn coverage(_params: &AliasFreeParams) -> Coverage {
         Coverage::Everything
@@ -49,7 +50,12 @@ impl Technique for AliasFree {
         Ok(Self { passes: ViewSamples::new(gpu, Self::NAME) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &AliasFreeParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &AliasFreeParams,
+    ) -> Result<PreparedSamples, Error> {
         let options = Options {
             points: vec![LocalPoint { at: Vec3::ZERO, weight: 1.0, index: 0 }],
             map_size: params.map_size,
@@ -74,8 +80,8 @@ impl Technique for AliasFree {
         self.passes.prepare(stage, frame, &options)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, _frame: &PreparedFrame<'_>) {
-        self.passes.record(recorder);
+    fn record(&self, recorder: &mut Recorder<'_>, _frame: &PreparedFrame<'_>, prepared: &PreparedSamples) {
+        self.passes.record(recorder, prepared);
     }
 
     fn drawn_lists(&self) -> Vec<DrawnLists> {

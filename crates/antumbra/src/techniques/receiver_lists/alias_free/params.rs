@@ -24,10 +24,7 @@ param_choice! {
 params! {
     /// Parameters of [`AliasFree`](super::AliasFree).
     pub struct AliasFreeParams {
-        /// Texels along a side of a light map with as many texels as there are lists of receivers; rounded up to a power of
-        /// two. The lists take space by distance from the light too.
-        map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
-            more "Shorter lists, which changes the time and never the shadow.";
+        shared map_size of lists;
         /// How triangles find the receivers that they may hide the light from.
         traversal: Traversal = Traversal::Chosen,
             more "raster is the paper's way: up to four times as fast where receivers are spread over one window, and without \
@@ -44,9 +41,7 @@ params! {
         /// Drop what is drawn over empty lists by a depth test before the fragment stage, on devices that have one.
         stencil: bool = true,
             more "Spares fragments that would end at once, for a pass over each window; changes nothing else.";
-        /// Scale of the distance off their surface at which segments start where casters are not closed.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows by thousandths of a pixel's width, below 1 risks acne on open meshes.";
+        shared bias_scale of rays;
     }
     => Paper {
         traversal: Traversal::Raster, ours "Where many receivers share a texel, groups of 64 walk the triangles before them.";

@@ -33,10 +33,11 @@ use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec3;
 
 use crate::contract::{DrawnLists, Error, PreparedFrame};
-use crate::frame::accumulation::Accumulation;
-use crate::gpu::{Gpu, Recorder, Stage};
+use crate::frame::accumulation::{Accumulation, PreparedAccumulation};
+use crate::gpu::{Cached, Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
-    CULL_FACING, CUT_BY_PLANE, Drawn, Options, PENUMBRA_ONLY, Region, STOP_WHEN_OCCLUDED, ViewSamples, local_points,
+    CULL_FACING, CUT_BY_PLANE, Drawn, Options, PENUMBRA_ONLY, PreparedSamples, Region, STOP_WHEN_OCCLUDED, ViewSamples,
+    local_points,
 };
 use crate::techniques::{Coverage, Technique};
 
@@ -60,22 +61,23 @@ pub struct SampleBased {
     accumulation: Option<Accumulation>,
 }
 
+/// The passes of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedSampleBased {
+    samples: PreparedSamples,
+    /// Where frames are accumulated.
+    accumulation: Option<PreparedAccumulation>,
+}
+
 /// The points of the unit cube that the light's points are made from, and what they were made for.
 #[derive(Debug, Default)]
-struct UnitPoints {
-    made_for: Option<(SampleSet, u32, u32, u32)>,
-    points: Vec<Vec3>,
-}
+struct UnitPoints(Cached<(SampleSet, u32, u32, u32), Vec<Vec3>>);
 
 impl UnitPoints {
     /// The points of a set's run; see [`SampleSet::run`]. Relaxed ones take a tenth of a second to make.
     fn of(&mut self, set: SampleSet, run: u32, samples: u32, seed: u32) -> &[Vec3] {
-        let wanted = Some((set, run, samples, seed));
-        if self.made_for != wanted {
-            self.points = set.run(run, samples, seed);
-            self.made_for = wanted;
-        }
-        &self.points
+        self.0.get_or_make((set, run, samples, seed), || set.run(run, samples, seed))
     }
 }
 
@@ -86,6 +88,7 @@ const TURN_OF_FRAME: f64 = 0.618_033_988_749_894_8;
 impl Technique for SampleBased {
     const NAME: &'static str = "sample_based";
     type Params = SampleBasedParams;
+    type Prepared = PreparedSampleBased;
 
     fn coverage(_params: &SampleBasedParams) -> Coverage {
         Coverage::Everything
@@ -107,7 +110,7 @@ impl Technique for SampleBased {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         params: &SampleBasedParams,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedSampleBased, Error> {
         let technique = Self::NAME;
         frame.light.validate().map_err(|source| Error::Light { technique, source })?;
         let mut run = 0;
@@ -155,17 +158,15 @@ impl Technique for SampleBased {
             keep_bits: params.keep_bits,
             counts: params.count_tests,
         };
-        self.passes.prepare(stage, frame, &options)?;
-        match &mut self.accumulation {
-            Some(accumulation) => accumulation.prepare(stage, technique, frame),
-            None => Ok(()),
-        }
+        let samples = self.passes.prepare(stage, frame, &options)?;
+        let accumulation = self.accumulation.as_mut().map(|accumulation| accumulation.prepare(stage, technique, frame));
+        Ok(PreparedSampleBased { samples, accumulation: accumulation.transpose()? })
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, _frame: &PreparedFrame<'_>) {
-        self.passes.record(recorder);
-        if let Some(accumulation) = &self.accumulation {
-            accumulation.record(recorder, self.passes.inputs());
+    fn record(&self, recorder: &mut Recorder<'_>, _frame: &PreparedFrame<'_>, prepared: &PreparedSampleBased) {
+        self.passes.record(recorder, &prepared.samples);
+        if let (Some(accumulation), Some(of_frame)) = (&self.accumulation, &prepared.accumulation) {
+            accumulation.record(recorder, prepared.samples.inputs(), of_frame);
         }
     }
 

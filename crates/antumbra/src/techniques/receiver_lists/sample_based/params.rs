@@ -32,19 +32,14 @@ params! {
         /// How the light points are spread.
         sample_set: SampleSet = SampleSet::Relaxed,
             more "relaxed and stratified err least; r2 and sobol a tenth more, poisson more slowly.";
-        /// Picks the light points.
-        seed: u32 = 1, in 0..=65535,
-            more "Another set of the same quality.";
+        shared seed;
         /// How the light points behind a plane are found.
         evaluation: SampleEvaluation = SampleEvaluation::Exact,
             more "exact gives the ray tracer's bits; lookup is the paper's, and off by the table's cells.";
         /// Cells along each axis of the lookup table.
         lookup_size: u32 = 128, in 16..=256, unit "cells", scale Log,
             more "Finer planes; memory grows with the cube, 32 MiB at 128 for each 128 light points.";
-        /// Texels along a side of a light map with as many texels as there are lists of receivers; rounded up to a power of
-        /// two. The lists take space by distance from the light too.
-        map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
-            more "Shorter lists, which changes the time and never the shadow.";
+        shared map_size of lists;
         /// How triangles find the receivers that they may hide the light from.
         traversal: Traversal = Traversal::Groups,
             more "raster is the paper's way; the shadow is the same, bit for bit.";
@@ -81,9 +76,7 @@ params! {
         /// Count what is tested, for the host to read.
         count_tests: bool = false,
             more "Costs a little time.";
-        /// Scale of the distance off their surface at which segments start where casters are not closed.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows by thousandths of a pixel's width, below 1 risks acne on open meshes.";
+        shared bias_scale of rays;
     }
     Fast { samples: 32, }
     High { samples: 512, }

@@ -14,7 +14,7 @@ use crate::light_map::light_view::Followed;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::single_map::{MapResolve, ResolvePass};
+use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -31,20 +31,26 @@ pub struct Hard {
 impl Technique for Hard {
     const NAME: &'static str = "hard";
     type Params = HardParams;
+    type Prepared = PreparedMapResolve;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::HARD_RESOLVE, &[], MapSearch::Nothing) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &HardParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &HardParams,
+    ) -> Result<PreparedMapResolve, Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
         let map = OwnMapSettings { followed: Followed::Middle, ..OwnMapSettings::narrow(params.map_size) };
         let pass = ResolvePass::of(map);
         self.resolve.prepare(stage, frame, &pass, &uniform, &[] as &[f32])
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.resolve.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.resolve.record(recorder, frame, prepared);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

@@ -28,7 +28,7 @@ use crate::light_map::light_view::Followed;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::single_map::{MapResolve, ResolvePass};
+use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -47,12 +47,18 @@ pub struct Pcf {
 impl Technique for Pcf {
     const NAME: &'static str = "pcf";
     type Params = PcfParams;
+    type Prepared = PreparedMapResolve;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::PCF_RESOLVE, &[], MapSearch::Nothing) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &PcfParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &PcfParams,
+    ) -> Result<PreparedMapResolve, Error> {
         let taps = match params.kernel {
             PcfKernel::Box => Vec::new(),
             PcfKernel::Poisson => poisson_disk(params.samples, params.seed),
@@ -70,8 +76,8 @@ impl Technique for Pcf {
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.resolve.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.resolve.record(recorder, frame, prepared);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

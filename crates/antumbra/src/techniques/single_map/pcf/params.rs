@@ -15,9 +15,7 @@ param_choice! {
 params! {
     /// Parameters of [`Pcf`](super::Pcf).
     pub struct PcfParams {
-        /// Texels along a side of the light map.
-        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
-            more "Finer edges and a narrower blur; memory and fill grow with the square.";
+        shared map_size, more "Finer edges and a narrower blur; memory and fill grow with the square.";
         /// Which taps the kernel has.
         kernel: PcfKernel = PcfKernel::Box,
             more "box is exact and costs its area; poisson and vogel cost their samples, whatever the width.";
@@ -33,12 +31,8 @@ params! {
         /// Narrow the kernel where the blocker is near the receiver.
         attach_contacts: bool = true,
             more "false blurs contacts as wide as every other edge, as printed.";
-        /// Picks the poisson points.
-        seed: u32 = 1, in 0..=65535,
-            more "Another set of the same quality.";
-        /// Scale of the automatic bias.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+        shared seed;
+        shared bias_scale;
     }
     Fast { map_size: 512, kernel_size: 2.0, }
     High { map_size: 2048, kernel_size: 6.0, }

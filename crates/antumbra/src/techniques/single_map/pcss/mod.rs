@@ -77,7 +77,7 @@ use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{Taps, TapsProgram};
-use crate::techniques::single_map::{MapResolve, ResolvePass};
+use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -94,6 +94,7 @@ pub struct Pcss {
 impl Technique for Pcss {
     const NAME: &'static str = "pcss";
     type Params = PcssParams;
+    type Prepared = PreparedMapResolve;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let layers = PcssParams::default().layers;
@@ -102,7 +103,12 @@ impl Technique for Pcss {
         Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::PCSS_RESOLVE, &constants, MapSearch::Layers) })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &PcssParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &PcssParams,
+    ) -> Result<PreparedMapResolve, Error> {
         let run = stage.noise_frame();
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run };
         // Lists are walked to their end.
@@ -130,8 +136,8 @@ impl Technique for Pcss {
         self.resolve.prepare(stage, frame, &pass, &uniform, &places)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.resolve.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.resolve.record(recorder, frame, prepared);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {
@@ -156,14 +162,14 @@ struct PcssProgram {
 }
 
 impl PcssProgram {
-    /// By their ids.
+    /// By their names.
     fn constants(self) -> [(&'static str, f64); 5] {
         let [kind, layers, emission, progressive] = self.taps.constants();
-        [kind, layers, ("2", f64::from(u8::from(self.means_of_ranges))), emission, progressive]
+        [kind, layers, ("MEANS_OF_RANGES", f64::from(u8::from(self.means_of_ranges))), emission, progressive]
     }
 }
 
 /// The constants of passes that take the search alone, in one layer.
 pub(crate) fn search_constants(light: &Light) -> [(&'static str, f64); 1] {
-    [("0", f64::from(kind_of(&light.shape)))]
+    [("LIGHT_KIND", f64::from(kind_of(&light.shape)))]
 }

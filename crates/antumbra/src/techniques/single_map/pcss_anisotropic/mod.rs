@@ -24,7 +24,7 @@ use crate::techniques::Technique;
 use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
 use crate::techniques::single_map::pcss::search_constants;
 use crate::techniques::single_map::taps::Taps;
-use crate::techniques::single_map::{MapResolve, ResolvePass};
+use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 mod params;
 
@@ -39,10 +39,11 @@ pub struct PcssAnisotropic {
 impl Technique for PcssAnisotropic {
     const NAME: &'static str = "pcss_anisotropic";
     type Params = PcssAnisotropicParams;
+    type Prepared = PreparedMapResolve;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let wgsl = shaders::PCSS_ANISOTROPIC_RESOLVE;
-        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, wgsl, &[("0", 0.0)], MapSearch::Layers) })
+        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, wgsl, &[("LIGHT_KIND", 0.0)], MapSearch::Layers) })
     }
 
     fn prepare(
@@ -50,7 +51,7 @@ impl Technique for PcssAnisotropic {
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         params: &PcssAnisotropicParams,
-    ) -> Result<(), Error> {
+    ) -> Result<PreparedMapResolve, Error> {
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
         let taps = [taps.of_search(params.search_samples), taps.of_square(params.samples)].concat();
         let light = LightSpread::of(frame.light);
@@ -75,8 +76,8 @@ impl Technique for PcssAnisotropic {
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.resolve.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.resolve.record(recorder, frame, prepared);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {

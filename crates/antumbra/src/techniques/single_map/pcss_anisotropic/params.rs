@@ -17,9 +17,7 @@ param_choice! {
 params! {
     /// Parameters of [`PcssAnisotropic`](super::PcssAnisotropic).
     pub struct PcssAnisotropicParams {
-        /// Texels along a side of the light map.
-        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
-            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
         /// Taps of the filter.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae and distances; time grows in proportion.";
@@ -35,15 +33,9 @@ params! {
         /// Shift the taps by a random offset at each pixel.
         rotate: bool = true,
             more "true shows noise where false shows bands.";
-        /// Picks the taps.
-        seed: u32 = 1, in 0..=65535,
-            more "Another set of the same quality.";
-        /// Look up every other pixel in both directions, and interpolate.
-        sub: bool = false,
-            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
-        /// Scale of the automatic bias.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+        shared seed;
+        shared sub;
+        shared bias_scale;
     }
     Fast { map_size: 512, samples: 16, search_samples: 16, }
     High { map_size: 2048, samples: 128, search_samples: 128, }

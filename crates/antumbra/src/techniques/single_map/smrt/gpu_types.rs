@@ -19,8 +19,12 @@ gpu_structs! {
         light_extent: Vec2,
         /// Bound on their offsets along the axis.
         light_extent_axis: f32,
-        padding: u32,
+        /// Cells of equal numbers of the rays' ends along each side of a rectangle.
+        cells: f32,
         /// How thick a surface counts as, and one of the last layer; widths of a texel.
         thickness_texels: Vec2,
+        /// Half the light's narrow side, metres (a sun's tangent).
+        narrow_half_extent: f32,
+        padding: u32,
     }
 }

@@ -22,8 +22,15 @@
 //! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance between the depths of the
 //!    blockers found there, and is blocked where a surface lies in the bin. Gaps between occluders cost nothing; of more
 //!    bins than `steps` neighbours are joined.
-//! 3. **Early end.** Where the first 16 rays of all 64 pixels are free, or all blocked, so are the others; likewise a pixel's
-//!    first 32.
+//! 3. **Early end.** Where the first quarter of the rays of all 64 pixels are free, or all blocked, so are the others; without
+//!    `smooth` likewise those of a pixel whose first half are.
+//! 4. **Means over pixels** (`smooth`; [`frame/smoothing`](crate::frame)). In penumbrae wider than eight pixels the first quarter of
+//!    the rays is all: what noise they leave is taken out by means over neighbours on the same surface, no wider than a tenth of the
+//!    penumbra, whose width follows from the light's shape and the nearest blocker that the rays found. In narrower ones all
+//!    rays are followed, and means reach less far.
+//!
+//! A rectangle's rays end in the same cell of the light for all of a tile's pixels at a time, at a place of each pixel's own within
+//! it: neighbours read nearby texels, which costs a graphics card a seventh less than places all over the light.
 //!
 //! # What blocks
 //! A texel's surface blocks a ray where it is in front of the receiver's biased plane at the texel's centre and nearer to the
@@ -40,22 +47,24 @@
 //! `flight-helmet.glb` .0192 and .0211, roughness .0024 and .0036, .0045 and .0071; of fifteen scenes one was rougher.)
 //!
 //! # Limits
-//! Few rays show as noise, which [`Denoise`](crate::Denoise) takes out. No penumbra is narrower than a texel.
+//! What noise means over pixels leave shows in narrow penumbrae, and where a blocker near to the receiver keeps them narrow;
+//! [`Denoise`](crate::Denoise) takes it out. No penumbra is narrower than a texel.
 //! Behind the last layer light is lost behind thin surfaces, and through many small open surfaces one behind another, as
 //! leaves are, it leaks. A host's depth map has one layer: `pcss` is better there. Loops are bounded by the
 //! counts of rays, bins and layers.
 
-use antumbra_light::SampleSet;
+use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec2;
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
+use crate::frame::smoothing::{PreparedSmoothing, Smoothing};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{Taps, TapsProgram};
-use crate::techniques::single_map::{MapResolve, ResolvePass};
+use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -69,27 +78,48 @@ const TILE_PIXELS: u32 = 64;
 /// Taps over the light and all scales that leave no gap which matters, however many a pixel takes.
 const MOST_SEARCH_TAPS: u32 = 4096;
 
+/// The passes of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedSmrt {
+    resolve: PreparedMapResolve,
+    smoothing: PreparedSmoothing,
+}
+
 /// Shadow map ray tracing.
 #[derive(Debug)]
 pub struct Smrt {
     resolve: MapResolve<SmrtUniform>,
+    smoothing: Smoothing,
 }
 
 impl Technique for Smrt {
     const NAME: &'static str = "smrt";
     type Params = SmrtParams;
+    type Prepared = PreparedSmrt;
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
-        let constants = TapsProgram::usual(SmrtParams::default().layers).constants();
-        Ok(Self { resolve: MapResolve::new(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers) })
+        let defaults = SmrtParams::default();
+        let constants = constants(TapsProgram::usual(defaults.layers), defaults.smooth);
+        let layouts = vec![Smoothing::written_layout(gpu)];
+        let resolve =
+            MapResolve::with_groups(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers, layouts);
+        Ok(Self { smoothing: Smoothing::new(gpu, resolve.inputs()), resolve })
     }
 
-    fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, params: &SmrtParams) -> Result<(), Error> {
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &SmrtParams,
+    ) -> Result<PreparedSmrt, Error> {
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
         let spread = LightSpread::of(frame.light);
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let layers = if is_own { params.layers } else { 1 };
         let program = TapsProgram::of(&taps, layers);
+        // Of a list of points penumbrae have steps, which are no noise.
+        let is_smooth = params.smooth && !matches!(frame.light.shape, LightShape::Points { .. });
         // Of a tile's pixels together, up to what is enough for any.
         let tile_search_count = (TILE_PIXELS * params.search_samples).min(MOST_SEARCH_TAPS.max(params.search_samples));
         let uniform = SmrtUniform {
@@ -101,18 +131,22 @@ impl Technique for Smrt {
             bias_scale: params.bias_scale,
             light_extent: spread.extent,
             light_extent_axis: spread.extent_axis,
-            padding: 0,
+            cells: cells_of(params) as f32,
             thickness_texels: Vec2::new(params.thickness, params.last_thickness),
+            narrow_half_extent: narrow_half_extent(frame.light),
+            padding: 0,
         };
         let search_taps = Taps { set: SampleSet::Sobol, ..taps };
         let taps = [search_taps.of_search(tile_search_count), taps.of_filter(params.samples)].concat();
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
-        let pass = ResolvePass { map, constants: &program.constants(), is_sparse: false };
-        self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
+        let pass = ResolvePass { map, constants: &constants(program, is_smooth), is_sparse: false };
+        let smoothing = self.smoothing.prepare(stage, frame.receivers.size_px, is_smooth);
+        Ok(PreparedSmrt { resolve: self.resolve.prepare(stage, frame, &pass, &uniform, &taps)?, smoothing })
     }
 
-    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>) {
-        self.resolve.record(recorder, frame);
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedSmrt) {
+        self.resolve.record_with(recorder, frame, &prepared.resolve, &[&prepared.smoothing.written]);
+        prepared.smoothing.record(recorder, prepared.resolve.inputs());
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {
@@ -121,5 +155,28 @@ impl Technique for Smrt {
 
     fn memory_bytes(&self) -> u64 {
         self.resolve.memory_bytes()
+    }
+}
+
+/// Of the resolve's shader, by their names.
+fn constants(taps: TapsProgram, is_smooth: bool) -> [(&'static str, f64); 5] {
+    let [kind, layers, emission, progressive] = taps.constants();
+    [kind, layers, emission, progressive, ("IS_SMOOTHED", f64::from(u8::from(is_smooth)))]
+}
+
+/// Along each side of the unit square, cells with equal numbers of the rays' ends, whatever part of the rays is followed: any 16
+/// points of Sobol's sequence from a multiple of 16 on have one in each of 4 × 4.
+fn cells_of(params: &SmrtParams) -> u32 {
+    if params.sample_set == SampleSet::Sobol && params.samples.is_multiple_of(64) { 4 } else { 1 }
+}
+
+/// Half the narrow side of the light, metres; of a sun the tangent of its half-angle.
+fn narrow_half_extent(light: &Light) -> f32 {
+    match &light.shape {
+        LightShape::Rectangle { size_m } => 0.5 * size_m.min_element(),
+        LightShape::Ellipsoid { radii_m } => radii_m.min_element(),
+        LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } => *radius_m,
+        LightShape::Sun { .. } => light.bounding_radius(),
+        LightShape::Points { .. } => 0.0,
     }
 }

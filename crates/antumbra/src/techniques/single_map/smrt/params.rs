@@ -5,12 +5,13 @@ use crate::contract::params;
 params! {
     /// Parameters of [`Smrt`](super::Smrt).
     pub struct SmrtParams {
-        /// Texels along a side of the light map.
-        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
-            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// Rays to points of the light.
+        shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        /// Rays to points of the light; with `smooth` a quarter of them where penumbrae are wide, but 16.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
+        /// Take means over neighbouring pixels on the same surface, no wider than a tenth of the penumbra.
+        smooth: bool = true,
+            more "true leaves less noise of fewer rays; false gives each pixel its own rays alone.";
         /// Reads of the map along a ray at the most: fewer where blockers lie at few depths.
         steps: u32 = 8, in 1..=32, scale Log,
             more "Fewer thin occluders missed by rays; time grows in proportion where blockers differ in depth.";
@@ -32,12 +33,8 @@ params! {
         /// Shift a rectangle's points by a random offset at each pixel; turn those of other shapes by a random angle.
         rotate: bool = true,
             more "true shows noise where false shows bands.";
-        /// Picks the points.
-        seed: u32 = 1, in 0..=65535,
-            more "Another set of the same quality.";
-        /// Scale of the automatic bias.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+        shared seed;
+        shared bias_scale;
     }
     Fast { map_size: 640, samples: 16, layers: 2, steps: 4, }
     High { map_size: 2048, samples: 128, search_samples: 16, layers: 4, steps: 16, }

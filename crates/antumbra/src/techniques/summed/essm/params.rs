@@ -79,9 +79,7 @@ param_choice! {
 params! {
     /// Parameters of [`Essm`](super::Essm).
     pub struct EssmParams {
-        /// Texels along a side of the light map.
-        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
-            more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+        shared map_size, more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
         /// The light map's window, unless the host renders it.
         window: EssmWindow = EssmWindow::Seen,
             more "seen spends texels where the camera looks, be that near or far; square keeps them still when it moves.";
@@ -130,12 +128,8 @@ params! {
         /// How often the ends of an ellipse's rows are refined: the paper's Level0, Level1, Level2.
         level: u32 = 0, in 0..=3,
             more "A smoother outline; lookups at each row's ends double.";
-        /// Look up every other pixel in both directions, and interpolate.
-        sub: bool = false,
-            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
-        /// Scale of the automatic bias.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+        shared sub;
+        shared bias_scale;
     }
     Fast { map_size: 512, subdivisions: 3, search_scales: 2, }
     High { map_size: 2048, subdivisions: 7, search_scales: 5, }

@@ -4,9 +4,7 @@ use crate::techniques::summed::TableSums;
 params! {
     /// Parameters of [`Savsm`](super::Savsm).
     pub struct SavsmParams {
-        /// Texels along a side of the light map.
-        map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
-            more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+        shared map_size, more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
         /// Taps of the blocker search.
         search_samples: u32 = 64, in 1..=4096, scale Log,
             more "Fewer thin occluders missed; time grows in proportion.";
@@ -22,12 +20,8 @@ params! {
         /// Visibility up to this is taken for none, and the rest is stretched.
         bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
             more "Less light bleeding, and thinner penumbrae.";
-        /// Look up every other pixel in both directions, and interpolate.
-        sub: bool = false,
-            more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
-        /// Scale of the automatic bias of what is read from the map.
-        bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+        shared sub;
+        shared bias_scale;
     }
     Fast { map_size: 512, search_samples: 16, }
     High { map_size: 2048, search_samples: 128, }

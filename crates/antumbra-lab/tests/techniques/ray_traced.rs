@@ -1,0 +1,114 @@
+//! `ray_traced` against the ray tracer by the same light points: on every built-in scene, and under lights of every kind.
+
+use antumbra::TechniqueKind;
+use antumbra_lab::device::LabDevice;
+use antumbra_light::{EmissionTexture, Light, LightShape, SampleSet};
+use antumbra_reference::VisibilityOptions;
+use antumbra_scene::builtin::NAMES;
+use glam::{UVec2, Vec2, Vec3};
+
+use crate::common::{Judged, lab};
+use crate::sample_based::Same;
+
+/// What is asked of it: as far from the ray tracer as this by 256 points.
+const BOUND: f64 = 0.003;
+
+/// The same points at every pixel of both.
+const OPTIONS: VisibilityOptions =
+    VisibilityOptions { samples: 256, set: SampleSet::Sobol, seed: 1, same_set_for_all_pixels: true };
+const SETTINGS: [(&str, &str); 2] = [("samples", "256"), ("rotate", "false")];
+
+/// Without a thousandth of the pixels, at most: where casters cut one another (`ten-knots`), rounding of a receiver's position decides on
+/// which side of a closed one it lies.
+fn rmse(lab: &LabDevice, spec: &str, change: impl FnOnce(&mut Light)) -> f64 {
+    let same = Same::new(lab, spec, change);
+    let errors = same.errors_to_either(&OPTIONS, &same.mask(lab, TechniqueKind::RayTraced, &SETTINGS));
+    let all = root_mean_square(&errors);
+    let most = root_mean_square(&errors[..errors.len() - errors.len() / 1000]);
+    println!("{spec}: rmse {all:.5} over all, {most:.5} over 999 of 1000");
+    most
+}
+
+fn root_mean_square(errors: &[f64]) -> f64 {
+    (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
+/// Bits of `sample_based` and rays are two ways to the same answer: whatever a receiver's position is worth, they agree on it.
+#[test]
+fn rays_find_what_bits_find() {
+    let Some(lab) = lab() else { return };
+    let bits = [("samples", "256"), ("sample_set", "sobol"), ("seed", "1")];
+    for spec in ["builtin:ten-knots", "builtin:ring-in-grass", "builtin:hall", "builtin:staircase"] {
+        let same = Same::new(lab, spec, |_| {});
+        let by_rays = same.mask(lab, TechniqueKind::RayTraced, &SETTINGS);
+        let by_bits = same.mask(lab, TechniqueKind::SampleBased, &bits);
+        let squares: f64 = by_rays.iter().zip(&by_bits).map(|(a, b)| f64::from(a - b).powi(2)).sum();
+        let apart = (squares / by_rays.len() as f64).sqrt();
+        println!("{spec}: {apart:.6} apart");
+        assert!(apart < 3e-4, "{spec}: {apart}");
+    }
+}
+
+/// Of all colours, each receiver as the tracer's own camera ray finds it.
+#[test]
+fn colours_are_as_the_ray_tracer_has_them() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::set_up(UVec2::new(96, 54), "builtin:stained-glass", &OPTIONS, |_| {});
+    assert_eq!(judged.truth.visibility.channel_count(), 3);
+    let mask = judged.run(lab, TechniqueKind::RayTraced, &SETTINGS);
+    let rmse = judged.metrics(&mask).rmse.expect("judged pixels");
+    println!("rmse {rmse:.5}");
+    assert!(rmse < BOUND, "{rmse}");
+}
+
+#[test]
+fn every_scene_is_as_the_ray_tracer_has_it() {
+    let Some(lab) = lab() else { return };
+    let mut far = Vec::new();
+    for scene in NAMES {
+        let spec = format!("builtin:{}", scene.name);
+        let error = rmse(lab, &spec, |_| {});
+        println!("{spec}: rmse {error:.5}");
+        if error > BOUND {
+            far.push((spec, error));
+        }
+    }
+    assert!(far.is_empty(), "{far:?}");
+}
+
+#[test]
+fn every_light_is_as_the_ray_tracer_has_it() {
+    let Some(lab) = lab() else { return };
+    let all_around = |light: &mut Light, shape: LightShape| {
+        (light.shape, light.fov_rad, light.cone) = (shape, None, None);
+    };
+    type Change<'a> = (&'a str, &'a dyn Fn(&mut Light));
+    let lights: [Change<'_>; 7] = [
+        ("disk", &|light| light.shape = LightShape::Disk { radius_m: 0.4 }),
+        ("sphere", &|light| all_around(light, LightShape::Sphere { radius_m: 0.3 })),
+        ("ellipsoid", &|light| all_around(light, LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) })),
+        ("sun", &|light| all_around(light, LightShape::Sun { angular_diameter_rad: 0.05 })),
+        ("points", &|light| {
+            let across = 0.2 * Vec3::Y.cross(light.axis).normalize_or(Vec3::X);
+            let positions_m = [-across, across, 0.2 * Vec3::Y].map(|offset| light.center + offset).to_vec();
+            all_around(light, LightShape::Points { positions_m });
+        }),
+        ("one point", &|light| light.shape = LightShape::Rectangle { size_m: Vec2::ZERO }),
+        ("picture", &|light| {
+            light.shape = LightShape::Rectangle { size_m: Vec2::new(0.8, 0.5) };
+            let luminance = (0..12).map(|i| (i % 5) as f32).collect();
+            light.emission = Some(EmissionTexture { width: 4, height: 3, luminance });
+        }),
+    ];
+    let mut far = Vec::new();
+    for spec in ["builtin:columns", "builtin:stained-glass", "builtin:tree-alpha"] {
+        for (name, change) in lights {
+            let error = rmse(lab, spec, change);
+            println!("{spec}, {name}: rmse {error:.5}");
+            if error > BOUND {
+                far.push((spec, name, error));
+            }
+        }
+    }
+    assert!(far.is_empty(), "{far:?}");
+}

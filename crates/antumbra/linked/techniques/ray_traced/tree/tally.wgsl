@@ -1,0 +1,114 @@
+// Linked from src/techniques/ray_traced/tree/tally.wesl by `cargo xtask shaders`: edit that, not this.
+
+fn count(segment: u32, size: u32, parent: u32) {
+    let size_above = links_size_of_parent(parent);
+    var most = links_SMALL_LEAF;
+    for (var k = 0u; k < links_LEAF_SIZES; k++) {
+        if size <= most && size_above > most {
+            atomicAdd(&links_tallies[links_LEAF_SIZES * segment + k], 1u);
+        }
+        most *= links_LEAF_GROWTH;
+    }
+}
+
+@compute @workgroup_size(64)
+fn tally(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
+    let item = shape_thread_index(id, workgroups);
+    if item >= shape_shape.item_count {
+        return;
+    }
+    let index = shape_segment_index_of_item(item);
+    let segment = shape_segments[index];
+    count(index, 1u, links_parents[2u * item + 1u]);
+    if item + 1u < segment.first_item + segment.item_count {
+        count(index, links_size_of(links_run_of_node(item)), links_parents[2u * item]);
+    }
+}
+
+@group(0) @binding(3)
+var<storage, read_write> links_ends: array<u32>;
+
+@group(0) @binding(4)
+var<storage, read_write> links_parents: array<u32>;
+
+@group(0) @binding(5)
+var<storage, read_write> links_tallies: array<atomic<u32>>;
+
+const links_NONE = 4294967295u;
+
+struct links_Run {
+    first: u32,
+    last: u32
+}
+
+fn links_size_of(run: links_Run) -> u32 {
+    return run.last - run.first + 1u;
+}
+
+fn links_run_of_node(node: u32) -> links_Run {
+    let end = links_ends[node];
+    return links_Run(min(node, end), max(node, end));
+}
+
+fn links_size_of_parent(parent: u32) -> u32 {
+    if parent == links_NONE {
+        return links_NONE;
+    }
+    return links_size_of(links_run_of_node(parent));
+}
+
+const links_SMALL_LEAF = 4u;
+
+const links_LEAF_GROWTH = 4u;
+
+const links_LEAF_SIZES = 3u;
+
+struct shape_Segment {
+    first_item: u32,
+    item_count: u32,
+    first_block: u32,
+    first_node: u32,
+    first_triangle: u32,
+    triangle_stride: u32,
+    source_triangle: u32,
+    padding: u32
+}
+
+struct shape_TreeShape {
+    item_count: u32,
+    segment_count: u32,
+    block_count: u32,
+    is_top: u32,
+    step: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
+}
+
+@group(0) @binding(0)
+var<uniform> shape_shape: shape_TreeShape;
+
+@group(0) @binding(1)
+var<storage, read> shape_segments: array<shape_Segment>;
+
+fn shape_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
+
+fn shape_segment_index_of_item(item: u32) -> u32 {
+    var low = 0u;
+    var high = shape_shape.segment_count;
+    for (var turn = 0u; turn < 32u; turn++) {
+        let middle = (low + high) / 2u;
+        if high - low <= 1u {
+            break;
+        }
+        if shape_segments[middle].first_item <= item {
+            low = middle;
+        }
+        else {
+            high = middle;
+        }
+    }
+    return low;
+}

@@ -1,0 +1,66 @@
+//! Overridable constants of shaders, by their names.
+//!
+//! A source declares `override NAME: type = default;`, and Rust gives values by that name: no number stands for it in either.
+//! The linker may put a module's path before a name, so that the linked shader's own is looked up here.
+
+/// Overridable constants by the names of a linked shader.
+///
+/// # Panics
+/// Where the shader has no constant of a name, or several.
+pub(crate) fn linked(wgsl: &str, constants: &[(&str, f64)]) -> Vec<(String, f64)> {
+    constants.iter().map(|(name, value)| (linked_name(wgsl, name).to_owned(), *value)).collect()
+}
+
+fn linked_name<'s>(wgsl: &'s str, name: &str) -> &'s str {
+    let mut found = names(wgsl).filter(|linked| is_linked_name(linked, name));
+    if let Some(exact) = names(wgsl).find(|linked| *linked == name) {
+        return exact;
+    }
+    match (found.next(), found.next()) {
+        (Some(only), None) => only,
+        (None, _) => panic!("no `override {name}` in a shader that begins with {:?}", wgsl.lines().next()),
+        (Some(one), Some(other)) => panic!("`override {name}` is {one} or {other}"),
+    }
+}
+
+/// The names of all overrides of a shader.
+fn names(wgsl: &str) -> impl Iterator<Item = &str> {
+    let is_of_name = |c: char| c.is_alphanumeric() || c == '_';
+    wgsl.split("override ").skip(1).filter_map(move |rest| rest.split(|c| !is_of_name(c)).next())
+}
+
+/// Whether a name in a linked shader is this one of a module: the linker puts the module's path before names, and before
+/// one with underscores their number.
+pub(crate) fn is_linked_name(linked: &str, name: &str) -> bool {
+    let underscores = name.matches('_').count();
+    linked == name || linked.ends_with(&format!("_{name}")) || linked.ends_with(&format!("_{underscores}{name}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHADER: &str = "override PART: u32 = 0u;\noverride uniform_BASIS: u32 = 0u;\noverride a_1OF_ALL = 1;\n\
+                          override ACCUMULATION: u32;override LIST_ACCUMULATION: u32;override b_PART: u32;";
+
+    #[test]
+    fn names_are_found_with_and_without_a_path() {
+        let linked = linked(SHADER, &[("PART", 1.0), ("BASIS", 2.0), ("OF_ALL", 3.0), ("ACCUMULATION", 4.0)]);
+        let names: Vec<&str> = linked.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["PART", "uniform_BASIS", "a_1OF_ALL", "ACCUMULATION"]);
+    }
+
+    #[test]
+    #[should_panic(expected = "no `override PARTS`")]
+    fn a_name_that_no_override_has_is_a_fault() {
+        linked(SHADER, &[("PARTS", 1.0)]);
+    }
+
+    /// Numbers would have to be repeated in Rust.
+    #[test]
+    fn no_shader_numbers_its_overrides() {
+        for (path, wgsl) in crate::shaders::ALL {
+            assert!(!wgsl.contains("@id("), "{path}");
+        }
+    }
+}

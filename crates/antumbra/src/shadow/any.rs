@@ -1,0 +1,165 @@
+//! One light's shadow by a technique chosen while the program runs.
+
+use std::fmt;
+
+use super::{Frame, Prepared, Shadow, WarmUp};
+use crate::contract::{
+    Denoise, DrawnLists, DrawnMap, Error, Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
+};
+use crate::techniques::Technique;
+
+/// Object-safe form of [`Shadow`].
+trait ErasedShadow: wgpu::WasmNotSendSync {
+    fn param_specs(&self) -> &'static [ParamSpec];
+    fn get(&self, key: &str) -> Option<ParamValue>;
+    fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError>;
+    fn set_value(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError>;
+    fn set_quality(&mut self, quality: Quality);
+    fn denoise(&self) -> Option<&Denoise>;
+    fn set_denoise(&mut self, denoise: Option<Denoise>);
+    fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
+    fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
+    fn memory_bytes(&self) -> u64;
+    fn drawn_maps(&self) -> Vec<DrawnMap>;
+    fn drawn_lists(&self) -> Vec<DrawnLists>;
+    fn overflow(&self) -> Option<Overflow>;
+}
+
+impl<T: Technique> ErasedShadow for Shadow<T> {
+    fn param_specs(&self) -> &'static [ParamSpec] {
+        T::Params::specs()
+    }
+    fn get(&self, key: &str) -> Option<ParamValue> {
+        self.params.get(key)
+    }
+    fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
+        self.params.set(T::NAME, key, text)
+    }
+    fn set_value(&mut self, key: &str, value: ParamValue) -> Result<(), ParamError> {
+        self.params.set_value(T::NAME, key, value)
+    }
+    fn set_quality(&mut self, quality: Quality) {
+        self.params = T::Params::of_quality(quality);
+    }
+    fn denoise(&self) -> Option<&Denoise> {
+        self.denoise.as_ref()
+    }
+    fn set_denoise(&mut self, denoise: Option<Denoise>) {
+        self.denoise = denoise;
+    }
+    fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
+        Shadow::warm_up(self, what)
+    }
+    fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
+        Shadow::prepare(self, frame)
+    }
+    fn memory_bytes(&self) -> u64 {
+        Shadow::memory_bytes(self)
+    }
+    fn drawn_maps(&self) -> Vec<DrawnMap> {
+        Shadow::drawn_maps(self)
+    }
+    fn drawn_lists(&self) -> Vec<DrawnLists> {
+        Shadow::drawn_lists(self)
+    }
+    fn overflow(&self) -> Option<Overflow> {
+        Shadow::overflow(self)
+    }
+}
+
+/// One light's shadow by a technique chosen while the program runs.
+pub struct AnyShadow {
+    technique: &'static str,
+    inner: Box<dyn ErasedShadow>,
+}
+
+impl fmt::Debug for AnyShadow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "AnyShadow({})", self.technique)
+    }
+}
+
+impl<T: Technique + 'static> From<Shadow<T>> for AnyShadow {
+    fn from(shadow: Shadow<T>) -> Self {
+        Self { technique: T::NAME, inner: Box::new(shadow) }
+    }
+}
+
+impl AnyShadow {
+    /// The name of the technique that this is by.
+    pub fn name(&self) -> &'static str {
+        self.technique
+    }
+
+    /// The parameters with their present values.
+    pub fn params(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> + '_ {
+        self.inner.param_specs().iter().map(|spec| (spec, self.inner.get(spec.key).unwrap_or(spec.default)))
+    }
+
+    /// Sets a parameter from text, for the next frame.
+    ///
+    /// # Errors
+    /// Names the keys there are, or what the key takes.
+    pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
+        self.inner.set(key, text)
+    }
+
+    /// Sets a parameter to a value of its type, for the next frame: `set_value("map_size", 2048)`. A choice is its name.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set).
+    pub fn set_value(&mut self, key: &str, value: impl Into<ParamValue>) -> Result<(), ParamError> {
+        self.inner.set_value(key, value.into())
+    }
+
+    /// Sets all parameters to what a quality has, for the next frame; set single ones after it.
+    pub fn set_quality(&mut self, quality: Quality) {
+        self.inner.set_quality(quality);
+    }
+
+    /// How the next frame's mask is made smooth: [`Shadow::denoise`].
+    pub fn denoise(&self) -> Option<&Denoise> {
+        self.inner.denoise()
+    }
+
+    /// Sets how the next frame's mask is made smooth: [`Shadow::denoise`].
+    pub fn set_denoise(&mut self, denoise: Option<Denoise>) {
+        self.inner.set_denoise(denoise);
+    }
+
+    /// [`Shadow::warm_up`].
+    ///
+    /// # Errors
+    /// As [`Shadow::warm_up`].
+    pub fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
+        self.inner.warm_up(what)
+    }
+
+    /// [`Shadow::prepare`].
+    ///
+    /// # Errors
+    /// As [`Shadow::prepare`].
+    pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
+        self.inner.prepare(frame)
+    }
+
+    /// [`Shadow::memory_bytes`].
+    pub fn memory_bytes(&self) -> u64 {
+        self.inner.memory_bytes()
+    }
+
+    /// [`Shadow::drawn_maps`].
+    pub fn drawn_maps(&self) -> Vec<DrawnMap> {
+        self.inner.drawn_maps()
+    }
+
+    /// [`Shadow::drawn_lists`].
+    pub fn drawn_lists(&self) -> Vec<DrawnLists> {
+        self.inner.drawn_lists()
+    }
+
+    /// [`Shadow::overflow`].
+    pub fn overflow(&self) -> Option<Overflow> {
+        self.inner.overflow()
+    }
+}

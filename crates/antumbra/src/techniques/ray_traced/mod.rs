@@ -1,0 +1,322 @@
+//! `ray_traced`: rays from each receiver to points of the light, through trees over the casters' triangles.
+//!
+//! Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980, has rays to lights; Cook, Porter, Carpenter,
+//! "Distributed Ray Tracing", SIGGRAPH 1984, rays to points over a light. A pixel's visibility is the part of its rays that pass, by weight
+//! and colour: the definition, so that with more rays it comes to the truth, and to the ray tracer's own figure where the points are the same.
+//!
+//! It runs on any device of WebGPU, in compute, without an extension for rays. Trees are of two levels: one over each mesh's triangles in its
+//! own space, made once (`mesh/mod.rs`) and fitted anew where vertices move, and one over the frame's instances, made where
+//! casters may have moved. All of it is made on the device: the processor's work does not grow with the triangles. Source of the
+//! trees, and why not another: `tree/mod.rs`.
+//!
+//! A ray has a place in each tree's order of nodes and nothing else: no stack. It ends where nothing of the light is left. Casters
+//! with textures are asked where a triangle is met, twelve textures a pass, with further passes where there are more; what passes several
+//! tinted surfaces is their product along each ray.
+//!
+//! Where segments begin and end is as in `sample_based`: on the surface itself before closed casters, whose outside alone they meet; and off it
+//! before open ones, by what rounding and the rasteriser may have moved it.
+//!
+//! ```text
+//! new meshes ──► boxes ──► codes ──► sort ──► links ──► fit ─┐
+//! moved meshes ────────────────────────────────────────► fit ┤
+//! instances ───► boxes ──► codes ──► sort ──► links ──► fit ─┴─► trace ──► mask
+//! ```
+//!
+//! # Memory
+//! 64 bytes a triangle of each mesh, however many instances it has (80 with a texture), and 245 an instance. Trees are each light's
+//! own. While meshes are made, 68 bytes a triangle more; while they are fitted, 45.
+//!
+//! # Limits
+//! Few rays show as noise, which [`Denoise`](crate::Denoise) takes out. Time grows with the rays, and with what lies about each: leaves
+//! near the light are dear. Meshes that tell no [version](crate::MeshCaster::version) are fitted in each frame, whether they move or
+//! not, and keep the order that they had at first. A mesh that says it is closed and is not leaks where it is open.
+
+use glam::{Vec3, Vec4};
+
+use antumbra_light::{Light, LightShape};
+
+use crate::contract::{CastersKey, Error, MeshCaster, Opacity, PreparedFrame};
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
+use crate::gpu::{
+    Bindings, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, sized_buffer, upload_with_room,
+};
+use crate::light_map::caster_surface::SurfaceValues;
+use crate::light_map::caster_triangles::readable_meshes;
+use crate::shaders;
+use crate::techniques::{Coverage, Technique};
+
+#[cfg(test)]
+mod cpu;
+pub(crate) mod gpu_types;
+#[cfg(test)]
+mod measure;
+mod mesh;
+mod params;
+#[cfg(test)]
+mod tests;
+mod textures;
+mod top;
+mod tree;
+
+use gpu_types::{CASTER_VECTORS, FLAG_CLOSED, FLAG_OPEN, RayBatch};
+use mesh::{MeshPlace, Meshes};
+pub use params::RayTracedParams;
+use textures::{MOST_TEXTURES, Textures};
+use top::Top;
+use tree::TreePrograms;
+
+bindings! {
+    struct Traced = "ray_traced", COMPUTE, group 1 of [RAY_TRACE] {
+        0 rays: Uniform,
+        1 tables: Storage,
+        2 top_nodes: Storage,
+        3 instances: Storage,
+        4 nodes: Storage,
+        5 triangles: Storage,
+        6 snapped_texels: Uniform,
+        7 passed_before: ReadWrite,
+    }
+}
+
+/// Rays of a pass: as many as leave each three thousand turns of the loops that software allows for.
+const PASS_RAYS: u32 = 16;
+/// The same on graphics cards.
+const PASS_RAYS_OF_CARDS: u32 = 64;
+/// Turns that tell a card: see [`most_turns`](crate::gpu).
+const TURNS_OF_CARDS: u32 = 1_000_000;
+
+/// Rays to points of the light.
+#[derive(Debug)]
+pub struct RayTraced {
+    inputs: FrameInputs,
+    trees: TreePrograms,
+    meshes: Meshes,
+    top: Top,
+    layout: wgpu::BindGroupLayout,
+    surfaces_layout: wgpu::BindGroupLayout,
+    program: wgpu::ComputePipeline,
+    no_texture: (wgpu::TextureView, wgpu::Sampler),
+    tables: Option<wgpu::Buffer>,
+    passed: Option<wgpu::Buffer>,
+    /// Of the tree over instances.
+    content: Content<(CastersKey, u64)>,
+}
+
+/// The passes of one frame.
+#[derive(Debug)]
+#[doc(hidden)]
+pub struct PreparedRays {
+    inputs: PreparedInputs,
+    /// The tree over instances is to be built.
+    builds_top: bool,
+    passes: Vec<Pass>,
+}
+
+/// Some rays, as far as one group of textures tells.
+#[derive(Debug)]
+struct Pass {
+    rays: wgpu::BindGroup,
+    surfaces: wgpu::BindGroup,
+}
+
+impl Technique for RayTraced {
+    const NAME: &'static str = "ray_traced";
+    type Params = RayTracedParams;
+    type Prepared = PreparedRays;
+
+    fn coverage(_params: &RayTracedParams) -> Coverage {
+        Coverage::Everything
+    }
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        let inputs = FrameInputs::new(gpu);
+        let (layout, surfaces_layout) = (Traced::layout(gpu), textures::layout(gpu));
+        let layouts = [&inputs.layout, &layout, &surfaces_layout];
+        Ok(Self {
+            program: compute_pipeline(gpu, "ray_traced", shaders::RAY_TRACE, &layouts),
+            trees: TreePrograms::new(gpu),
+            meshes: Meshes::new(gpu),
+            top: Top::new(gpu),
+            no_texture: textures::none(gpu),
+            inputs,
+            layout,
+            surfaces_layout,
+            tables: None,
+            passed: None,
+            content: Content::default(),
+        })
+    }
+
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &RayTracedParams,
+    ) -> Result<PreparedRays, Error> {
+        frame.light.validate().map_err(|source| Error::Light { technique: Self::NAME, source })?;
+        let casters: Vec<&MeshCaster<'_>> = readable_meshes(Self::NAME, frame, None)?
+            .iter()
+            .filter(|caster| caster.index_count > 0 && caster.instance_count > 0)
+            .collect();
+        let inputs = self.inputs.prepare(stage, frame);
+        let places = self.meshes.prepare(stage, &self.trees, Self::NAME, &casters)?;
+        self.top.prepare(stage, &self.trees, Self::NAME, &casters, &places, self.meshes.nodes())?;
+        let nodes = self.meshes.nodes().size();
+        let builds_top = !self.content.ask(stage.casters().map(|casters| (casters, nodes)));
+        let mut textures = Textures::default();
+        let points = points_of(frame.light, params, stage.noise_frame());
+        let mut table: Vec<[u32; 4]> = points.iter().map(|point| bits_of(point.at.extend(0.0))).collect();
+        let sees_within = frame.sees_within();
+        for (caster, place) in casters.iter().zip(&places) {
+            let is_closed = caster.closed && !sees_within(&caster.bounds);
+            table.extend(caster_words(caster, *place, is_closed, textures.number_of(caster)));
+        }
+        let passes = self.prepare_passes(stage, frame, params, &points, &table, &textures)?;
+        Ok(PreparedRays { inputs, builds_top, passes })
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, _frame: &PreparedFrame<'_>, prepared: &PreparedRays) {
+        self.meshes.record(recorder, &self.trees);
+        if prepared.builds_top {
+            self.top.record(recorder, &self.trees);
+        }
+        recorder.compute("trace", Span::Only, |pass| {
+            pass.set_pipeline(&self.program);
+            prepared.inputs.bind(pass);
+            for of_pass in &prepared.passes {
+                pass.set_bind_group(1, &of_pass.rays, &[]);
+                pass.set_bind_group(2, &of_pass.surfaces, &[]);
+                prepared.inputs.dispatch(pass);
+            }
+        });
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        let own: u64 = [&self.tables, &self.passed].into_iter().flatten().map(wgpu::Buffer::size).sum();
+        own + self.meshes.memory_bytes() + self.top.memory_bytes()
+    }
+}
+
+impl RayTraced {
+    fn prepare_passes(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &RayTracedParams,
+        points: &[UnitPoint],
+        table: &[[u32; 4]],
+        textures: &Textures<'_>,
+    ) -> Result<Vec<Pass>, Error> {
+        let tables =
+            upload_with_room(stage, &mut self.tables, "antumbra ray tables", bytemuck::cast_slice(table)).clone();
+        let surfaces = textures.groups(stage, &self.surfaces_layout, &self.no_texture);
+        let most_turns = stage.device.most_turns();
+        let most_rays = if most_turns < TURNS_OF_CARDS { PASS_RAYS } else { PASS_RAYS_OF_CARDS };
+        let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
+        let (pass_rays, passed_stride) = if surfaces.len() == 1 {
+            (most_rays, 0)
+        } else {
+            let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
+            let rays = (most_bytes / 4 / pixels.max(1)).min(u64::from(most_rays)) as u32;
+            (rays, rays)
+        };
+        if pass_rays == 0 {
+            return Err(Error::Unsupported {
+                technique: Self::NAME,
+                needed: format!("{} bytes for what passes of a ray a pixel, with so many textures", 4 * pixels),
+                had: "fewer bytes a binding".into(),
+                remedy: "use a smaller mask or fewer textures, or ask for a larger max_storage_buffer_binding_size",
+            });
+        }
+        let passed_bytes = 4 * (pixels * u64::from(passed_stride)).max(1);
+        let usage = wgpu::BufferUsages::STORAGE;
+        let passed = sized_buffer(stage, &mut self.passed, "antumbra ray passed", passed_bytes, usage).clone();
+        let all_weight = points.iter().map(|point| f64::from(point.weight)).sum::<f64>().max(f64::MIN_POSITIVE);
+        let is_rotated = params.rotate && is_even(frame.light);
+        let mut passes = Vec::new();
+        let mut first_point = 0;
+        for batch in points.chunks(pass_rays as usize) {
+            let weight: f64 = batch.iter().map(|point| f64::from(point.weight)).sum();
+            for (group, surfaces) in (0..).zip(&surfaces) {
+                let rays = RayBatch {
+                    first_point,
+                    point_count: batch.len() as u32,
+                    share: (weight / all_weight) as f32,
+                    bias_scale: params.bias_scale,
+                    all_points: points.len() as u32,
+                    instance_count: self.top.count(),
+                    texture_group: group,
+                    is_last_group: (group + 1 == textures.group_count()).into(),
+                    rotate: is_rotated.into(),
+                    most_turns,
+                    passed_stride,
+                    padding_0: 0,
+                };
+                let traced = Traced {
+                    rays: &stage.uniform("antumbra rays", &rays),
+                    tables: &tables,
+                    top_nodes: self.top.nodes(),
+                    instances: self.top.instances(),
+                    nodes: self.meshes.nodes(),
+                    triangles: self.meshes.triangles(),
+                    snapped_texels: stage.snapped_texels(),
+                    passed_before: &passed,
+                };
+                passes.push(Pass { rays: traced.group(stage, &self.layout), surfaces: surfaces.clone() });
+            }
+            first_point += batch.len() as u32;
+        }
+        Ok(passes)
+    }
+}
+
+/// A point of the unit cube, which the shader takes to the light's, and how much of the light it stands for.
+#[derive(Clone, Copy, Debug)]
+struct UnitPoint {
+    at: Vec3,
+    weight: f32,
+}
+
+/// The points that rays go to; of a list of points as many as it has.
+fn points_of(light: &Light, params: &RayTracedParams, run: u32) -> Vec<UnitPoint> {
+    if let LightShape::Points { positions_m } = &light.shape {
+        return vec![UnitPoint { at: Vec3::ZERO, weight: 1.0 }; positions_m.len()];
+    }
+    let picture = light.emission.as_ref().filter(|_| matches!(light.shape, LightShape::Rectangle { .. }));
+    let weight = |at: Vec3| picture.map_or(1.0, |picture| picture.luminance_at(at.truncate()));
+    let points = params.sample_set.run(run, params.samples, params.seed);
+    points.into_iter().map(|at| UnitPoint { at, weight: weight(at) }).collect()
+}
+
+/// Whether any shift of the points on the torus has the same light.
+fn is_even(light: &Light) -> bool {
+    !matches!(light.shape, LightShape::Points { .. }) && light.emission.is_none()
+}
+
+fn bits_of(vector: Vec4) -> [u32; 4] {
+    vector.to_array().map(f32::to_bits)
+}
+
+/// A caster's entry in the table: see `top/instance.wesl`.
+fn caster_words(
+    caster: &MeshCaster<'_>,
+    place: MeshPlace,
+    is_closed: bool,
+    texture: Option<u32>,
+) -> [[u32; 4]; CASTER_VECTORS as usize] {
+    let MeshPlace { first_node, first_triangle, triangle_stride } = place;
+    let group = texture.map_or(0, |number| number / MOST_TEXTURES);
+    let slot = texture.map_or(u32::from(u8::MAX), |number| number % MOST_TEXTURES);
+    let is_opaque = matches!(caster.opacity, Opacity::Opaque);
+    let flags = if !is_opaque {
+        FLAG_OPEN
+    } else if is_closed {
+        FLAG_CLOSED
+    } else {
+        0
+    };
+    let surface = SurfaceValues::of(&caster.opacity);
+    let (factor, cutoff, coverage) =
+        surface.map_or((Vec4::ZERO, 0.0, 0), |surface| (surface.factor, surface.cutoff, surface.coverage));
+    [[flags, first_node, first_triangle, triangle_stride], bits_of(factor), [cutoff.to_bits(), coverage, slot, group]]
+}
