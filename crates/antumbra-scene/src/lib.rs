@@ -28,5 +28,5 @@ pub use load::{LoadOptions, load, load_animated, load_bytes, load_chosen};
 pub use scene::{
     AlphaMode, Image, Instance, Material, Mesh, Scene, Volume, WorldTriangle, Wrap, linear_from_srgb, srgb_from_linear,
 };
-pub use setup::{Assumed, Setup};
+pub use setup::{Assumed, Framing, Setup};
 pub use translucency::{Coverage, Occluder, SurfacePicture, Translucency};

@@ -10,13 +10,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use antumbra::{Gpu, TechniqueKind};
-use antumbra_scene::{Scene, Setup};
+use antumbra_scene::{Framing, Scene, Setup};
 use eframe::egui_wgpu::RenderState;
 use glam::UVec2;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use web_time::Instant;
 
-use crate::camera;
 use crate::file_dialog::{Chosen, FileDialog};
 use crate::loader::{Loaded, Loader, Opened, Wanted, read_setup, write_setup, write_whole};
 use crate::message::one_line;
@@ -80,6 +79,8 @@ pub struct App {
     /// The renderer's output, and what egui calls it.
     texture: Option<(wgpu::TextureView, egui::TextureId)>,
     size_px: UVec2,
+    /// Of the scene opened last, until its picture has a size that it can fill.
+    unframed: Option<Framing>,
     /// The pixel whose numbers are shown.
     asked_px: Option<UVec2>,
     scene: Option<Arc<Scene>>,
@@ -142,6 +143,7 @@ impl App {
             state: State::new(TechniqueKind::Smrt, TechniqueKind::Hard),
             texture: None,
             size_px: UVec2::ZERO,
+            unframed: None,
             asked_px: None,
             scene: None,
             poser: None,
@@ -221,10 +223,11 @@ impl App {
     }
 
     fn take_scene(&mut self, ctx: &egui::Context, loaded: Loaded) {
-        let Loaded { spec, scene, anchor, assumed, setup, animations, time_s, has_ground, notes } = loaded;
+        let Loaded { spec, scene, anchor, assumed, framing, setup, animations, time_s, has_ground, notes } = loaded;
         let (path, setup) = setup.unzip();
         self.state.open(&spec, &scene, Some(setup.unwrap_or(assumed)));
         self.state.anchor = anchor;
+        self.unframed = framing;
         self.state.setup_file = path.map(|path| (path, self.state.setup.clone()));
         if let Some((path, _)) = &self.state.setup_file {
             self.panels.setup_path = path.display().to_string();
@@ -320,7 +323,7 @@ impl App {
             Action::FrameAll => {
                 if let Some(open) = &self.state.scene {
                     let aspect = self.size_px.x as f32 / self.size_px.y.max(1) as f32;
-                    camera::frame(&mut self.state.setup.camera, open.bounds, aspect);
+                    self.state.setup.camera.frame(open.bounds, aspect);
                 }
             }
             Action::Expose => self.renderer.expose(),
@@ -438,6 +441,10 @@ impl App {
         let size_px =
             UVec2::new(pixels.x.round() as u32, pixels.y.round() as u32).clamp(UVec2::ONE, UVec2::splat(largest));
         self.size_px = size_px;
+        if let Some(framing) = self.unframed.take() {
+            let camera = framing.camera(size_px.x as f32 / size_px.y as f32);
+            self.state.setup.camera = camera.counted_from(self.state.anchor);
+        }
         self.ask_for_truth();
         let estimate = self.truth.estimate();
         self.renderer.inspect(self.asked_px);

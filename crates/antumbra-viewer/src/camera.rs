@@ -3,13 +3,11 @@
 //! Every motion keeps the camera usable: the view never becomes parallel to the up hint, and the eye never reaches the
 //! target.
 
-use antumbra_scene::{Aabb, Camera};
+use antumbra_scene::Camera;
 use glam::{Quat, Vec2, Vec3};
 
 /// The view stays this far from the up hint, radians: there the horizon is still well defined.
 const LEAST_POLE_ANGLE_RAD: f32 = 0.02;
-/// Room around what is framed.
-const MARGIN: f32 = 1.05;
 
 /// The unit directions of the picture in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,21 +76,10 @@ pub fn fly(camera: &mut Camera, by_m: Vec3) {
     camera.target += offset;
 }
 
-/// Looks at the middle of a box from where all of it is seen, keeping the direction; a picture `aspect` times as wide as
-/// high.
-pub fn frame(camera: &mut Camera, bounds: Aabb, aspect: f32) {
-    if bounds.is_empty() {
-        return;
-    }
-    let Axes { forward, .. } = axes(camera);
-    let half_fov_rad = (0.5 * camera.fov_y_rad).min(((0.5 * camera.fov_y_rad).tan() * aspect).atan());
-    let distance = MARGIN * (0.5 * bounds.diagonal()).max(camera.near_m) / half_fov_rad.sin();
-    camera.target = bounds.center();
-    camera.eye = camera.target - distance * forward;
-}
-
 #[cfg(test)]
 mod tests {
+    use antumbra_scene::Aabb;
+
     use super::*;
 
     fn camera() -> Camera {
@@ -145,11 +132,14 @@ mod tests {
         }
         assert!(moved.eye.distance(moved.target) > moved.near_m);
         let bounds = Aabb { min: Vec3::new(-3.0, 0.0, -1.0), max: Vec3::new(5.0, 4.0, 1.0) };
-        frame(&mut moved, bounds, 0.5);
-        let clip = moved.clip_from_view(glam::UVec2::new(50, 100)) * moved.view_from_world();
-        for corner in bounds.corners() {
-            let ndc = clip.project_point3(corner);
-            assert!(ndc.x.abs() <= 1.0 && ndc.y.abs() <= 1.0, "{corner}: {ndc}");
+        let forward = axes(&moved).forward;
+        for size_px in [glam::UVec2::new(50, 100), glam::UVec2::new(160, 90)] {
+            moved.frame(bounds, size_px.x as f32 / size_px.y as f32);
+            assert!(axes(&moved).forward.abs_diff_eq(forward, 1e-4));
+            let clip = moved.clip_from_view(size_px) * moved.view_from_world();
+            let corners = bounds.corners().map(|corner| clip.project_point3(corner));
+            let widest = corners.iter().fold(Vec2::ZERO, |widest, ndc| widest.max(ndc.truncate().abs()));
+            assert!(widest.max_element() <= 1.0 && widest.max_element() > 0.9, "{size_px}: {widest}");
         }
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use antumbra_scene::{Animations, Ground, LoadOptions, Scene, Setup, load_animated};
+use antumbra_scene::{Animations, Framing, Ground, LoadOptions, Scene, Setup, load_animated};
 use glam::Vec3;
 
 use crate::aside::{Wake, aside};
@@ -22,6 +22,9 @@ pub struct Loaded {
     pub anchor: Vec3,
     /// Camera and lights for it, counted from the anchor; those that it implied before it was put on a ground.
     pub assumed: Setup,
+    /// What makes a camera that the scene fills a picture of, counted from the world's origin; `None` where it brought its own, or
+    /// a setup did.
+    pub framing: Option<Framing>,
     /// The setup file given with it, counted from the anchor.
     pub setup: Option<(PathBuf, Setup)>,
     /// What it takes to have it at other times; `None` where nothing of it is animated.
@@ -146,7 +149,7 @@ fn finished(
     notes.extend(scene.unit_warning());
     // Of what stands there, not of what it stands on.
     let assumed = Setup::assumed(&scene);
-    let has_ground = wanted.ground.is_for(&scene, setup.is_none() && assumed.is_framed);
+    let has_ground = wanted.ground.is_for(&scene, setup.is_none() && assumed.framing.is_some());
     if has_ground && wanted.ground == Ground::Auto {
         notes.push(Ground::told(&scene));
     }
@@ -160,6 +163,7 @@ fn finished(
         scene: Arc::new(scene),
         anchor,
         assumed: assumed.setup.counted_from(anchor),
+        framing: assumed.framing.filter(|_| setup.is_none()),
         setup: setup.map(|(path, setup)| (path, setup.counted_from(anchor))),
         animations: animations.map(Arc::new),
         time_s: wanted.time_s,

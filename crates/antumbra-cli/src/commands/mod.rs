@@ -80,7 +80,7 @@ fn load_scene(spec: &str, args: &SceneArgs, aspect: f32, progress: &dyn Progress
     let setup = setup.unwrap_or_else(|| {
         let assumed = Setup::assumed_for(&scene, aspect);
         assumed.line.iter().for_each(|line| progress.note(line));
-        is_framed = assumed.is_framed;
+        is_framed = assumed.framing.is_some();
         assumed.setup
     });
     let has_ground = args.ground.when().is_for(&scene, is_framed);

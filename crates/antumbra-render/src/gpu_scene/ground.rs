@@ -17,15 +17,45 @@ impl GpuScene {
     /// The casters that can stop some of a light: all [`casters`](Self::casters), but for the ground that the scene was put on, where
     /// nothing lies beneath it and the light above.
     pub fn casters_for(&self, light: &Light) -> Vec<MeshCaster<'_>> {
-        let idle = self.ground.filter(|ground| self.stops_nothing(&self.draws[*ground], light));
-        let draws = self.draws.iter().enumerate().filter(|(draw, _)| Some(*draw) != idle);
-        draws.filter_map(|(_, draw)| self.caster(draw)).collect()
+        self.casters_of_lights().of(light).to_vec()
+    }
+
+    /// The casters of any number of lights, collected once.
+    pub fn casters_of_lights(&self) -> CastersOfLights<'_> {
+        let draws = self.draws.iter().enumerate().filter(|(draw, _)| Some(*draw) != self.ground);
+        let mut casters: Vec<_> = draws.filter_map(|(_, draw)| self.caster(draw)).collect();
+        let ground = self.ground.and_then(|ground| self.caster(&self.draws[ground]));
+        casters.extend(ground);
+        CastersOfLights { scene: self, casters, ends_with_ground: ground.is_some() }
     }
 
     fn stops_nothing(&self, ground: &Draw, light: &Light) -> bool {
         let height_m = ground.bounds.max.y;
         let lowest_m = height_m - ROUNDING * self.bounds.diagonal();
         self.draws.iter().all(|draw| draw.bounds.min.y >= lowest_m) && lies_above(light, height_m)
+    }
+}
+
+/// The casters of a scene, for any of its lights.
+#[derive(Debug)]
+pub struct CastersOfLights<'a> {
+    scene: &'a GpuScene,
+    /// The ground that the scene was put on is the last.
+    casters: Vec<MeshCaster<'a>>,
+    ends_with_ground: bool,
+}
+
+impl<'a> CastersOfLights<'a> {
+    /// All of them.
+    pub fn all(&self) -> &[MeshCaster<'a>] {
+        &self.casters
+    }
+
+    /// Those of one light: see [`GpuScene::casters_for`].
+    pub fn of(&self, light: &Light) -> &[MeshCaster<'a>] {
+        let stops_nothing = |ground: usize| self.scene.stops_nothing(&self.scene.draws[ground], light);
+        let is_idle = self.ends_with_ground && self.scene.ground.is_some_and(stops_nothing);
+        &self.casters[..self.casters.len() - usize::from(is_idle)]
     }
 }
 

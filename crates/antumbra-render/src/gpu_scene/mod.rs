@@ -27,6 +27,7 @@ use antumbra_scene::{
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
 
+pub use ground::CastersOfLights;
 use mips::mip_chain;
 use split::{MeshPart, split_mesh};
 

@@ -31,7 +31,7 @@ fn sphere(bounds: Aabb) -> (Vec3, f32) {
 }
 
 /// What a picture is of.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Subject {
     /// What fills the picture.
     pub(super) bounds: Aabb,
@@ -101,9 +101,26 @@ pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
     let (center, radius) = sphere(subject.bounds);
     let fov_y_rad = (FOV_Y_DEGREES as f32).to_radians();
     let towards = TOWARDS_CAMERA.normalize();
-    let right = Vec3::Y.cross(towards).normalize();
-    let up = towards.cross(right);
     let corners: Vec<Vec3> = subject.corners().into_iter().map(|corner| corner - center).collect();
+    let (offset, distance) = place_filled_by(&corners, towards, Vec3::Y, (0.5 * fov_y_rad).tan(), aspect, radius);
+    let (center_of_all, radius_of_all) = sphere(subject.all);
+    let target = center + offset;
+    Camera {
+        eye: target + distance * towards,
+        target,
+        up: Vec3::Y,
+        fov_y_rad,
+        near_m: 0.01 * distance,
+        far_m: 2.0 * (distance + radius.max(center.distance(center_of_all) + radius_of_all)),
+        shadow_distance: None,
+    }
+}
+
+/// Where a camera looks, across its view, and how far it stands from there, at `least_m` or farther, so that corners fill its picture.
+/// `towards` is the unit direction towards the camera, `slope_y` the tangent of half its vertical field of view.
+fn place_filled_by(corners: &[Vec3], towards: Vec3, up: Vec3, slope_y: f32, aspect: f32, least_m: f32) -> (Vec3, f32) {
+    let right = up.cross(towards).normalize();
+    let up = towards.cross(right);
     // A corner at (x, z) across the picture and towards the camera lies within it where |x − e| ≤ slope · (distance − z), with the eye
     // at (e, distance). All of them do where max (x + slope · z) − slope · distance ≤ e ≤ min (x − slope · z) + slope · distance.
     let limits = |across: Vec3, slope: f32| {
@@ -111,13 +128,13 @@ pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
         let least = corners.iter().map(|c| c.dot(across) - slope * c.dot(towards)).fold(f32::INFINITY, f32::min);
         (most, least)
     };
-    let slope = (0.5 * fov_y_rad).tan() / MARGIN;
+    let slope = slope_y / MARGIN;
     let axes = [(right, slope * aspect), (up, slope)];
     let enough = |(across, slope): (Vec3, f32)| {
         let (most, least) = limits(across, slope);
         (most - least) / (2.0 * slope)
     };
-    let distance = axes.map(enough).into_iter().fold(radius, f32::max);
+    let distance = axes.map(enough).into_iter().fold(least_m, f32::max);
     // Of those e the one that leaves as much room on both sides of the picture, found by halving.
     let middle = |(across, slope): (Vec3, f32)| {
         let (most, least) = limits(across, slope);
@@ -131,16 +148,23 @@ pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
         0.5 * (low + high)
     };
     let [x, y] = axes.map(middle);
-    let (center_of_all, radius_of_all) = sphere(subject.all);
-    let target = center + x * right + y * up;
-    Camera {
-        eye: target + distance * towards,
-        target,
-        up: Vec3::Y,
-        fov_y_rad,
-        near_m: 0.01 * distance,
-        far_m: 2.0 * (distance + radius.max(center.distance(center_of_all) + radius_of_all)),
-        shadow_distance: None,
+    (x * right + y * up, distance)
+}
+
+impl Camera {
+    /// Moves the camera, which keeps its direction, to where a box fills its picture of this width over its height.
+    pub fn frame(&mut self, bounds: Aabb, aspect: f32) {
+        if bounds.is_empty() {
+            return;
+        }
+        let (center, radius) = sphere(bounds);
+        let towards = (self.eye - self.target).normalize();
+        let corners = bounds.corners().map(|corner| corner - center);
+        let slope_y = (0.5 * self.fov_y_rad).tan();
+        let least_m = radius.max(4.0 * self.near_m);
+        let (offset, distance) = place_filled_by(&corners, towards, self.up, slope_y, aspect, least_m);
+        self.target = center + offset;
+        self.eye = self.target + distance * towards;
     }
 }
 

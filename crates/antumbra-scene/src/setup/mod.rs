@@ -36,8 +36,19 @@ pub struct Assumed {
     pub setup: Setup,
     /// What the scene does not say, for readers; `None` where it says all.
     pub line: Option<String>,
-    /// The camera frames the scene from outside.
-    pub is_framed: bool,
+    /// What makes such a camera for pictures of other formats, where the camera frames the scene from outside.
+    pub framing: Option<Framing>,
+}
+
+/// A scene's place in pictures that it fills.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Framing(framing::Subject);
+
+impl Framing {
+    /// A camera whose picture, of this width over its height, the scene fills.
+    pub fn camera(&self, aspect: f32) -> Camera {
+        framing::camera(&self.0, aspect)
+    }
 }
 
 impl Setup {
@@ -83,27 +94,29 @@ impl Setup {
         let has_lights = !scene.lights.is_empty();
         if let (Some(camera), true) = (camera, has_lights) {
             let setup = Self { camera, lights: scene.lights.clone() };
-            return Assumed { setup, line: None, is_framed: false };
+            return Assumed { setup, line: None, framing: None };
         }
-        let room = room::inside(scene);
-        let (framed, key) = room.clone().unwrap_or_else(|| {
-            let subject = framing::Subject::of(scene);
-            (framing::camera(&subject, aspect), framing::key_light(subject.bounds))
-        });
+        let (taken_camera, key, framing) = match room::inside(scene) {
+            Some((inside, key)) => (inside, key, None),
+            None => {
+                let framing = Framing(framing::Subject::of(scene));
+                (framing.camera(aspect), framing::key_light(framing.0.bounds), Some(framing))
+            }
+        };
         let mut taken = Vec::new();
         if camera.is_none() {
-            let how = if room.is_some() { "stands inside" } else { "frames it" };
+            let how = if framing.is_none() { "stands inside" } else { "frames it" };
             taken.push(format!("no camera, and one {how}"));
         }
         if !has_lights {
-            let how = if room.is_some() { "hangs below the ceiling" } else { "shines from above" };
+            let how = if framing.is_none() { "hangs below the ceiling" } else { "shines from above" };
             let side_m = 2.0 * key.bounding_radius() / std::f32::consts::SQRT_2;
             taken.push(format!("no lights, and a square one of {side_m:.2} m {how}"));
         }
         let line = format!("{} has {}; --setup says otherwise", scene.name, taken.join("; "));
         let lights = if has_lights { scene.lights.clone() } else { vec![key] };
-        let is_framed = camera.is_none() && room.is_none();
-        Assumed { setup: Self { camera: camera.unwrap_or(framed), lights }, line: Some(line), is_framed }
+        let framing = framing.filter(|_| camera.is_none());
+        Assumed { setup: Self { camera: camera.unwrap_or(taken_camera), lights }, line: Some(line), framing }
     }
 }
 

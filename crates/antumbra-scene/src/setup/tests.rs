@@ -241,16 +241,16 @@ fn hollow(size: Vec3, inwards: bool) -> Scene {
 fn rooms_are_seen_from_inside_and_solids_from_outside() {
     let size = Vec3::new(8.0, 3.0, 5.0);
     let is_inside = |p: Vec3| p.cmpgt(Vec3::ZERO).all() && p.cmplt(size).all();
-    let Assumed { setup: room, line, is_framed } = Setup::assumed(&hollow(size, true));
+    let Assumed { setup: room, line, framing } = Setup::assumed(&hollow(size, true));
     assert!(is_inside(room.camera.eye) && is_inside(room.lights[0].center), "{room:?}");
-    assert!(!is_framed);
+    assert!(framing.is_none());
     super::check_camera(&room.camera).unwrap();
     assert!(room.camera.eye.y > 1.0 && room.camera.target.distance(room.camera.eye) > 2.0, "{:?}", room.camera);
     let line = line.unwrap();
     assert!(line.contains("stands inside") && line.contains("below the ceiling") && line.contains("--setup"), "{line}");
 
-    let Assumed { setup: solid, line, is_framed: frames_solid } = Setup::assumed(&hollow(size, false));
-    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames it") && frames_solid);
+    let Assumed { setup: solid, line, framing: frames_solid } = Setup::assumed(&hollow(size, false));
+    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames it") && frames_solid.is_some());
     // A box that no one can stand in is an object, whichever way its faces look.
     let Assumed { setup: toy, .. } = Setup::assumed(&hollow(0.1 * size, true));
     assert!(toy.camera.eye.cmpgt(0.1 * size).any(), "{:?}", toy.camera);

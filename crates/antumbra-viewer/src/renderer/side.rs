@@ -432,11 +432,10 @@ impl SideWork {
     ) -> Result<(), String> {
         let began = Instant::now();
         let made_before = gpu.objects_made();
-        let casters: Vec<_> = frame.lights.iter().map(|light| frame.scene.casters_for(light)).collect();
-        let lights = frame.lights.iter().zip(&casters);
+        let casters = frame.scene.casters_of_lights();
         let mut works = Vec::new();
-        for ((shadow, (light, casters)), mask) in self.shadows.iter_mut().zip(lights).zip(&self.masks) {
-            let casters = Casters::Meshes(casters);
+        for ((shadow, light), mask) in self.shadows.iter_mut().zip(frame.lights).zip(&self.masks) {
+            let casters = Casters::Meshes(casters.of(light));
             let work = shadow.prepare(&Frame { light, casters, receivers: frame.images.receivers(), mask });
             works.push(work.map_err(|error| error.to_string())?);
         }

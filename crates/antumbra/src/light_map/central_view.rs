@@ -4,17 +4,13 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::Vec3;
 
 use super::between::Between;
-use super::light_view::{FitTo, LightView, ViewFit, WindowShape};
+use super::light_view::{FitTo, Followed, LightView, ViewFit, WindowShape};
 use crate::contract::SeenPoint;
 
 /// The light's view, fitted in a square window to casters' boxes and receivers' corners.
 pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
-    fit_central_view(light, &FitTo { casters, receivers, window: WindowShape::Square })
-}
-
-/// The light's view from its middle, which holds every segment to its points.
-pub(crate) fn fit_central_view(light: &Light, fit: &FitTo<'_>) -> LightView {
-    fit_central_view_within(light, central_reach(light), fit)
+    let fit = FitTo { casters, receivers, window: WindowShape::Square };
+    fit_central_view_within(light, Followed::Middle, central_reach(light), &fit)
 }
 
 /// How far the light reaches from where it is seen from: its centre, or of a list of points their mean, whatever centre it was
@@ -27,7 +23,13 @@ pub(crate) fn central_reach(light: &Light) -> f32 {
 }
 
 /// What views from the light's middle are fitted to, whatever their windows.
-pub(crate) fn central_fit(light: &Light, reach: f32, casters: &[Aabb], receivers: &[Vec3]) -> ViewFit {
+pub(crate) fn central_fit(
+    light: &Light,
+    followed: Followed,
+    reach: f32,
+    casters: &[Aabb],
+    receivers: &[Vec3],
+) -> ViewFit {
     let casters = &Between::new(light, casters, receivers);
     if light.is_distant() {
         ViewFit::orthographic(light.frame(), reach, casters, receivers)
@@ -36,14 +38,14 @@ pub(crate) fn central_fit(light: &Light, reach: f32, casters: &[Aabb], receivers
         if matches!(light.shape, LightShape::Points { .. }) {
             frame.center = light.moments().mean_in_world(&frame);
         }
-        ViewFit::perspective(frame, reach, light.reach_tangent(), casters, receivers)
+        ViewFit::perspective(frame, followed, reach, light.reach_tangent(), casters, receivers)
     }
 }
 
 /// The same where the light reaches no farther than `reach` from its middle along either of the window's axes: metres,
 /// for a sun a tangent.
-pub(crate) fn fit_central_view_within(light: &Light, reach: f32, fit: &FitTo<'_>) -> LightView {
-    central_fit(light, reach, fit.casters, fit.receivers).view(fit.window)
+pub(crate) fn fit_central_view_within(light: &Light, followed: Followed, reach: f32, fit: &FitTo<'_>) -> LightView {
+    central_fit(light, followed, reach, fit.casters, fit.receivers).view(fit.window)
 }
 
 /// A map's window may be warped where what is seen has texels of at most this width for it: half as wide. Texels of one

@@ -7,12 +7,12 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
 use super::caster_depth::{CasterDepth, check_map_size};
-use super::central_view::{central_fit, central_reach, fit_central_view, fit_light_view, fit_seen_view};
+use super::central_view::{central_fit, central_reach, fit_central_view_within, fit_seen_view};
 use super::depth_layers::behind::LayersBehind;
 use super::depth_pyramid::DepthPyramid;
 use super::hosts_map::view_of_hosts_map;
 use super::light_spread::LightSpread;
-use super::light_view::{FitTo, LightView, LightViewGpu, WindowShape};
+use super::light_view::{FitTo, Followed, LightView, LightViewGpu, WindowShape};
 use super::still_view::{corners_to_hold, in_whole_texels};
 use crate::contract::{CastersKey, DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{
@@ -38,6 +38,8 @@ pub(crate) struct OwnMapSettings {
     /// Texels along a side.
     pub(crate) size: u32,
     pub(crate) window: MapWindow,
+    /// What of receivers' segments the window holds.
+    pub(crate) followed: Followed,
     /// Layers of casters, the map's own included; one but for [`MapSearch::Layers`].
     pub(crate) layers: u32,
 }
@@ -45,7 +47,7 @@ pub(crate) struct OwnMapSettings {
 impl OwnMapSettings {
     /// A square one, of the nearest casters alone.
     pub(crate) fn square(size: u32) -> Self {
-        Self { size, window: MapWindow::Square, layers: 1 }
+        Self { size, window: MapWindow::Square, followed: Followed::All, layers: 1 }
     }
 
     /// The same, narrow in a sun's slices.
@@ -276,19 +278,21 @@ impl LightMap {
 /// The view of a map of our own.
 fn own_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>, casters: &[Aabb], settings: OwnMapSettings) -> LightView {
     let OwnMapSettings { size, window, .. } = settings;
+    let (followed, reach) = (settings.followed, central_reach(frame.light));
     if stage.still().is_some() {
         // What a slice receives lies at depths that differ little, and a warp would move with the camera.
         let shape = if window == MapWindow::Square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
         let receivers = &corners_to_hold(stage, &frame.receivers);
-        let view = fit_central_view(frame.light, &FitTo { casters, receivers, window: shape });
+        let view = fit_central_view_within(frame.light, followed, reach, &FitTo { casters, receivers, window: shape });
         return in_whole_texels(stage, view, UVec2::splat(size));
     }
     let corners = frame.receivers.corners();
     if window != MapWindow::Seen {
-        return fit_light_view(frame.light, casters, &corners);
+        let fit = FitTo { casters, receivers: &corners, window: WindowShape::Square };
+        return fit_central_view_within(frame.light, followed, reach, &fit);
     }
     let seen = frame.receivers.seen_points(&corners);
-    let fit = central_fit(frame.light, central_reach(frame.light), casters, &corners);
+    let fit = central_fit(frame.light, followed, reach, casters, &corners);
     fit_seen_view(&fit.for_many_windows(), &seen)
 }
 

@@ -65,6 +65,15 @@ const WARP_MUST_GAIN: f32 = 0.95;
 /// A rectangular window is no longer than so many times its width.
 const MAX_ASPECT: f32 = 16.0;
 
+/// What of receivers' segments to the light a technique follows in the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Followed {
+    /// Those to all of it: they leave the window of the receivers farthest off its axis.
+    All,
+    /// Those to its middle, and what a kernel of fixed width takes for others.
+    Middle,
+}
+
 /// A view from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightView {
@@ -365,6 +374,7 @@ impl ViewFit {
     /// `reach_tangent` is the light's own frustum, where it has one: receivers outside it are not asked for either.
     pub(crate) fn perspective(
         frame: LightFrame,
+        followed: Followed,
         margin_m: f32,
         reach_tangent: Option<f32>,
         casters: &Between,
@@ -392,9 +402,14 @@ impl ViewFit {
         let held_from_m = margin_depth(near, far, margin_m);
         let asked = of_receivers.iter().fold(0.0f32, |farthest, p| farthest.max(p.abs().max_element()));
         let needed = asked + margin_m * (1.0 / held_from_m - 1.0 / far);
-        let widest = MOST_WIDENED * asked.max(MIDDLE_TANGENT);
-        let held_from_m = if needed > widest { margin_m / (widest - asked + margin_m / far) } else { held_from_m };
-        let farthest = needed.clamp(MIDDLE_TANGENT, widest);
+        let (farthest, held_from_m) = match followed {
+            Followed::Middle => (asked.max(MIDDLE_TANGENT), held_from_m),
+            Followed::All => {
+                let widest = MOST_WIDENED * asked.max(MIDDLE_TANGENT);
+                let held_by_widest = margin_m / (widest - asked + margin_m / far);
+                (needed.clamp(MIDDLE_TANGENT, widest), if needed > widest { held_by_widest } else { held_from_m })
+            }
+        };
         let mut of_casters = Vec::with_capacity(8 * boxes.len());
         for corners in &boxes {
             add_tangents(&mut of_casters, corners, near, farthest);

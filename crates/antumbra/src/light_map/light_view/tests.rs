@@ -3,7 +3,9 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightShape};
 use glam::{Mat2, Vec2, Vec3};
 
-use super::{FitTo, LightView, LightViewGpu, MIDDLE_TANGENT, ViewFit, Window, WindowShape, light_view_of_matrix};
+use super::{
+    FitTo, Followed, LightView, LightViewGpu, MIDDLE_TANGENT, ViewFit, Window, WindowShape, light_view_of_matrix,
+};
 use crate::contract::{DepthConvention, SeenPoint};
 use crate::light_map::between::Between;
 
@@ -17,7 +19,7 @@ fn scene() -> (Light, Vec<Aabb>) {
 }
 
 fn fit_perspective(frame: LightFrame, margin_m: f32, reach_tangent: Option<f32>, fit: &FitTo<'_>) -> LightView {
-    ViewFit::perspective(frame, margin_m, reach_tangent, &Between::of_known(fit.casters), fit.receivers)
+    ViewFit::perspective(frame, Followed::All, margin_m, reach_tangent, &Between::of_known(fit.casters), fit.receivers)
         .view(fit.window)
 }
 
@@ -266,7 +268,7 @@ fn windows_are_judged_by_their_texels() {
         WindowShape::Warped { along: Vec2::from_angle(2.1), strength: 0.7 },
     ];
     for fit in [
-        ViewFit::perspective(light.frame(), 0.25, None, &Between::of_known(&casters), &[]),
+        ViewFit::perspective(light.frame(), Followed::All, 0.25, None, &Between::of_known(&casters), &[]),
         ViewFit::orthographic(light.frame(), 0.0, &Between::of_known(&casters), &[]),
     ] {
         let in_plane = fit.in_plane(&seen);

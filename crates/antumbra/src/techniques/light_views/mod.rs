@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use crate::contract::SeenPoint;
 use crate::gpu::{Cached, Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
 use crate::light_map::between::Between;
-use crate::light_map::light_view::{LightView, ViewFit};
+use crate::light_map::light_view::{Followed, LightView, ViewFit};
 
 pub(crate) mod gpu_types;
 pub mod multi_view;
@@ -116,7 +116,7 @@ fn fit_from(light: &Light, point: &LightPoint, casters: &Between, receivers: &[V
         // Receivers are asked for from this point alone, but the light's own frustum starts at its centre.
         let margin_m = if light.reach_tangent().is_some() { light.bounding_radius() } else { 0.0 };
         let frame = LightFrame { center: point.xyz, ..frame };
-        ViewFit::perspective(frame, margin_m, light.reach_tangent(), casters, receivers)
+        ViewFit::perspective(frame, Followed::Middle, margin_m, light.reach_tangent(), casters, receivers)
     }
 }
 

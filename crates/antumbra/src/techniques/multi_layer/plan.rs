@@ -16,7 +16,7 @@ use super::{FilterDesign, LookupDesign, STEP_STRIDE};
 use crate::contract::{MaskChannels, MeshCaster, PreparedFrame};
 use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};
-use crate::light_map::light_view::{FitTo, LightView, LightViewGpu, Window, WindowShape};
+use crate::light_map::light_view::{FitTo, Followed, LightView, LightViewGpu, Window, WindowShape};
 use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
 use crate::light_map::texel_lists::{Accumulation, DepthTolerance, Gather, ListOptions};
 
@@ -98,7 +98,7 @@ impl<'a> FramePlan<'a> {
         let receivers = corners_to_hold(stage, &frame.receivers);
         let window = if is_square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
         let fit = FitTo { casters: &bounds, receivers: &receivers, window };
-        let view = fit_central_view_within(light, reach(light), &fit);
+        let view = fit_central_view_within(light, Followed::All, reach(light), &fit);
         let (view, map_size) = if is_square {
             (view, UVec2::splat(params.map_size))
         } else {

@@ -177,7 +177,7 @@ impl SoftFilter {
         design: SoftDesign,
         settings: &SoftSettings,
     ) -> Result<PreparedSoft, Error> {
-        let own = OwnMapSettings { size: settings.map_size, window: settings.window, layers: 1 };
+        let own = OwnMapSettings { window: settings.window, ..OwnMapSettings::square(settings.map_size) };
         let map = self.map.prepare(stage, frame, own)?;
         let made = self.passes.take().filter(|passes| passes.design == design);
         let mut passes = made.unwrap_or_else(|| {

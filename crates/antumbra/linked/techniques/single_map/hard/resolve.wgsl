@@ -14,7 +14,8 @@ fn visibility(receiver: inputs_Receiver) -> f32 {
     if !receiver.is_reached || !receiver_light_faces_light_center(receiver) {
         return 0.0;
     }
-    let plane = receiver_light_biased_plane(receiver, hard.bias_scale);
+    var plane = receiver_light_biased_plane(receiver, hard.bias_scale);
+    plane.farthest_depth = plane.depth - plane.bias;
     return map_lit_nearest(plane, plane.uv);
 }
 

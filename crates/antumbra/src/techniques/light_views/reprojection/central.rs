@@ -8,7 +8,7 @@ use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{ReprojectionProjection, Settings};
 use crate::light_map::between::Between;
 use crate::light_map::central_view::{central_fit, central_reach};
-use crate::light_map::light_view::{LightView, LightViewGpu, Window};
+use crate::light_map::light_view::{Followed, LightView, LightViewGpu, Window};
 use crate::techniques::light_views::{Batch, views_from};
 
 /// A plane view wider than this tangent is cut or wasteful; a cube takes its place.
@@ -169,7 +169,7 @@ impl Matrices {
 
 /// The one central view of a plane.
 fn central_plane(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
-    let fit = central_fit(light, central_reach(light), casters, receivers).for_many_windows();
+    let fit = central_fit(light, Followed::All, central_reach(light), casters, receivers).for_many_windows();
     fit.view(LightView::best_roll(|window| fit.view(window)))
 }
 

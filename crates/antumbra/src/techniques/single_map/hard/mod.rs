@@ -10,6 +10,7 @@
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
+use crate::light_map::light_view::Followed;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
@@ -43,7 +44,8 @@ impl Technique for Hard {
         params: &HardParams,
     ) -> Result<PreparedMapResolve, Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
-        let pass = ResolvePass::of(OwnMapSettings::narrow(params.map_size));
+        let map = OwnMapSettings { followed: Followed::Middle, ..OwnMapSettings::narrow(params.map_size) };
+        let pass = ResolvePass::of(map);
         self.resolve.prepare(stage, frame, &pass, &uniform, &[] as &[f32])
     }
 

@@ -24,6 +24,7 @@ use glam::Vec2;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
+use crate::light_map::light_view::Followed;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
@@ -70,7 +71,8 @@ impl Technique for Pcf {
             bias_scale: params.bias_scale,
             attach_contacts: params.attach_contacts.into(),
         };
-        let pass = ResolvePass::of(OwnMapSettings::square(params.map_size));
+        let map = OwnMapSettings { followed: Followed::Middle, ..OwnMapSettings::square(params.map_size) };
+        let pass = ResolvePass::of(map);
         self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
     }
 
