@@ -17,7 +17,6 @@ use crate::testing::{
     Case, Mesh, RECTANGLE, View, gpu, is_software, read_storage, run, test_ground, texture_of, view_of,
 };
 
-
 /// A number in [0, 1) of another.
 fn random(seed: u32) -> f32 {
     (hash_u32(seed) >> 8) as f32 / 16_777_216.0
