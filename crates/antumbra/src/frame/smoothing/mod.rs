@@ -13,6 +13,8 @@
 //! Per pixel: 4 bytes written and read, and the depth buffer once; in tiles that are not all of one visibility 24 pairs of
 //! neighbours in workgroup memory. Unlike [`denoise`](super::denoise) it keeps nothing from frame to frame.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 
 use super::inputs::{FrameInputs, PreparedInputs};
@@ -42,6 +44,8 @@ pub(crate) struct Smoothing {
     written_layout: wgpu::BindGroupLayout,
     read_layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
+    /// Of the last frame. Each light's commands fill it and read it before another's do, so lights share it.
+    noisy: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
 }
 
 /// The pass of one frame.
@@ -60,6 +64,7 @@ impl Smoothing {
             written_layout: Self::written_layout(gpu),
             pipeline: compute_pipeline(gpu, "smooth", shaders::SMOOTHING_SMOOTH, &[&inputs.layout, &read_layout]),
             read_layout,
+            noisy: None,
         }
     }
 
@@ -69,10 +74,14 @@ impl Smoothing {
     }
 
     /// Makes ready for a frame of so many pixels; where it `is_on`, the technique's pass writes noisy visibility, else the mask.
-    pub(crate) fn prepare(&self, stage: &Stage<'_>, size_px: UVec2, is_on: bool) -> PreparedSmoothing {
+    pub(crate) fn prepare(&mut self, stage: &Stage<'_>, size_px: UVec2, is_on: bool) -> PreparedSmoothing {
         let size_px = if is_on { size_px } else { UVec2::ONE };
         let scratch = stage.device.scratch_texture(Scratch::NoisyVisibility, &descriptor(size_px));
-        let noisy = &stage.create_view(&scratch, &wgpu::TextureViewDescriptor::default());
+        let made = self.noisy.take().filter(|(texture, _)| *texture == scratch);
+        let (_, noisy) = self.noisy.insert(made.unwrap_or_else(|| {
+            let view = stage.create_view(&scratch, &wgpu::TextureViewDescriptor::default());
+            (scratch, view)
+        }));
         PreparedSmoothing {
             written: NoisyWritten { noisy }.group(stage, &self.written_layout),
             read: is_on.then(|| (self.pipeline.clone(), NoisyRead { noisy }.group(stage, &self.read_layout))),
