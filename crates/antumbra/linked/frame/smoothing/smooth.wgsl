@@ -11,7 +11,7 @@ const SIDE = 14;
 
 const COUNT = 196u;
 
-const OF_HALF_WIDTH = 0.2;
+const OF_HALF_WIDTH = 0.12;
 
 const MOST_DEVIATION_PX = 2.0;
 

@@ -4,7 +4,7 @@
 //! resolve ──► visibility, least magnification ──► smooth ──► mask
 //! ```
 //!
-//! `smooth.wesl`: a Gaussian mean over neighbours on the same surface, whose standard deviation is a tenth of the penumbra's
+//! `smooth.wesl`: a Gaussian mean over neighbours on the same surface, whose standard deviation is .06 of the penumbra's
 //! width as the light's shape and the nearest blocker give it, 2 pixels at the most. Contacts, whose penumbrae are narrower than
 //! a few pixels, stay as they are. Few rays with their noise spread as blue noise are enough under it. Source of the idea: the
 //! filter widths of Mehta, Wang, Ramamoorthi 2012, "Axis-aligned filtering for interactive sampled soft shadows", here by the light's ellipse and with

@@ -25,7 +25,7 @@
 //! 3. **Early end.** Where the first quarter of the rays of all 64 pixels are free, or all blocked, so are the others; without
 //!    `smooth` likewise those of a pixel whose first half are.
 //! 4. **Means over pixels** (`smooth`; [`frame/smoothing`](crate::frame)). In penumbrae wider than eight pixels the first quarter of
-//!    the rays is all: what noise they leave is taken out by means over neighbours on the same surface, no wider than a tenth of the
+//!    the rays is all: what noise they leave is taken out by means over neighbours on the same surface, much narrower than the
 //!    penumbra, whose width follows from the light's shape and the nearest blocker that the rays found. In narrower ones all
 //!    rays are followed, and means reach less far.
 //!

@@ -9,7 +9,7 @@ params! {
         /// Rays to points of the light; with `smooth` a quarter of them where penumbrae are wide, but 16.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
-        /// Take means over neighbouring pixels on the same surface, no wider than a tenth of the penumbra.
+        /// Take means over neighbouring pixels on the same surface, much narrower than the penumbra.
         smooth: bool = true,
             more "true leaves less noise of fewer rays; false gives each pixel its own rays alone.";
         /// Reads of the map along a ray at the most: fewer where blockers lie at few depths.
