@@ -149,7 +149,7 @@ fn techniques_and_parameters() {
     render(&["--set", "map_size=big"], &["map_size", "`big`", "whole number"]);
     render(&["--set", "bias_scale=inf"], &["bias_scale", "`inf`", "a number from"]);
     render(&["--set", "map_size"], &["KEY=VALUE"]);
-    render(&["--set", "hard.map_size=512"], &["hard", "not among the chosen techniques (pcss)"]);
+    render(&["--set", "hard.map_size=512"], &["hard", "not among the chosen techniques (smrt)"]);
     let compare = |rest: &[&str], parts: &[&str]| {
         refuses(&[&["compare", "builtin:overlap", "-o", "out"], rest].concat(), parts);
     };

@@ -21,7 +21,7 @@
 //! # ) -> Result<(), Error> {
 //! // Once.
 //! let gpu = Gpu::new(device, queue);
-//! let mut shadow = TechniqueKind::Pcss.create(&gpu)?;
+//! let mut shadow = TechniqueKind::Smrt.create(&gpu)?;
 //! shadow.set("map_size", "2048")?;
 //! let mask = Mask::new(device, receivers.size_px);
 //! let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) };

@@ -22,7 +22,7 @@ fn the_library_in_thirty_lines(
 ) -> Result<(), Error> {
     // Once: a light of physical size, a technique, a mask of the picture's size.
     let gpu = Gpu::new(&device, &queue);
-    let mut shadow = TechniqueKind::Pcss.create(&gpu)?;
+    let mut shadow = TechniqueKind::Smrt.create(&gpu)?;
     let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) };
     let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO);
     let mask = Mask::new(&device, size_px);
@@ -66,7 +66,7 @@ fn once(device: wgpu::Device, queue: wgpu::Queue, size_px: UVec2) -> Result<(), 
     let gpu = Gpu::new(&device, &queue); // clone it; programs are made once for all clones
     let mut casters = CasterSet::new(&gpu); // what casts, for all lights
     let mask = Mask::new(&device, size_px); // one a light
-    let mut shadow = TechniqueKind::Pcss.create(&gpu)?; // one a light and view
+    let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // one a light and view
     Ok(())
 }
 
