@@ -211,7 +211,7 @@ impl App {
         match self.loader.take() {
             None => {}
             Some(Ok(Opened::Setup(path, setup))) => self.take_setup(path, setup),
-            Some(Ok(Opened::Scene(loaded))) => self.take_scene(ctx, loaded),
+            Some(Ok(Opened::Scene(loaded))) => self.take_scene(ctx, *loaded),
             Some(Err(why)) => {
                 if self.screenshot.is_some() {
                     self.finish(ctx, Err(why));

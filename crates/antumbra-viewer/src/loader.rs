@@ -61,7 +61,7 @@ impl Wanted {
 #[derive(Debug)]
 pub enum Opened {
     /// A scene.
-    Scene(Loaded),
+    Scene(Box<Loaded>),
     /// Camera and lights, by the name of their file.
     Setup(PathBuf, Setup),
 }
@@ -80,7 +80,7 @@ impl Loader {
         let sender = self.expect(&wanted.spec);
         aside(move || {
             // Nobody waits any longer where another scene was asked for meanwhile.
-            let _ = sender.send(load_now(wanted).map(Opened::Scene));
+            let _ = sender.send(load_now(wanted).map(|loaded| Opened::Scene(Box::new(loaded))));
             wake();
         });
     }
@@ -182,7 +182,7 @@ fn open_bytes(name: String, bytes: &[u8]) -> Outcome {
         return Ok(Opened::Setup(name.into(), setup));
     }
     let loaded = antumbra_scene::load_chosen(bytes, &name, &LoadOptions::default()).map_err(why)?;
-    Ok(Opened::Scene(finished(Wanted::plain(name), None, loaded)))
+    Ok(Opened::Scene(Box::new(finished(Wanted::plain(name), None, loaded))))
 }
 
 /// Whether a file of this name is a setup.
