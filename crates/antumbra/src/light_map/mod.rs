@@ -12,6 +12,8 @@ pub(crate) mod hosts_map;
 pub(crate) mod light_spread;
 pub(crate) mod light_view;
 pub(crate) mod map;
+#[cfg(any(feature = "light_views", feature = "ray_traced", feature = "receiver_lists"))]
+pub(crate) mod readable_meshes;
 pub(crate) mod still_view;
 pub(crate) mod sweep;
 #[cfg(feature = "multi_layer")]

@@ -6,7 +6,7 @@
 //! by a hash of their ends, and the entries of a slot are compared. 48 bytes a triangle, and 24 to 36 for its edges. Casters
 //! count as opaque: what holes a surface has its triangles do not tell.
 
-use crate::contract::{Error, MeshCaster, PreparedCasters, PreparedFrame};
+use crate::contract::{Error, MeshCaster};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, sized_buffer};
 use crate::shaders;
 
@@ -75,7 +75,7 @@ impl CasterTriangles {
         }
     }
 
-    /// Allocates what the casters' triangles need; their buffers are [readable](readable_meshes).
+    /// Allocates what the casters' triangles need; their buffers are [readable](crate::light_map::readable_meshes).
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -176,38 +176,4 @@ impl CasterTriangles {
 /// Positions, indices, instances.
 fn buffers_of<'a>(mesh: &MeshCaster<'a>) -> [&'a wgpu::Buffer; 3] {
     [mesh.positions, mesh.indices, mesh.instances]
-}
-
-/// The casters' meshes, if compute can read them; else what would be right, `or` what would do without.
-pub(crate) fn readable_meshes<'a>(
-    technique: &'static str,
-    frame: &PreparedFrame<'a>,
-    or: Option<&'static str>,
-) -> Result<&'a [MeshCaster<'a>], Error> {
-    let or = or.map_or(String::new(), |or| format!(", or {or}"));
-    let PreparedCasters::Draws(meshes) = frame.casters else {
-        return Err(Error::BadFrame {
-            technique,
-            what: "the casters",
-            had: "a depth map".into(),
-            needed: format!("meshes: their triangles are tested one by one{or}"),
-        });
-    };
-    for mesh in meshes {
-        let mut buffers = vec![("positions", mesh.positions), ("indices", mesh.indices), ("instances", mesh.instances)];
-        if let Some(texture) = mesh.opacity.texture() {
-            buffers.push(("uvs", texture.uvs));
-        }
-        if let Some((what, _)) = buffers.into_iter().find(|(_, b)| !b.usage().contains(wgpu::BufferUsages::STORAGE)) {
-            return Err(Error::BadFrame {
-                technique,
-                what: "a caster's buffer",
-                had: format!("`{what}` without the usage STORAGE"),
-                needed: format!(
-                    "readable in compute: add BufferUsages::STORAGE to positions, indices, instances and uvs{or}"
-                ),
-            });
-        }
-    }
-    Ok(meshes)
 }

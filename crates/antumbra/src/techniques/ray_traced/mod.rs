@@ -41,7 +41,7 @@ use crate::gpu::{
     Bindings, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, sized_buffer, upload_with_room,
 };
 use crate::light_map::caster_surface::SurfaceValues;
-use crate::light_map::caster_triangles::readable_meshes;
+use crate::light_map::readable_meshes::readable_meshes;
 use crate::shaders;
 use crate::techniques::{Coverage, Technique};
 

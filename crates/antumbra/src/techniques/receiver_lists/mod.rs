@@ -71,7 +71,7 @@ use glam::UVec2;
 use crate::contract::{DrawnLists, Error, ListLengths, ListLevel, ListOrder, PreparedFrame, param_choice};
 use crate::frame::inputs::{FrameInputs, PreparedInputs, clip_depth_rows, matrix_rounding_m};
 use crate::gpu::{Gpu, Recorder, Span, Stage, white_texture};
-use crate::light_map::caster_triangles::readable_meshes;
+use crate::light_map::readable_meshes::readable_meshes;
 use crate::primitives::prefix_scan::PrefixScan;
 
 pub mod alias_free;

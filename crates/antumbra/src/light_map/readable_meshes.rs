@@ -1,0 +1,37 @@
+//! Casters whose triangles compute reads.
+
+use crate::contract::{Error, MeshCaster, PreparedCasters, PreparedFrame};
+
+/// The casters' meshes, if compute can read them; else what would be right, `or` what would do without.
+pub(crate) fn readable_meshes<'a>(
+    technique: &'static str,
+    frame: &PreparedFrame<'a>,
+    or: Option<&'static str>,
+) -> Result<&'a [MeshCaster<'a>], Error> {
+    let or = or.map_or(String::new(), |or| format!(", or {or}"));
+    let PreparedCasters::Draws(meshes) = frame.casters else {
+        return Err(Error::BadFrame {
+            technique,
+            what: "the casters",
+            had: "a depth map".into(),
+            needed: format!("meshes: their triangles are tested one by one{or}"),
+        });
+    };
+    for mesh in meshes {
+        let mut buffers = vec![("positions", mesh.positions), ("indices", mesh.indices), ("instances", mesh.instances)];
+        if let Some(texture) = mesh.opacity.texture() {
+            buffers.push(("uvs", texture.uvs));
+        }
+        if let Some((what, _)) = buffers.into_iter().find(|(_, b)| !b.usage().contains(wgpu::BufferUsages::STORAGE)) {
+            return Err(Error::BadFrame {
+                technique,
+                what: "a caster's buffer",
+                had: format!("`{what}` without the usage STORAGE"),
+                needed: format!(
+                    "readable in compute: add BufferUsages::STORAGE to positions, indices, instances and uvs{or}"
+                ),
+            });
+        }
+    }
+    Ok(meshes)
+}
