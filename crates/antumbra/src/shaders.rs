@@ -22,6 +22,13 @@ shaders! {
     SMOOTHING_SMOOTH = "frame/smoothing/smooth";
     /// Masks of fewer bits than techniques write.
     NARROW_MASK_DRAW = "frame/narrow_mask/draw";
+    /// Points as receivers: from a host's buffers to textures.
+    POINTS_READ = "frame/points/read";
+    /// What a technique gave for points, into a host's buffer.
+    POINTS_WRITE = "frame/points/write";
+    /// What a frame's receivers are, for tests.
+    #[cfg(test)]
+    POINTS_PROBE = "frame/points/probe";
     /// Receivers of a multisampled depth buffer.
     SPLIT_RECEIVERS_DRAW = "frame/split_receivers/split";
     /// Parts of what a light reaches: the receivers of one.

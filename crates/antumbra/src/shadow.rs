@@ -9,9 +9,12 @@
 
 use std::fmt;
 
-use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
+use crate::contract::{
+    Denoise, DrawnLists, DrawnMap, Error, Mask, Overflow, Params, PreparedFrame, PreparedReceivers,
+};
 use crate::frame::denoise::{Denoiser, PreparedDenoise};
 use crate::frame::narrow_mask::NarrowMask;
+use crate::frame::points::PointTextures;
 use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
 
@@ -26,13 +29,13 @@ mod validate;
 mod warm_up;
 
 use anchored::{Anchored, anchor_of};
-use frame::FrameCasters;
+use frame::{Asked, FrameCasters, prepared};
 use frame_key::FrameKey;
 use parted::{Parted, PartedPasses};
 use validate::Validator;
 
 pub use any::AnyShadow;
-pub use frame::{Casters, Frame};
+pub use frame::{Casters, Frame, PointFrame};
 pub use warm_up::WarmUp;
 
 /// One light's shadow by a technique that is known at compile time.
@@ -50,6 +53,8 @@ pub struct Shadow<T: Technique> {
     parted: Option<Parted<T>>,
     /// Where the host's mask has fewer bits than the technique's.
     narrow: Option<NarrowMask>,
+    /// Where the last frame's receivers are points.
+    points: Option<PointTextures>,
     denoiser: Option<Denoiser>,
     keep: Keep,
     /// What the mask holds, where the last frame was recorded and no commands were dropped.
@@ -87,6 +92,7 @@ impl<T: Technique> Shadow<T> {
             technique: T::new(gpu)?,
             parted: None,
             narrow: None,
+            points: None,
             denoiser: None,
             keep: Keep::default(),
             mask: Content::default(),
@@ -100,20 +106,35 @@ impl<T: Technique> Shadow<T> {
     /// # Errors
     /// Where parameters, light or frame do not fit one another or the device. Nothing is left that draws.
     pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
+        self.prepare_asked(Asked::Mask(*frame))
+    }
+
+    /// Makes ready for points in place of a depth buffer. Give points a state of their own beside that of a light's mask: each
+    /// keeps what its last frame drew.
+    ///
+    /// What needs neighbours has no meaning for points and is not done: `sub` and the smoothing of `smrt`; `denoise` is refused.
+    ///
+    /// # Errors
+    /// As [`prepare`](Self::prepare).
+    pub fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error> {
+        self.prepare_asked(Asked::Points(*frame))
+    }
+
+    fn prepare_asked<'a>(&'a mut self, asked: Asked<'a>) -> Result<Prepared<'a>, Error> {
         self.params.validate(T::NAME)?;
-        self.validator.check(T::NAME, &self.gpu, frame, self.denoise.as_ref())?;
-        let casters = match frame.casters {
-            Casters::Set { set, layers } => Some(set.key(layers)),
+        self.validator.check(T::NAME, &self.gpu, &asked, self.denoise.as_ref())?;
+        let casters = match asked.casters() {
+            Casters::Set { set, layers } => Some(set.key(*layers)),
             Casters::Meshes(_) | Casters::DepthMap(_) => None,
         };
         let is_lost = self.commands.take_dropped() || !self.is_recorded;
         if is_lost {
             self.mask = Content::default();
         }
-        let key = FrameKey::of(&self.params, self.denoise.as_ref(), frame, casters);
+        let key = FrameKey::of(&self.params, self.denoise.as_ref(), &asked, casters);
         let is_same = self.mask.is_of(key.as_ref());
         if is_same && self.is_settled() {
-            return Ok(Prepared { frame: *frame, work: Box::new(FrameWork { shadow: self, passes: None }) });
+            return Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes: None }) });
         }
         self.is_recorded = false;
         if is_lost {
@@ -126,30 +147,30 @@ impl<T: Technique> Shadow<T> {
         }
         let gpu = self.gpu.clone();
         let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), casters)
-            .anchored(anchor_of(frame))
+            .anchored(anchor_of(&asked))
             .of_noise_frame(self.denoiser.as_ref().map_or(0, Denoiser::noise_frame));
-        let outcome = self.prepare_passes(&stage, frame, is_same);
+        let outcome = self.prepare_passes(&stage, &asked, is_same);
         let uploads;
         (self.keep, uploads) = stage.finish();
         let passes = Some((uploads, outcome?));
         self.mask.ask(key);
-        Ok(Prepared { frame: *frame, work: Box::new(FrameWork { shadow: self, passes }) })
+        Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes }) })
     }
 
     /// Prepares a frame's stages, from the host's mask back to the light: each writes the mask that the one before it reads.
     fn prepare_passes<'a>(
         &mut self,
         stage: &Stage<'_>,
-        frame: &Frame<'a>,
+        asked: &Asked<'a>,
         is_same: bool,
     ) -> Result<Passes<'a, T::Prepared>, Error> {
-        let casters = FrameCasters::of(&frame.casters)?;
-        let host = frame.prepared(&casters);
-        self.narrow =
-            NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, self.narrow.take()));
-        let wide = PreparedFrame { mask: self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide), ..host };
+        let casters = FrameCasters::of(asked.casters())?;
+        self.prepare_ends(stage, asked);
+        let (receivers, mask) = ends_of(asked, self.points.as_ref(), self.narrow.as_ref());
+        let wide = prepared(asked.light(), &casters, receivers, mask);
 
         let in_world = casters.meshes();
+        let host = wide;
         let anchored = Anchored::is_needed(stage.anchor(), &wide, in_world)
             .then(|| Anchored::new(stage.anchor(), &wide, in_world));
         let wide = anchored.as_ref().map_or(wide, |anchored| anchored.frame(&wide));
@@ -168,12 +189,30 @@ impl<T: Technique> Shadow<T> {
         Ok(Passes { casters, light, denoise })
     }
 
-    /// Records a frame's stages, in the order of the data: the technique, denoising, conversion of the mask.
-    fn record_passes(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>, passes: Passes<'_, T::Prepared>) {
+    /// Prepares what stands between the host's receivers and mask and those of techniques.
+    fn prepare_ends(&mut self, stage: &Stage<'_>, asked: &Asked<'_>) {
+        (self.narrow, self.points) = match asked {
+            Asked::Mask(Frame { mask, .. }) => {
+                (NarrowMask::serves(mask).then(|| NarrowMask::prepare(stage, mask, self.narrow.take())), None)
+            }
+            Asked::Points(frame) => {
+                let earlier = self.points.take();
+                let points =
+                    PointTextures::prepare(stage, &frame.receivers, frame.visibilities, frame.channels, earlier);
+                (None, Some(points))
+            }
+        };
+    }
+
+    /// Records a frame's stages, in the order of the data: reading of points, the technique, denoising, conversion of the mask.
+    fn record_passes(&self, recorder: &mut Recorder<'_>, asked: &Asked<'_>, passes: Passes<'_, T::Prepared>) {
         let Passes { casters, light, denoise } = passes;
-        let smooth = self.narrow.as_ref().map_or(frame.mask, NarrowMask::wide);
+        let (receivers, smooth) = ends_of(asked, self.points.as_ref(), self.narrow.as_ref());
         let mask = denoise.as_ref().map_or(smooth, |denoise| &denoise.noisy);
-        let noisy = PreparedFrame { mask, ..frame.prepared(&casters) };
+        let noisy = prepared(asked.light(), &casters, receivers, mask);
+        if let Some(points) = &self.points {
+            points.record_read(recorder);
+        }
         match (light, &self.parted) {
             (LightPasses::Whole(technique), _) => self.technique.record(recorder, &noisy, &technique),
             (LightPasses::Parts(parts), Some(parted)) => {
@@ -184,8 +223,11 @@ impl<T: Technique> Shadow<T> {
         if let Some(denoise) = &denoise {
             denoise.record(recorder);
         }
-        if let Some(narrow) = &self.narrow {
+        if let (Some(narrow), Asked::Mask(frame)) = (&self.narrow, asked) {
             narrow.record(recorder, frame.mask);
+        }
+        if let Some(points) = &self.points {
+            points.record_write(recorder);
         }
     }
 
@@ -217,6 +259,7 @@ impl<T: Technique> Shadow<T> {
         self.technique.memory_bytes()
             + self.parted.as_ref().map_or(0, Parted::memory_bytes)
             + self.denoiser.as_ref().map_or(0, Denoiser::memory_bytes)
+            + self.points.as_ref().map_or(0, PointTextures::memory_bytes)
     }
 
     /// The depth maps that the frame prepared last draws and its mask is read from, to be looked at once its commands have
@@ -248,6 +291,19 @@ impl<T: Technique> Shadow<T> {
     }
 }
 
+/// A frame's receivers and mask as techniques have them: the host's, or textures that stand for them.
+fn ends_of<'f>(
+    asked: &'f Asked<'_>,
+    points: Option<&'f PointTextures>,
+    narrow: Option<&'f NarrowMask>,
+) -> (PreparedReceivers<'f>, &'f Mask) {
+    match (asked, points) {
+        (Asked::Points(frame), Some(points)) => (points.receivers(&frame.receivers), points.mask()),
+        (Asked::Mask(frame), _) => (frame.receivers.into(), narrow.map_or(frame.mask, NarrowMask::wide)),
+        (Asked::Points(_), None) => unreachable!("`prepare_ends` came before"),
+    }
+}
+
 /// Passes of one frame; `P` is the technique's.
 struct Passes<'a, P> {
     casters: FrameCasters<'a>,
@@ -267,13 +323,12 @@ enum LightPasses<'a, P> {
 /// A frame of one light, ready to be recorded. It goes before what the frame borrows: declare a list of them after their casters.
 #[must_use = "nothing is drawn before it is recorded"]
 pub struct Prepared<'a> {
-    frame: Frame<'a>,
     work: Box<dyn Work + 'a>,
 }
 
 impl fmt::Debug for Prepared<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Prepared").field("frame", &self.frame).finish_non_exhaustive()
+        f.debug_tuple("Prepared").field(self.work.asked()).finish()
     }
 }
 
@@ -285,31 +340,36 @@ impl Prepared<'_> {
 
     /// Records the frame's uploads and passes: none where the mask holds just this frame.
     pub fn record(self, recorder: &mut Recorder<'_>) {
-        self.work.record(recorder, &self.frame);
+        self.work.record(recorder);
     }
 }
 
 /// A frame's work by whatever technique.
 trait Work: wgpu::WasmNotSendSync {
+    fn asked(&self) -> &dyn fmt::Debug;
     fn overflow(&self) -> Option<Overflow>;
-    fn record(self: Box<Self>, recorder: &mut Recorder<'_>, frame: &Frame<'_>);
+    fn record(self: Box<Self>, recorder: &mut Recorder<'_>);
 }
 
 /// A light's state while a frame of it waits to be recorded.
 struct FrameWork<'a, T: Technique> {
     shadow: &'a mut Shadow<T>,
+    asked: Asked<'a>,
     /// `None` where the mask holds the frame.
     passes: Option<(StagedUploads, Passes<'a, T::Prepared>)>,
 }
 
 impl<T: Technique> Work for FrameWork<'_, T> {
+    fn asked(&self) -> &dyn fmt::Debug {
+        &self.asked
+    }
     fn overflow(&self) -> Option<Overflow> {
         self.shadow.overflow()
     }
-    fn record(self: Box<Self>, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+    fn record(self: Box<Self>, recorder: &mut Recorder<'_>) {
         let Some((uploads, passes)) = self.passes else { return };
         recorder.upload(uploads, self.shadow.commands.end());
-        self.shadow.record_passes(recorder, frame, passes);
+        self.shadow.record_passes(recorder, &self.asked, passes);
         self.shadow.is_recorded = true;
     }
 }

@@ -5,8 +5,8 @@
 
 use antumbra::light::{Aabb, Light, LightShape};
 use antumbra::{
-    AnyShadow, CasterSet, Casters, Denoise, DepthConvention, Error, Frame, Gpu, Mask, MeshCaster, Opacity, Receivers,
-    Recorder, SplitReceivers, TechniqueKind,
+    AnyShadow, CasterSet, Casters, Denoise, DepthConvention, Error, Frame, Gpu, Mask, MaskChannels, MeshCaster,
+    Opacity, PointBuffer, PointFrame, PointReceivers, Receivers, Recorder, SplitReceivers, TechniqueKind,
 };
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
@@ -115,5 +115,23 @@ fn a_preset(gpu: Gpu) -> Result<(), Box<dyn std::error::Error>> {
     let mut shadow = TechniqueKind::Pcss.create(&gpu)?;
     shadow.set("map_size", "2048")?;
     shadow.set("means", "ranges")?;
+    Ok(())
+}
+
+/// docs/integrating.md, Points in place of a depth buffer.
+fn points_in_place_of_a_depth_buffer(
+    shadow: &mut AnyShadow,
+    (light, casters): (&Light, Casters<'_>),
+    (point_buffer, normal_buffer, visibilities): (wgpu::Buffer, wgpu::Buffer, wgpu::Buffer),
+    (count, bounds): (u32, Aabb),
+    mut recorder: Recorder<'_>,
+) -> Result<(), Error> {
+    let receivers = PointReceivers {
+        normals: Some(PointBuffer::packed(&normal_buffer)), // or `None`: each faces the light
+        ..PointReceivers::new(count, PointBuffer::packed(&point_buffer), bounds)
+    };
+    let channels = MaskChannels::One; // or three floats a point, where casters tint
+    let frame = PointFrame { light: &light, casters, receivers, visibilities: &visibilities, channels };
+    shadow.prepare_points(&frame)?.record(&mut recorder);
     Ok(())
 }

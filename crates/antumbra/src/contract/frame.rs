@@ -4,7 +4,7 @@ use std::fmt;
 
 use antumbra_light::{Aabb, Light};
 
-use super::{Mask, PreparedCasters, Receivers};
+use super::{Mask, PreparedCasters, PreparedReceivers, Surfaces};
 
 /// One light's work for one frame, as techniques receive it: casters are drawn as they are, places are counted from the frame's
 /// anchor.
@@ -15,22 +15,24 @@ pub struct PreparedFrame<'a> {
     /// What casts.
     pub casters: PreparedCasters<'a>,
     /// What receives.
-    pub receivers: Receivers<'a>,
+    pub receivers: PreparedReceivers<'a>,
     /// Where visibility goes; the receivers' size.
     pub mask: &'a Mask,
 }
 
 impl PreparedFrame<'_> {
-    /// Whether the camera's near plane may lie within a box that the light is outside of. A room's box, which holds both its lamp and
-    /// the camera, tells nothing of the walls, which hold neither.
+    /// Whether receivers may lie within a box of a closed caster, or the camera may see it from there, while the light is outside. A
+    /// room's box, which holds both its lamp and the camera, tells nothing of the walls, which hold neither; where points may lie
+    /// anywhere, it does not matter whether it holds the lamp.
     #[cfg_attr(not(any(feature = "ray_traced", feature = "receiver_lists")), allow(dead_code))]
     pub(crate) fn sees_within(&self) -> impl Fn(&Aabb) -> bool + use<> {
-        let near = self.receivers.near_box();
-        let light = (!self.light.is_distant()).then_some(self.light.center);
+        let within = self.receivers.box_within();
+        let are_anywhere = matches!(self.receivers.surfaces, Surfaces::Points { .. });
+        let light = (!self.light.is_distant() && !are_anywhere).then_some(self.light.center);
         move |bounds| {
-            let meets_near = bounds.min.cmple(near.max).all() && bounds.max.cmpge(near.min).all();
+            let meets = bounds.min.cmple(within.max).all() && bounds.max.cmpge(within.min).all();
             let holds_light = light.is_some_and(|x| x.cmpge(bounds.min).all() && x.cmple(bounds.max).all());
-            meets_near && !holds_light
+            meets && !holds_light
         }
     }
 }

@@ -19,6 +19,7 @@ mod frame;
 mod mask;
 mod param_macros;
 mod params;
+mod points;
 mod quality;
 mod receivers;
 
@@ -34,6 +35,7 @@ pub use frame::{Overflow, PreparedFrame};
 pub use mask::{Mask, MaskChannels, MaskPlace};
 pub(crate) use param_macros::{declare_params, param_choice, params, params_in_full};
 pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};
+pub use points::{PointBuffer, PointReceivers, PointWidths};
 pub use quality::{Departure, Printed, Quality};
 pub(crate) use receivers::SeenPoint;
-pub use receivers::{DepthConvention, Receivers};
+pub use receivers::{Camera, DepthConvention, PreparedReceivers, Receivers, Surfaces};

@@ -1,7 +1,7 @@
 //! What receives shadows: the host's depth buffer and the camera that it was rendered with.
 
 use antumbra_light::{Aabb, ShadowDistance, hash_u32, polytope_corners, unit_f32};
-use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec3};
+use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec3, Vec4};
 
 /// A point that may be seen, and how many pixels see the like.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,123 @@ pub struct Receivers<'a> {
     pub version: Option<u64>,
 }
 
-impl Receivers<'_> {
+/// The camera of a depth buffer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Its pose.
+    pub view_from_world: Mat4,
+    /// Its projection.
+    pub clip_from_view: Mat4,
+    /// Which way its depth runs.
+    pub depth_convention: DepthConvention,
+}
+
+impl Camera {
+    /// Its place, in double precision as far as the matrix has it.
+    pub(crate) fn eye_in_world(&self) -> DVec3 {
+        self.view_from_world.as_dmat4().inverse().w_axis.truncate()
+    }
+
+    fn clip_from_world(&self) -> DMat4 {
+        self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4()
+    }
+
+    /// World-space box of the near plane, as far as the camera sees of it.
+    fn near_box(&self) -> Aabb {
+        let world_from_clip = self.clip_from_world().inverse();
+        let near = 1.0 - f64::from(self.depth_convention.background());
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        Aabb::of(corners.map(|(x, y)| world_from_clip.project_point3(DVec3::new(x, y, near)).as_vec3()))
+    }
+
+    /// The rows of its clip-from-world matrix that a depth buffer's values come from: depth is z / w.
+    pub(crate) fn clip_depth_rows(&self) -> [Vec4; 2] {
+        let clip_from_world = self.clip_from_world();
+        [clip_from_world.row(2).as_vec4(), clip_from_world.row(3).as_vec4()]
+    }
+}
+
+/// Where receivers are read from. Points have no camera: nothing that depends on one is done for them.
+#[derive(Clone, Copy, Debug)]
+pub enum Surfaces<'a> {
+    /// A depth buffer; neighbouring pixels mostly see one surface.
+    Depth {
+        /// The depth buffer.
+        depth: &'a wgpu::TextureView,
+        /// Its camera.
+        camera: Camera,
+    },
+    /// Points in any order, in rows of texels. A point's neighbours there tell nothing of it.
+    Points {
+        /// Position in xyz, width in w. A point is where the normal's w is not zero.
+        positions: &'a wgpu::TextureView,
+        /// Whether the host brought normals: then points lie on surfaces, else anywhere, within closed casters too.
+        on_surfaces: bool,
+    },
+}
+
+/// The receivers of one frame, as techniques receive them.
+#[derive(Clone, Copy, Debug)]
+pub struct PreparedReceivers<'a> {
+    /// Size of the mask, and of the receivers' texels.
+    pub size_px: UVec2,
+    /// Where these begin.
+    pub origin_px: UVec2,
+    /// What they are.
+    pub surfaces: Surfaces<'a>,
+    /// World-space normals; points always have some.
+    pub normals: Option<&'a wgpu::TextureView>,
+    /// As [`Receivers::bounds`].
+    pub bounds: Option<Aabb>,
+    /// As [`Receivers::hull`].
+    pub hull: &'a [Vec3],
+    /// As [`Receivers::seen`].
+    pub seen: &'a [Vec3],
+    /// As [`Receivers::shadow_distance`].
+    pub shadow_distance: Option<ShadowDistance>,
+}
+
+impl<'a> From<Receivers<'a>> for PreparedReceivers<'a> {
+    fn from(receivers: Receivers<'a>) -> Self {
+        let Receivers { view_from_world, clip_from_view, depth_convention, .. } = receivers;
+        Self {
+            size_px: receivers.size_px,
+            origin_px: receivers.origin_px,
+            surfaces: Surfaces::Depth {
+                depth: receivers.depth,
+                camera: Camera { view_from_world, clip_from_view, depth_convention },
+            },
+            normals: receivers.normals,
+            bounds: receivers.bounds,
+            hull: receivers.hull,
+            seen: receivers.seen,
+            shadow_distance: receivers.shadow_distance,
+        }
+    }
+}
+
+impl<'a> PreparedReceivers<'a> {
+    /// The camera; points have none.
+    pub(crate) fn camera(&self) -> Option<&Camera> {
+        match &self.surfaces {
+            Surfaces::Depth { camera, .. } => Some(camera),
+            Surfaces::Points { .. } => None,
+        }
+    }
+
+    /// The texels that passes over the receivers read: depth, or positions.
+    pub(crate) fn texels(&self) -> &'a wgpu::TextureView {
+        match self.surfaces {
+            Surfaces::Depth { depth, .. } => depth,
+            Surfaces::Points { positions, .. } => positions,
+        }
+    }
+
+    /// Whether texels that lie together mostly are of one surface, so that one can be told from the others.
+    pub(crate) fn have_neighbours(&self) -> bool {
+        matches!(self.surfaces, Surfaces::Depth { .. })
+    }
+
     /// World-space points whose convex hull holds every receiver: the host's, or the corners of what the camera sees of
     /// `bounds`. None where there are neither.
     pub(crate) fn corners(&self) -> Vec<Vec3> {
@@ -77,51 +193,50 @@ impl Receivers<'_> {
             return self.hull.to_vec();
         }
         let Some(bounds) = self.bounds.filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
-        let corners = seen_corners(bounds, &self.frustum_planes());
+        let Some(planes) = self.frustum_planes() else { return bounds.corners().to_vec() };
+        let corners = seen_corners(bounds, &planes);
         // Where rounding leaves a camera nothing to see, the box is still right.
         if corners.is_empty() { bounds.corners().to_vec() } else { corners }
     }
 
-    /// The camera's place, in double precision as far as the matrix has it.
-    pub(crate) fn eye_in_world(&self) -> DVec3 {
-        self.view_from_world.as_dmat4().inverse().w_axis.truncate()
-    }
-
-    /// World-space box of the near plane, as far as the camera sees of it.
-    pub(crate) fn near_box(&self) -> Aabb {
-        let world_from_clip = (self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4()).inverse();
-        let near = 1.0 - f64::from(self.depth_convention.background());
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-        Aabb::of(corners.map(|(x, y)| world_from_clip.project_point3(DVec3::new(x, y, near)).as_vec3()))
+    /// World-space box in which receivers may lie within a closed caster and be asked about all the same: the camera's near plane,
+    /// which may show a caster's inside, or points that may be anywhere.
+    pub(crate) fn box_within(&self) -> Aabb {
+        const ANYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
+        match &self.surfaces {
+            Surfaces::Depth { camera, .. } => camera.near_box(),
+            Surfaces::Points { on_surfaces: true, .. } => Aabb::EMPTY,
+            Surfaces::Points { on_surfaces: false, .. } => self.bounds.unwrap_or(ANYWHERE),
+        }
     }
 
     /// The plane across the view at the shadow distance, where there is one: `plane · (x, 1) ≥ 0` before it. Whatever lies
     /// beyond it is farther from the eye than shadows are drawn.
     pub(crate) fn shadow_end_plane(&self) -> Option<DVec4> {
-        let end_m = f64::from(self.shadow_distance?.end_m);
+        let (camera, end_m) = (self.camera()?, f64::from(self.shadow_distance?.end_m));
         // The camera looks along −z, and its matrix is rigid.
-        Some(self.view_from_world.as_dmat4().row(2) + DVec4::W * end_m)
+        Some(camera.view_from_world.as_dmat4().row(2) + DVec4::W * end_m)
     }
 
-    /// The planes between which the camera sees: `plane · (x, 1) ≥ 0`.
-    pub(crate) fn frustum_planes(&self) -> [DVec4; 5] {
-        frustum_planes(self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4())
+    /// The planes between which the camera sees: `plane · (x, 1) ≥ 0`; points are not seen by any.
+    pub(crate) fn frustum_planes(&self) -> Option<[DVec4; 5]> {
+        self.camera().map(|camera| frustum_planes(camera.clip_from_world()))
     }
 }
 
-/// How many points [`Receivers::seen_points`] takes at most.
+/// How many points [`PreparedReceivers::seen_points`] takes at most.
 const SEEN_POINTS: u32 = 512;
 
-impl Receivers<'_> {
+impl PreparedReceivers<'_> {
     /// Points that the camera sees, or else points of the convex hull of `corners` that it may see, each weighted by the
-    /// pixels that a surface there covers: by 1 / w².
+    /// pixels that a surface there covers: by 1 / w². Without a camera all weigh the same.
     pub(crate) fn seen_points(&self, corners: &[Vec3]) -> Vec<SeenPoint> {
         if !self.seen.is_empty() {
             let every = self.seen.len().div_ceil(SEEN_POINTS as usize);
             let seen = self.seen.iter().step_by(every);
             return seen.map(|p| SeenPoint { pos_in_world: *p, weight: 1.0 }).collect();
         }
-        let clip_from_world = self.clip_from_view * self.view_from_world;
+        let clip_from_world = self.camera().map(|camera| camera.clip_from_view * camera.view_from_world);
         let corner = |u: f32| corners[((u * corners.len() as f32) as usize).min(corners.len() - 1)];
         let points = if corners.is_empty() { 0 } else { SEEN_POINTS };
         (0..points)
@@ -136,6 +251,9 @@ impl Receivers<'_> {
                     + corner(u(3)) * (1.0 - cuts[2])
             })
             .filter_map(|pos_in_world| {
+                let Some(clip_from_world) = clip_from_world else {
+                    return Some(SeenPoint { pos_in_world, weight: 1.0 });
+                };
                 let clip = clip_from_world * pos_in_world.extend(1.0);
                 let is_seen = clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w;
                 is_seen.then(|| SeenPoint { pos_in_world, weight: 1.0 / (clip.w * clip.w) })

@@ -37,7 +37,7 @@ use std::f32::consts::FRAC_PI_2;
 use antumbra_light::{Light, LightFrame, LightShape};
 use glam::{Vec3, Vec4};
 
-use crate::contract::{MeshCaster, PreparedCasters, PreparedFrame, Receivers};
+use crate::contract::{MeshCaster, PreparedCasters, PreparedFrame, PreparedReceivers};
 use crate::light_map::central_view::central_reach;
 use crate::light_map::light_view::{HORIZON_TANGENT, MIDDLE_TANGENT};
 use crate::light_map::sweep::Sweep;
@@ -158,7 +158,7 @@ fn one_map_holds(light: &Light, corners: &[Vec3]) -> bool {
 
 /// What the light reaches, cut into what one map holds each, with numbers that are the same from frame to frame; none where
 /// one does for all of the body.
-fn sectors_of(light: &Light, receivers: &Receivers<'_>, body: &Body, still: &mut Still) -> Vec<(u32, Sector)> {
+fn sectors_of(light: &Light, receivers: &PreparedReceivers<'_>, body: &Body, still: &mut Still) -> Vec<(u32, Sector)> {
     if light.is_distant() {
         let slices = slices::slices_of(light, receivers, body.corners(), &mut still.ends).into_iter();
         let sector = |region| Sector { region, ..Sector::whole(light) };
@@ -204,7 +204,7 @@ impl Part {
 }
 
 /// Points whose convex hull holds every receiver: of the casters' boxes where nothing more is known.
-fn corners_of(receivers: &Receivers<'_>, meshes: &[MeshCaster<'_>]) -> Vec<Vec3> {
+fn corners_of(receivers: &PreparedReceivers<'_>, meshes: &[MeshCaster<'_>]) -> Vec<Vec3> {
     let mut corners = receivers.corners();
     if corners.is_empty() {
         corners = meshes.iter().flat_map(|mesh| mesh.bounds.corners()).collect();

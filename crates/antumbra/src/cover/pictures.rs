@@ -8,7 +8,7 @@ use glam::UVec2;
 
 use super::Part;
 use super::region::RegionGpu;
-use crate::contract::{Mask, MaskChannels, PreparedFrame, Receivers};
+use crate::contract::{Mask, MaskChannels, PreparedFrame, PreparedReceivers, Surfaces};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::gpu::{
@@ -51,6 +51,8 @@ pub(crate) struct PartPictures {
     join: wgpu::ComputePipeline,
     /// A texture of one texel in place of normals that the host has.
     no_normals: wgpu::TextureView,
+    /// The same in place of depth that points have none of.
+    no_depth: wgpu::TextureView,
     /// Of the last frame.
     picture: Option<Picture>,
 }
@@ -69,7 +71,9 @@ pub(crate) struct PreparedPictures {
 /// Receivers and mask of a part.
 #[derive(Clone, Debug)]
 struct Picture {
-    depth: (Arc<wgpu::Texture>, wgpu::TextureView),
+    /// None of points, which normals alone tell from background.
+    depth: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
+    /// None where the host's do.
     normals: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
     scratch: Arc<wgpu::Texture>,
     mask: Mask,
@@ -79,11 +83,15 @@ impl PartPictures {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let inputs = FrameInputs::new(gpu);
         let layouts = [Picked::layout(gpu), Joined::layout(gpu)];
-        let no_normals = gpu.device.create_texture(&written(NORMAL_FORMAT, UVec2::ONE));
+        let one_texel = |format| {
+            let texture = gpu.device.create_texture(&written(format, UVec2::ONE));
+            gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
+        };
         Self {
             pick: compute_pipeline(gpu, "receivers of a part", shaders::COVER_PICK, &[&inputs.layout, &layouts[0]]),
             join: compute_pipeline(gpu, "mask of a part", shaders::COVER_JOIN, &[&inputs.layout, &layouts[1]]),
-            no_normals: gpu.device.create_view(&no_normals, &wgpu::TextureViewDescriptor::default()),
+            no_normals: one_texel(NORMAL_FORMAT),
+            no_depth: one_texel(DEPTH_FORMAT),
             inputs,
             layouts,
             picture: None,
@@ -101,7 +109,8 @@ impl PartPictures {
             let joining = JoiningGpu { is_first: u32::from(i == 0), ..JoiningGpu::of(frame.receivers.shadow_distance) };
             let joining = &stage.storage::<JoiningGpu>("antumbra joining", &[joining]);
             let normals = picture.normals.as_ref().map_or(&self.no_normals, |(_, view)| view);
-            let picked = Picked { region, part_depth: &picture.depth.1, part_normals: normals };
+            let depth = picture.depth.as_ref().map_or(&self.no_depth, |(_, view)| view);
+            let picked = Picked { region, part_depth: depth, part_normals: normals };
             let joined = Joined { region, part_mask: picture.mask.layers_view(), joining };
             groups.push([picked.group(stage, &self.layouts[0]), joined.group(stage, &self.layouts[1])]);
         }
@@ -112,8 +121,8 @@ impl PartPictures {
     /// Bytes of the picture.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.picture.as_ref().map_or(0, |picture| {
-            texture_bytes(&picture.depth.0)
-                + picture.normals.as_ref().map_or(0, |(texture, _)| texture_bytes(texture))
+            let own = [&picture.depth, &picture.normals].into_iter().flatten();
+            own.map(|(texture, _)| texture_bytes(texture)).sum::<u64>()
                 + texture_bytes(&picture.scratch)
         })
     }
@@ -123,8 +132,12 @@ impl PreparedPictures {
     /// A part's frame: its light, its receivers, a mask of its own; the frame's casters.
     pub(crate) fn frame_of<'a>(&'a self, frame: &PreparedFrame<'a>, part: &'a Part) -> PreparedFrame<'a> {
         let picture = &self.picture;
-        let receivers = Receivers {
-            depth: &picture.depth.1,
+        let surfaces = match (&picture.depth, frame.receivers.surfaces) {
+            (Some((_, depth)), Surfaces::Depth { camera, .. }) => Surfaces::Depth { depth, camera },
+            (_, surfaces) => surfaces,
+        };
+        let receivers = PreparedReceivers {
+            surfaces,
             normals: picture.normals.as_ref().map(|(_, view)| view).or(frame.receivers.normals),
             bounds: Some(antumbra_light::Aabb::of(part.hull.iter().copied())),
             hull: &part.hull,
@@ -172,6 +185,7 @@ impl Picture {
     /// With the textures of an earlier one, where they do.
     fn prepare(stage: &Stage<'_>, frame: &PreparedFrame<'_>, earlier: Option<&Self>) -> Self {
         let receivers = &frame.receivers;
+        let are_seen = receivers.camera().is_some();
         // The host's normals are read where they are, and depth beside them.
         let size_px = receivers.origin_px + receivers.size_px;
         let texture = |scratch, format| {
@@ -184,8 +198,8 @@ impl Picture {
             .filter(|earlier| earlier.scratch == scratch)
             .map_or_else(|| Mask::of_layers(&scratch, 0, frame.mask.channels()), |earlier| earlier.mask.clone());
         Self {
-            depth: texture(Scratch::PartDepth, DEPTH_FORMAT),
-            normals: receivers.normals.is_none().then(|| texture(Scratch::PartNormals, NORMAL_FORMAT)),
+            depth: are_seen.then(|| texture(Scratch::PartDepth, DEPTH_FORMAT)),
+            normals: (!are_seen || receivers.normals.is_none()).then(|| texture(Scratch::PartNormals, NORMAL_FORMAT)),
             scratch,
             mask,
         }

@@ -3,7 +3,7 @@
 use antumbra_light::{Aabb, enclosing_planes, polytope_corners};
 use glam::{DVec4, Vec3, Vec4};
 
-use crate::contract::{MeshCaster, Receivers};
+use crate::contract::{MeshCaster, PreparedReceivers};
 use crate::gpu::gpu_structs;
 
 /// Planes that a region may have: as many as `cover/region.wesl` has room for.
@@ -100,10 +100,10 @@ pub(crate) struct Body {
 
 impl Body {
     /// What the camera sees of the convex hull of some corners, as far as there are shadows, or little more.
-    pub(crate) fn of(receivers: &Receivers<'_>, corners: &[Vec3]) -> Self {
+    pub(crate) fn of(receivers: &PreparedReceivers<'_>, corners: &[Vec3]) -> Self {
         let size_m = f64::from(Aabb::of(corners.iter().copied()).diagonal());
         let mut planes = enclosing_planes(corners);
-        planes.extend(receivers.frustum_planes());
+        planes.extend(receivers.frustum_planes().into_iter().flatten());
         planes.extend(receivers.shadow_end_plane());
         let corners = polytope_corners(&planes, size_m);
         let touches = |plane: &DVec4| {

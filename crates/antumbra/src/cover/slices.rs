@@ -16,7 +16,7 @@ use antumbra_light::Light;
 use glam::{Vec2, Vec3};
 
 use super::region::Region;
-use crate::contract::Receivers;
+use crate::contract::PreparedReceivers;
 
 /// Depths within this ratio need no slices.
 const WORTH_SLICES: f32 = 16.0;
@@ -87,18 +87,19 @@ pub(super) struct Slice {
 }
 
 /// The slices, from near to far; none where one map does as well. `corners` span all receivers, `ends` are those of the
-/// frame before, and then of this one.
+/// frame before, and then of this one. Points, which no camera sees, have none.
 pub(super) fn slices_of(
     sun: &Light,
-    receivers: &Receivers<'_>,
+    receivers: &PreparedReceivers<'_>,
     corners: &[Vec3],
     ends: &mut Option<SliceEnds>,
 ) -> Vec<Slice> {
     let before = ends.take();
-    let eye = receivers.eye_in_world().as_vec3();
+    let Some(camera) = receivers.camera() else { return Vec::new() };
+    let eye = camera.eye_in_world().as_vec3();
     // The camera looks along −z, and its matrix is rigid.
-    let forward = -receivers.view_from_world.row(2).truncate().normalize_or_zero();
-    let is_perspective = receivers.clip_from_view.row(3).w == 0.0;
+    let forward = -camera.view_from_world.row(2).truncate().normalize_or_zero();
+    let is_perspective = camera.clip_from_view.row(3).w == 0.0;
     if !is_perspective || forward == Vec3::ZERO {
         return Vec::new();
     }
@@ -109,7 +110,7 @@ pub(super) fn slices_of(
         return Vec::new();
     }
     let Some(found) = SliceEnds::between(from, to, before) else { return Vec::new() };
-    let pixel_at_1m = 2.0 / (receivers.clip_from_view.y_axis.y.abs() * receivers.size_px.y as f32);
+    let pixel_at_1m = 2.0 / (camera.clip_from_view.y_axis.y.abs() * receivers.size_px.y as f32);
     let pixels_m = FINE_PIXELS * pixel_at_1m * SLICE_RATIO * from;
     if width_across(sun, corners) * stays_for / USUAL_TEXELS <= pixels_m {
         return Vec::new();
@@ -135,7 +136,7 @@ fn end_m(power: i32) -> f32 {
 const LEAST_POWER: i32 = -128;
 
 /// From which depth to which there are receivers, but for few that are nearer. `corners` span them all.
-fn depths_of(receivers: &Receivers<'_>, corners: &[Vec3], eye: Vec3, forward: Vec3) -> (f32, f32) {
+fn depths_of(receivers: &PreparedReceivers<'_>, corners: &[Vec3], eye: Vec3, forward: Vec3) -> (f32, f32) {
     let depth = |x: &Vec3| (*x - eye).dot(forward);
     let (nearest, farthest) =
         corners.iter().map(depth).fold((f32::INFINITY, 0.0f32), |(low, high), depth| (low.min(depth), high.max(depth)));

@@ -3,7 +3,7 @@ use glam::camera::rh::view::look_at_mat4;
 use glam::{Vec2, Vec3};
 
 use super::*;
-use crate::contract::Mask;
+use crate::contract::{Mask, Receivers};
 use crate::testing::{Mesh, SIZE, empty_depth, gpu, test_receivers};
 
 fn light(shape: LightShape) -> Light {
@@ -115,7 +115,7 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
         // From so high that all of it is seen.
         let view_from_world = look_at_mat4(Vec3::new(0.0, 150.0, 1.0), Vec3::ZERO, Vec3::Y);
         let receivers = Receivers { hull, view_from_world, ..test_receivers(SIZE, &depth) };
-        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(casters), receivers, mask: &mask };
+        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(casters), receivers: receivers.into(), mask: &mask };
         parts_of(&frame, coverage, Vec3::ZERO, &mut Still::default())
     };
     let parts = |light: &Light, hull: &[Vec3], coverage| parts_with(&casters, light, hull, coverage);
@@ -156,7 +156,7 @@ fn a_sun_has_slices_where_one_map_is_too_coarse() {
     let depth = empty_depth(gpu, SIZE);
     let (sun, far) = world(1000.0);
     let receivers = Receivers { hull: &far, ..test_receivers(SIZE, &depth) };
-    let slices = slices::slices_of(&sun, &receivers, Body::of(&receivers, &far).corners(), &mut None);
+    let slices = slices::slices_of(&sun, &receivers.into(), Body::of(&receivers.into(), &far).corners(), &mut None);
     assert!((3..=8).contains(&slices.len()), "{} slices", slices.len());
     let world_from_view = receivers.view_from_world.inverse();
     let mut held = vec![0; slices.len()];
@@ -173,10 +173,10 @@ fn a_sun_has_slices_where_one_map_is_too_coarse() {
     // Where it is known what is seen, slices begin there.
     let seen: Vec<Vec3> = (0..500).map(|i| world_from_view.transform_point3(Vec3::Z * -(200.0 + i as f32))).collect();
     let receivers = Receivers { seen: &seen, ..receivers };
-    assert!(slices::slices_of(&sun, &receivers, &far, &mut None).is_empty(), "all that is seen is far");
+    assert!(slices::slices_of(&sun, &receivers.into(), &far, &mut None).is_empty(), "all that is seen is far");
     let (_, near) = world(3.0);
     let receivers = Receivers { hull: &near, ..test_receivers(SIZE, &depth) };
-    assert!(slices::slices_of(&sun, &receivers, &near, &mut None).is_empty(), "one map does for a few metres");
+    assert!(slices::slices_of(&sun, &receivers.into(), &near, &mut None).is_empty(), "one map does for a few metres");
 }
 
 /// Of what stands between a body and the sun the sweep holds all, and of a ground little more.
@@ -229,7 +229,7 @@ fn slices_stay_while_a_camera_walks() {
         let far = 700.0 * (1.0 + 0.02 * unit(1000 + frame).y);
         let hull = Aabb { min: Vec3::new(-far, -0.1, -far), max: Vec3::new(40.0, 9.0, 40.0) }.corners();
         let receivers = Receivers { hull: &hull, seen: &seen, view_from_world, ..test_receivers(SIZE, &depth) };
-        let frame = PreparedFrame { light: &sun, casters: PreparedCasters::Draws(&casters), receivers, mask: &mask };
+        let frame = PreparedFrame { light: &sun, casters: PreparedCasters::Draws(&casters), receivers: receivers.into(), mask: &mask };
         let parts = parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut still);
         let now: Vec<_> = parts.iter().map(|part| (part.id, part.still.expect("a slice"))).collect();
         for (part, (_, corners)) in parts.iter().zip(&now) {
@@ -284,11 +284,11 @@ fn parts_end_where_shadows_do() {
     let meshes = [slab(0.0), slab(-700.0)];
     let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
     let receivers = Receivers { hull: &far, ..test_receivers(SIZE, &depth) };
-    let eye = receivers.eye_in_world().as_vec3();
+    let eye = crate::contract::PreparedReceivers::from(receivers).camera().expect("of a depth buffer").eye_in_world().as_vec3();
     let forward = -receivers.view_from_world.row(2).truncate();
     let parts = |light: &Light, end_m: Option<f32>| {
         let receivers = Receivers { shadow_distance: end_m.map(ShadowDistance::new), ..receivers };
-        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(&casters), receivers, mask: &mask };
+        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(&casters), receivers: receivers.into(), mask: &mask };
         parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut Still::default())
     };
     for (light, end_m) in [(&sun, 150.0), (&sun, 20.0), (&lamp, 30.0), (&spot, 30.0)] {

@@ -2,17 +2,17 @@
 //! `frame/inputs.wesl`.
 
 use antumbra_light::{Light, LightShape};
-use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
+use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::blue_noise;
-use crate::contract::{Mask, PreparedFrame, Receivers};
+use crate::contract::{Camera, Mask, PreparedFrame, PreparedReceivers, Surfaces};
 use crate::gpu::{Bindings, Gpu, Stage, bindings, create_uniform, gpu_structs, texels, upload_storage, write_uniform};
 
 /// Threads along each side of a workgroup over the receivers.
 const TILE: u32 = 8;
 
 gpu_structs! {
-    /// The camera of the depth buffer.
+    /// The receivers: the camera of a depth buffer, or points, which have none.
     pub(crate) struct ReceiverView {
         view_from_clip: Mat4,
         world_from_view: Mat4,
@@ -29,6 +29,10 @@ gpu_structs! {
         pixel_m_per_w: f32,
         clip_z_row: Vec4,
         clip_w_row: Vec4,
+        are_points: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
     }
 
     /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
@@ -219,7 +223,7 @@ impl FrameInputs {
         Inputs {
             receiver_view: &self.receiver_view,
             light_source: &self.light_source,
-            receiver_depth: frame.receivers.depth,
+            receiver_depth: frame.receivers.texels(),
             receiver_normals: frame.receivers.normals.unwrap_or(&self.no_normals),
             mask: frame.mask.layers_view(),
             light_data,
@@ -264,12 +268,14 @@ impl PreparedInputs {
 /// How far the host's matrices may have moved what it drew, metres, where the frame is counted from an anchor and coordinates no
 /// longer tell: a translation and a rotation whose entries were rounded, and as much again for the products of each corner, are
 /// eight halves of a unit in the last place of the camera's distance from the world's origin.
-pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &Receivers<'_>) -> f32 {
+pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &PreparedReceivers<'_>) -> f32 {
     let anchor = stage.anchor();
     if anchor == Vec3::ZERO {
         return 0.0;
     }
-    4.0 * f32::EPSILON * (receivers.eye_in_world() + anchor.as_dvec3()).length() as f32
+    // Points are rounded as they are, and what casts by its own matrices.
+    let eye = receivers.camera().map_or(DVec3::ZERO, Camera::eye_in_world);
+    4.0 * f32::EPSILON * (eye + anchor.as_dvec3()).length() as f32
 }
 
 /// Metres across a pixel, the wider way, where the clip position's w is 1: 1 m before a perspective camera, anywhere before an
@@ -282,33 +288,39 @@ fn pixel_m_per_w(clip_from_view: &Mat4, size_px: UVec2) -> f32 {
 }
 
 fn receiver_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> ReceiverView {
-    let Receivers { view_from_world, clip_from_view, .. } = frame.receivers;
-    let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
-    let [clip_z_row, clip_w_row] = clip_depth_rows(&frame.receivers);
-    let world_from_view = view_from_world.as_dmat4().inverse().as_mat4();
+    let receivers = &frame.receivers;
+    let common = ReceiverView {
+        size_px: receivers.size_px,
+        has_normals: receivers.normals.is_some().into(),
+        mask_layers: frame.mask.channels().count(),
+        origin_px: receivers.origin_px,
+        mask_origin_px: frame.mask.place().origin_px,
+        noise_frame: stage.noise_frame(),
+        pixel_stride: 1,
+        matrix_rounding_m: matrix_rounding_m(stage, receivers),
+        ..ReceiverView::default()
+    };
+    let Surfaces::Depth { camera, .. } = &receivers.surfaces else {
+        return ReceiverView { are_points: 1, ..common };
+    };
+    let view_from_clip = camera.clip_from_view.as_dmat4().inverse().as_mat4();
+    let [clip_z_row, clip_w_row] = camera.clip_depth_rows();
+    let world_from_view = camera.view_from_world.as_dmat4().inverse().as_mat4();
     ReceiverView {
         view_from_clip,
         world_from_view,
         eye_in_world: world_from_view.w_axis.truncate(),
-        background_depth: frame.receivers.depth_convention.background(),
-        size_px: frame.receivers.size_px,
-        has_normals: frame.receivers.normals.is_some().into(),
-        mask_layers: frame.mask.channels().count(),
-        origin_px: frame.receivers.origin_px,
-        mask_origin_px: frame.mask.place().origin_px,
-        noise_frame: stage.noise_frame(),
-        pixel_stride: 1,
-        matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
-        pixel_m_per_w: pixel_m_per_w(&clip_from_view, frame.receivers.size_px),
+        background_depth: camera.depth_convention.background(),
+        pixel_m_per_w: pixel_m_per_w(&camera.clip_from_view, receivers.size_px),
         clip_z_row,
         clip_w_row,
+        ..common
     }
 }
 
-/// The rows of the camera's clip-from-world matrix that a depth buffer's values come from: depth is z / w.
-pub(crate) fn clip_depth_rows(receivers: &Receivers<'_>) -> [Vec4; 2] {
-    let clip_from_world = receivers.clip_from_view.as_dmat4() * receivers.view_from_world.as_dmat4();
-    [clip_from_world.row(2).as_vec4(), clip_from_world.row(3).as_vec4()]
+/// The rows of the camera's matrix that depth comes from; zero of points, whose positions come from no depth.
+pub(crate) fn clip_depth_rows(receivers: &PreparedReceivers<'_>) -> [Vec4; 2] {
+    receivers.camera().map_or([Vec4::ZERO; 2], |camera| camera.clip_depth_rows())
 }
 
 #[cfg(test)]

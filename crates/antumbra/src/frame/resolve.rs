@@ -54,6 +54,8 @@ impl Resolve {
         is_sparse: bool,
         shader: &ResolveShader<'_>,
     ) -> PreparedResolve {
+        // Nothing can be interpolated between points in any order.
+        let is_sparse = is_sparse && frame.receivers.have_neighbours();
         let stride_px = if is_sparse { SparseUpsample::STRIDE_PX } else { 1 };
         let of_frame = inputs.prepare_known(stage, frame, stride_px);
         let program = self.compile(stage, inputs, shader);

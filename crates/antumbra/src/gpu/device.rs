@@ -58,6 +58,12 @@ pub(crate) enum Scratch {
     PartDepth,
     /// Normals of the receivers of one part.
     PartNormals,
+    /// Positions of points.
+    PointPositions,
+    /// Normals of points.
+    PointNormals,
+    /// Mask of points.
+    PointMask,
     /// Light map of depths.
     LightMap,
     /// Layers of casters behind a light map.

@@ -48,4 +48,4 @@ pub(crate) use shared_constants::shared_constants;
 pub use stage::Stage;
 pub(crate) use stage::{Keep, StagedUploads};
 pub(crate) use textures::{array_view, level_views, slice_views, texture_of, white_texture};
-pub(crate) use trial::ViewKind;
+pub(crate) use trial::{ViewKind, storage_complaint};

@@ -1,4 +1,5 @@
-//! Whether a host's texture view can be bound. wgpu does not tell a view's aspect, dimension or device, so it is bound on trial.
+//! Whether a host's texture view or buffer can be bound. wgpu does not tell a view's aspect, dimension or device, nor a buffer's
+//! device, so it is bound on trial.
 
 use super::Gpu;
 
@@ -19,18 +20,7 @@ impl ViewKind {
     /// What wgpu says against a view of this kind; `None` where nothing is wrong with it, or where a browser does not answer at
     /// once.
     pub(crate) fn complaint(self, gpu: &Gpu, view: &wgpu::TextureView) -> Option<String> {
-        let entry = wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: self.binding_type(),
-            count: None,
-        };
-        let label = Some("antumbra trial");
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &[entry] });
-        let entries = [wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(view) }];
-        gpu.complaint(|| {
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout: &layout, entries: &entries });
-        })
+        complaint(gpu, self.binding_type(), wgpu::BindingResource::TextureView(view))
     }
 
     fn binding_type(self) -> wgpu::BindingType {
@@ -45,4 +35,22 @@ impl ViewKind {
         };
         wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
     }
+}
+
+/// What wgpu says against a storage buffer's being bound; `None` as [above](ViewKind::complaint).
+pub(crate) fn storage_complaint(gpu: &Gpu, buffer: &wgpu::Buffer) -> Option<String> {
+    let ty = wgpu::BufferBindingType::Storage { read_only: false };
+    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    complaint(gpu, ty, buffer.as_entire_binding())
+}
+
+fn complaint(gpu: &Gpu, ty: wgpu::BindingType, resource: wgpu::BindingResource<'_>) -> Option<String> {
+    let visibility = wgpu::ShaderStages::COMPUTE;
+    let entry = wgpu::BindGroupLayoutEntry { binding: 0, visibility, ty, count: None };
+    let label = Some("antumbra trial");
+    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &[entry] });
+    let entries = [wgpu::BindGroupEntry { binding: 0, resource }];
+    gpu.complaint(|| {
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout: &layout, entries: &entries });
+    })
 }

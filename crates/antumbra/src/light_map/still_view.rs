@@ -9,7 +9,7 @@ use antumbra_light::LightFrame;
 use glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 
 use super::light_view::{LightView, Window};
-use crate::contract::Receivers;
+use crate::contract::PreparedReceivers;
 use crate::gpu::Stage;
 
 /// Sides of windows in an octave: a few in a hundred texels are not used.
@@ -19,7 +19,7 @@ const SIDES_IN_OCTAVE: f64 = 32.0;
 const DEPTH_STEPS: f64 = 32.0;
 
 /// What a map whose window lies along the light's axes is fitted to: points whose convex hull holds what receives.
-pub(crate) fn corners_to_hold(stage: &Stage<'_>, receivers: &Receivers<'_>) -> Vec<Vec3> {
+pub(crate) fn corners_to_hold(stage: &Stage<'_>, receivers: &PreparedReceivers<'_>) -> Vec<Vec3> {
     stage.still().map_or_else(|| receivers.corners(), |corners| corners.to_vec())
 }
 

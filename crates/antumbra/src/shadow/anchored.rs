@@ -6,8 +6,10 @@
 use antumbra_light::{Aabb, Light, anchor_near};
 use glam::{DVec3, Mat4, Vec3};
 
-use super::frame::Frame;
-use crate::contract::{DepthMapCaster, MeshCaster, PreparedCasters, PreparedFrame, Receivers};
+use super::frame::Asked;
+use crate::contract::{
+    Camera, DepthMapCaster, MeshCaster, PreparedCasters, PreparedFrame, PreparedReceivers, Surfaces,
+};
 use crate::light_map::between::{KNOWN_REACH_M, is_known};
 
 /// Sides of boxes are no farther from the anchor than this, metres.
@@ -28,9 +30,19 @@ pub(super) struct Anchored<'a> {
     meshes: Option<Vec<MeshCaster<'a>>>,
 }
 
-/// Near the light; of a sun near the camera.
-pub(super) fn anchor_of(frame: &Frame<'_>) -> Vec3 {
-    let about = if frame.light.is_distant() { frame.receivers.eye_in_world().as_vec3() } else { frame.light.center };
+/// Near the light; of a sun near the camera, or in the middle of points where that is known.
+pub(super) fn anchor_of(asked: &Asked<'_>) -> Vec3 {
+    let about = match asked {
+        _ if !asked.light().is_distant() => asked.light().center,
+        Asked::Mask(frame) => {
+            PreparedReceivers::from(frame.receivers).camera().map_or(Vec3::ZERO, |camera| camera.eye_in_world().as_vec3())
+        }
+        Asked::Points(frame) => {
+            let Aabb { min, max } = frame.receivers.bounds;
+            0.5 * Vec3::select(min.is_finite_mask() & max.is_finite_mask(), min, Vec3::ZERO)
+                + 0.5 * Vec3::select(min.is_finite_mask() & max.is_finite_mask(), max, Vec3::ZERO)
+        }
+    };
     anchor_near(about)
 }
 
@@ -48,7 +60,9 @@ impl<'a> Anchored<'a> {
         let mesh_near = |mesh: &MeshCaster<'a>| MeshCaster { bounds: finite(moved(mesh.bounds, anchor)), ..*mesh };
         let meshes: Option<Vec<_>> = meshes.map(|meshes| meshes.iter().map(mesh_near).collect());
         let given = frame.receivers.bounds.map(|bounds| moved(bounds, anchor));
-        let eye = (frame.receivers.eye_in_world() - anchor.as_dvec3()).as_vec3();
+        // Where receivers are looked for: about the camera, else about what is anchored.
+        let eye = frame.receivers.camera().map_or(anchor.as_dvec3(), Camera::eye_in_world);
+        let eye = (eye - anchor.as_dvec3()).as_vec3();
         Self {
             anchor,
             light,
@@ -74,8 +88,15 @@ impl<'a> Anchored<'a> {
                 ..*map
             }),
         };
-        let receivers = Receivers {
-            view_from_world: from_anchor(receivers.view_from_world, self.anchor),
+        let surfaces = match receivers.surfaces {
+            Surfaces::Depth { depth, camera } => {
+                let view_from_world = from_anchor(camera.view_from_world, self.anchor);
+                Surfaces::Depth { depth, camera: Camera { view_from_world, ..camera } }
+            }
+            points @ Surfaces::Points { .. } => points,
+        };
+        let receivers = PreparedReceivers {
+            surfaces,
             bounds: self.bounds,
             hull: &self.hull,
             seen: &self.seen,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Frame, Prepared, Shadow, WarmUp};
+use super::{Frame, PointFrame, Prepared, Shadow, WarmUp};
 use crate::contract::{
     Denoise, DrawnLists, DrawnMap, Error, Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
 };
@@ -19,6 +19,7 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn set_denoise(&mut self, denoise: Option<Denoise>);
     fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
+    fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error>;
     fn memory_bytes(&self) -> u64;
     fn drawn_maps(&self) -> Vec<DrawnMap>;
     fn drawn_lists(&self) -> Vec<DrawnLists>;
@@ -52,6 +53,9 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
         Shadow::prepare(self, frame)
+    }
+    fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error> {
+        Shadow::prepare_points(self, frame)
     }
     fn memory_bytes(&self) -> u64 {
         Shadow::memory_bytes(self)
@@ -141,6 +145,14 @@ impl AnyShadow {
     /// As [`Shadow::prepare`].
     pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
         self.inner.prepare(frame)
+    }
+
+    /// [`Shadow::prepare_points`].
+    ///
+    /// # Errors
+    /// As [`Shadow::prepare_points`].
+    pub fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error> {
+        self.inner.prepare_points(frame)
     }
 
     /// [`Shadow::memory_bytes`].

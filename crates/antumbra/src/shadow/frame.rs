@@ -4,7 +4,8 @@ use antumbra_light::Light;
 
 use crate::casters::CasterSet;
 use crate::contract::{
-    DepthMapCaster, Error, Mask, MaskChannels, MeshCaster, PreparedCasters, PreparedFrame, Receivers,
+    DepthMapCaster, Error, Mask, MaskChannels, MeshCaster, PointReceivers, PreparedCasters, PreparedFrame,
+    PreparedReceivers, Receivers,
 };
 
 /// One light's work for one frame.
@@ -18,6 +19,47 @@ pub struct Frame<'a> {
     pub receivers: Receivers<'a>,
     /// Where visibility goes; the receivers' size.
     pub mask: &'a Mask,
+}
+
+/// One light's work for points in place of a depth buffer.
+#[derive(Clone, Copy, Debug)]
+pub struct PointFrame<'a> {
+    /// The light.
+    pub light: &'a Light,
+    /// What casts.
+    pub casters: Casters<'a>,
+    /// The points.
+    pub receivers: PointReceivers<'a>,
+    /// Where visibility goes: a 32-bit float for each point and channel, red, green and blue of a point after one another. Usage
+    /// `STORAGE`, no larger than a binding.
+    pub visibilities: &'a wgpu::Buffer,
+    /// How many channels: [`Casters::mask_channels`] says how many the casters have a use for.
+    pub channels: MaskChannels,
+}
+
+/// What a host asks for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Asked<'a> {
+    /// A mask of a depth buffer.
+    Mask(Frame<'a>),
+    /// Visibilities of points.
+    Points(PointFrame<'a>),
+}
+
+impl<'a> Asked<'a> {
+    pub(super) fn light(&self) -> &'a Light {
+        match self {
+            Self::Mask(frame) => frame.light,
+            Self::Points(frame) => frame.light,
+        }
+    }
+
+    pub(super) fn casters(&self) -> &Casters<'a> {
+        match self {
+            Self::Mask(frame) => &frame.casters,
+            Self::Points(frame) => &frame.casters,
+        }
+    }
 }
 
 /// What casts shadows, in one of three forms.
@@ -79,14 +121,16 @@ impl<'a> FrameCasters<'a> {
     }
 }
 
-impl Frame<'_> {
-    /// The frame with its casters as they are drawn.
-    pub(super) fn prepared<'f>(&'f self, casters: &'f FrameCasters<'_>) -> PreparedFrame<'f> {
-        let Self { light, receivers, mask, .. } = *self;
-        let casters = match casters {
-            FrameCasters::Set(meshes) => PreparedCasters::Draws(meshes),
-            FrameCasters::Host(casters) => *casters,
-        };
-        PreparedFrame { light, casters, receivers, mask }
-    }
+/// A frame with its casters as they are drawn.
+pub(super) fn prepared<'f>(
+    light: &'f Light,
+    casters: &'f FrameCasters<'_>,
+    receivers: PreparedReceivers<'f>,
+    mask: &'f Mask,
+) -> PreparedFrame<'f> {
+    let casters = match casters {
+        FrameCasters::Set(meshes) => PreparedCasters::Draws(meshes),
+        FrameCasters::Host(casters) => *casters,
+    };
+    PreparedFrame { light, casters, receivers, mask }
 }

@@ -3,8 +3,9 @@
 use antumbra_light::{Aabb, Light, ShadowDistance};
 use glam::{Mat4, UVec2, Vec3};
 
-use super::Frame;
-use crate::contract::{CastersKey, Denoise, DepthConvention, MaskChannels, MaskPlace, Params};
+use super::frame::Asked;
+use super::{Frame, PointFrame};
+use crate::contract::{CastersKey, Denoise, DepthConvention, MaskChannels, MaskPlace, Params, PointBuffer, PointWidths};
 
 /// Key of a frame: all that its mask depends on.
 #[derive(Debug, PartialEq)]
@@ -13,34 +14,40 @@ pub(super) struct FrameKey<P> {
     denoise: Option<Denoise>,
     light: Light,
     casters: CastersKey,
-    mask: (wgpu::Texture, MaskPlace, MaskChannels),
-    size_px: UVec2,
-    origin_px: UVec2,
-    depth: wgpu::TextureView,
-    depth_convention: DepthConvention,
-    camera: [Mat4; 2],
-    normals: Option<wgpu::TextureView>,
-    bounds: Option<Aabb>,
+    receivers: ReceiversKey,
     points: [Vec<Vec3>; 2],
-    shadow_distance: Option<ShadowDistance>,
     version: u64,
 }
 
-impl<P: Params> FrameKey<P> {
-    /// `None` where the host does not say when depth or casters change.
-    pub(super) fn of(
-        params: &P,
-        denoise: Option<&Denoise>,
-        frame: &Frame<'_>,
-        casters: Option<CastersKey>,
-    ) -> Option<Self> {
+/// Key of receivers and of where their visibility goes.
+#[derive(Debug, PartialEq)]
+enum ReceiversKey {
+    Mask {
+        mask: (wgpu::Texture, MaskPlace, MaskChannels),
+        size_px: UVec2,
+        origin_px: UVec2,
+        depth: wgpu::TextureView,
+        depth_convention: DepthConvention,
+        camera: [Mat4; 2],
+        normals: Option<wgpu::TextureView>,
+        bounds: Option<Aabb>,
+        shadow_distance: Option<ShadowDistance>,
+    },
+    Points {
+        visibilities: (wgpu::Buffer, MaskChannels),
+        count: u32,
+        row_length: Option<u32>,
+        /// Of positions, normals and widths.
+        buffers: [Option<(wgpu::Buffer, u64, u32)>; 3],
+        width_m: Option<f32>,
+        bounds: Aabb,
+    },
+}
+
+impl ReceiversKey {
+    fn of_mask(frame: &Frame<'_>) -> Self {
         let receivers = &frame.receivers;
-        Some(Self {
-            casters: casters?,
-            version: receivers.version?,
-            params: params.clone(),
-            denoise: denoise.cloned(),
-            light: frame.light.for_shadows(),
+        Self::Mask {
             mask: (frame.mask.texture().clone(), frame.mask.place(), frame.mask.channels()),
             size_px: receivers.size_px,
             origin_px: receivers.origin_px,
@@ -49,8 +56,51 @@ impl<P: Params> FrameKey<P> {
             camera: [receivers.view_from_world, receivers.clip_from_view],
             normals: receivers.normals.cloned(),
             bounds: receivers.bounds,
-            points: [receivers.hull, receivers.seen].map(<[Vec3]>::to_vec),
             shadow_distance: receivers.shadow_distance,
+        }
+    }
+
+    fn of_points(frame: &PointFrame<'_>) -> Self {
+        let receivers = &frame.receivers;
+        let (widths, width_m) = match receivers.widths {
+            PointWidths::Same(width_m) => (None, Some(width_m)),
+            PointWidths::Each(widths) => (Some(widths), None),
+        };
+        let key = |buffer: PointBuffer<'_>| (buffer.buffer.clone(), buffer.offset, buffer.stride);
+        Self::Points {
+            visibilities: (frame.visibilities.clone(), frame.channels),
+            count: receivers.count,
+            row_length: receivers.row_length,
+            buffers: [Some(receivers.positions), receivers.normals, widths].map(|buffer| buffer.map(key)),
+            width_m,
+            bounds: receivers.bounds,
+        }
+    }
+}
+
+impl<P: Params> FrameKey<P> {
+    /// `None` where the host does not say when receivers or casters change.
+    pub(super) fn of(
+        params: &P,
+        denoise: Option<&Denoise>,
+        asked: &Asked<'_>,
+        casters: Option<CastersKey>,
+    ) -> Option<Self> {
+        let (casters, (version, points)) = (casters?, match asked {
+            Asked::Mask(Frame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
+            Asked::Points(PointFrame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
+        });
+        Some(Self {
+            casters,
+            version,
+            params: params.clone(),
+            denoise: denoise.cloned(),
+            light: asked.light().for_shadows(),
+            receivers: match asked {
+                Asked::Mask(frame) => ReceiversKey::of_mask(frame),
+                Asked::Points(frame) => ReceiversKey::of_points(frame),
+            },
+            points: points.map(<[Vec3]>::to_vec),
         })
     }
 }

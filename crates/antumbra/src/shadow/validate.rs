@@ -4,17 +4,23 @@
 //! native devices answer at once. Browsers answer later, by a message of their own.
 
 use antumbra_light::{Aabb, Light, LightShape};
-use glam::{DVec3, Mat4, UVec2};
+use glam::{DVec3, Mat4, UVec2, Vec3};
 
-use super::{Casters, Frame};
-use crate::contract::{Denoise, DepthConvention, DepthMapCaster, Error, MeshCaster, Opacity, Receivers};
-use crate::gpu::{Gpu, ViewKind};
+use super::frame::Asked;
+use super::{Casters, Frame, PointFrame};
+use crate::contract::{
+    Denoise, DepthConvention, DepthMapCaster, Error, MeshCaster, Opacity, PointBuffer, PointWidths, Receivers,
+};
+use crate::frame::points::size_of_points;
+use crate::gpu::{Gpu, ViewKind, storage_complaint};
 
 /// Validates frames. Keeps which views were found good.
 #[derive(Debug, Default)]
 pub(super) struct Validator {
     /// With the last frame that had each.
     good: Vec<(BoundView, u64)>,
+    /// The same of buffers.
+    good_buffers: Vec<(wgpu::Buffer, u64)>,
     frame: u64,
 }
 
@@ -28,10 +34,10 @@ const KEPT_FRAMES: u64 = 8;
 const RIGID_TOLERANCE: f64 = 1e-2;
 
 /// One frame, and who asks.
-struct Check<'a> {
+struct Check<'a, F> {
     technique: &'static str,
     gpu: &'a Gpu,
-    frame: &'a Frame<'a>,
+    frame: &'a F,
 }
 
 impl Validator {
@@ -40,24 +46,56 @@ impl Validator {
         &mut self,
         technique: &'static str,
         gpu: &Gpu,
-        frame: &Frame<'_>,
+        asked: &Asked<'_>,
         denoise: Option<&Denoise>,
     ) -> Result<(), Error> {
-        let check = Check { technique, gpu, frame };
-        check.light()?;
+        self.frame += 1;
+        self.good.retain(|(_, frame)| frame + KEPT_FRAMES >= self.frame);
+        self.good_buffers.retain(|(_, frame)| frame + KEPT_FRAMES >= self.frame);
+        match asked {
+            Asked::Mask(frame) => self.check_mask(&Check { technique, gpu, frame }, denoise),
+            Asked::Points(frame) => self.check_points(&Check { technique, gpu, frame }, denoise),
+        }
+    }
+
+    fn check_mask(&mut self, check: &Check<'_, Frame<'_>>, denoise: Option<&Denoise>) -> Result<(), Error> {
+        let frame = check.frame;
+        check.light(frame.light)?;
         check.picture()?;
         check.camera()?;
         check.places()?;
-        check.casters()?;
-        self.frame += 1;
-        self.good.retain(|(_, frame)| frame + KEPT_FRAMES >= self.frame);
+        check.casters(&frame.casters)?;
         check.depth(self)?;
         check.normals(self)?;
         check.mask(self)?;
-        if let Casters::DepthMap(map) = &frame.casters {
-            check.depth_map(self, map)?;
-        }
+        check.host_map(self, &frame.casters)?;
         denoise.map_or(Ok(()), |denoise| check.denoise(self, denoise))
+    }
+
+    fn check_points(&mut self, check: &Check<'_, PointFrame<'_>>, denoise: Option<&Denoise>) -> Result<(), Error> {
+        let frame = check.frame;
+        check.light(frame.light)?;
+        check.count()?;
+        check.buffers(self)?;
+        check.widths()?;
+        check.point_places()?;
+        check.casters(&frame.casters)?;
+        check.host_map(self, &frame.casters)?;
+        let Some(Denoise { most_frames, .. }) = denoise else { return Ok(()) };
+        check.bad("`denoise`", format!("of {most_frames} frames"), "`None` for points, which have no neighbours")
+    }
+
+    /// What wgpu says against a buffer's being bound; `None` where nothing is wrong with it.
+    fn buffer_complaint(&mut self, gpu: &Gpu, buffer: &wgpu::Buffer) -> Option<String> {
+        if let Some((_, frame)) = self.good_buffers.iter_mut().find(|(good, _)| good == buffer) {
+            *frame = self.frame;
+            return None;
+        }
+        let complaint = storage_complaint(gpu, buffer);
+        if complaint.is_none() {
+            self.good_buffers.push((buffer.clone(), self.frame));
+        }
+        complaint
     }
 
     /// What wgpu says against a view of this kind; `None` where nothing is wrong with it.
@@ -74,13 +112,13 @@ impl Validator {
     }
 }
 
-impl Check<'_> {
+impl<F> Check<'_, F> {
     fn bad(&self, what: &'static str, had: impl Into<String>, needed: impl Into<String>) -> Result<(), Error> {
         Err(Error::BadFrame { technique: self.technique, what, had: had.into(), needed: needed.into() })
     }
 
-    fn light(&self) -> Result<(), Error> {
-        let Self { technique, frame: Frame { light, .. }, .. } = *self;
+    fn light(&self, light: &Light) -> Result<(), Error> {
+        let technique = self.technique;
         light.validate().map_err(|source| Error::Light { technique, source })?;
         let bytes = 16 * light_data_len(light) as u64;
         let limit = self.gpu.device.limits().max_storage_buffer_binding_size;
@@ -95,6 +133,110 @@ impl Check<'_> {
         Ok(())
     }
 
+    /// Refuses a view that cannot be bound.
+    fn bindable(
+        &self,
+        validator: &mut Validator,
+        what: &'static str,
+        view: &wgpu::TextureView,
+        kind: ViewKind,
+        needed: &str,
+    ) -> Result<(), Error> {
+        if !view.texture().usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
+            return self.bad(what, "a texture without the usage TEXTURE_BINDING", "one with it");
+        }
+        let complaint = validator.complaint(self.gpu, view, kind);
+        complaint.map_or(Ok(()), |complaint| self.bad(what, format!("one that cannot be bound ({complaint})"), needed))
+    }
+
+    fn casters(&self, casters: &Casters<'_>) -> Result<(), Error> {
+        match casters {
+            Casters::Set { set, .. } if !set.gpu().is_clone_of(self.gpu) => self.bad(
+                "the set of casters",
+                "of another device or another `Gpu`",
+                "made with a clone of the light's `Gpu`: one serves a device",
+            ),
+            Casters::Set { .. } | Casters::DepthMap(_) => Ok(()),
+            Casters::Meshes(meshes) => meshes.iter().enumerate().try_for_each(|(i, mesh)| self.mesh(i, mesh)),
+        }
+    }
+
+    fn mesh(&self, i: usize, mesh: &MeshCaster<'_>) -> Result<(), Error> {
+        let vertex = wgpu::BufferUsages::VERTEX;
+        let end_of = |first: u32, count: u32, bytes: u64| (u64::from(first) + u64::from(count)) * bytes;
+        let (triangles, is_whole) = (mesh.index_count / 3, mesh.index_count.is_multiple_of(3));
+        if !is_whole {
+            return self.bad(
+                "a caster's `index_count`",
+                format!("{} (caster {i})", mesh.index_count),
+                "a multiple of three",
+            );
+        }
+        for (what, buffer, usage, end) in [
+            ("a caster's positions", mesh.positions, vertex, 0),
+            ("a caster's indices", mesh.indices, wgpu::BufferUsages::INDEX, end_of(mesh.first_triangle, triangles, 12)),
+            ("a caster's instances", mesh.instances, vertex, end_of(mesh.first_instance, mesh.instance_count, 64)),
+        ] {
+            if !buffer.usage().contains(usage) {
+                return self.bad(
+                    what,
+                    format!("in a buffer without the usage {usage:?} (caster {i})"),
+                    "in one with it",
+                );
+            }
+            if end > buffer.size() {
+                let had = format!("up to byte {end} of a buffer of {} (caster {i})", buffer.size());
+                return self.bad(what, had, "within the buffer");
+            }
+        }
+        let draws = mesh.index_count > 0 && mesh.instance_count > 0;
+        if let Some(problem) = mesh.bounds.problem().filter(|_| draws) {
+            let needed = "a box with its least corner first, infinite where it is not known";
+            return self.bad("a caster's `bounds`", format!("{problem} (caster {i})"), needed);
+        }
+        let is_finite = match mesh.opacity {
+            Opacity::Opaque => true,
+            Opacity::Masked { alpha_factor, cutoff, .. } => alpha_factor.is_finite() && cutoff.is_finite(),
+            Opacity::Translucent { coverage, transmitted, .. } => coverage.is_finite() && transmitted.is_finite(),
+        };
+        if is_finite { Ok(()) } else { self.bad("a caster's opacity", format!("not finite (caster {i})"), "finite") }
+    }
+
+    fn depth_map(&self, validator: &mut Validator, map: &DepthMapCaster<'_>) -> Result<(), Error> {
+        const WHAT: &str = "the light's depth map";
+        let texture = map.view.texture();
+        if !texture.format().has_depth_aspect() || texture.format() == wgpu::TextureFormat::Depth16Unorm {
+            return self.bad(WHAT, format!("{:?}", texture.format()), "Depth32Float");
+        }
+        let mut levels = (0..texture.mip_level_count()).map(|level| size_of(texture) >> level);
+        if map.size_px.min_element() == 0 || !levels.any(|size| size.max(UVec2::ONE) == map.size_px) {
+            return self.bad(
+                "the depth map's `size_px`",
+                format!("{}", map.size_px),
+                format!("the texture's {}", size_of(texture)),
+            );
+        }
+        self.bindable(
+            validator,
+            WHAT,
+            map.view,
+            ViewKind::Depth,
+            "a 2D view of one layer and of the depth aspect alone",
+        )
+    }
+
+    fn host_map(&self, validator: &mut Validator, casters: &Casters<'_>) -> Result<(), Error> {
+        if let Casters::DepthMap(map) = casters { self.depth_map(validator, map) } else { Ok(()) }
+    }
+
+    /// Refuses points that are nowhere.
+    fn finite(&self, what: &'static str, points: &[Vec3]) -> Result<(), Error> {
+        let Some(i) = points.iter().position(|point| !point.is_finite()) else { return Ok(()) };
+        self.bad(what, format!("not finite (point {i})"), "finite points in the world")
+    }
+}
+
+impl Check<'_, Frame<'_>> {
     /// Sizes of receivers, depth buffer, normals and mask.
     fn picture(&self) -> Result<(), Error> {
         let Frame { receivers, mask, .. } = self.frame;
@@ -149,11 +291,8 @@ impl Check<'_> {
         if let Some(problem) = bounds.filter(|bounds| *bounds != Aabb::EMPTY).and_then(|bounds| bounds.problem()) {
             return self.bad("the receivers' box", problem, "a box with its least corner first, or `None`");
         }
-        for (what, points) in [("the receivers' `hull`", hull), ("the receivers' `seen`", seen)] {
-            if let Some(i) = points.iter().position(|point| !point.is_finite()) {
-                return self.bad(what, format!("not finite (point {i})"), "finite points in the world");
-            }
-        }
+        self.finite("the receivers' `hull`", hull)?;
+        self.finite("the receivers' `seen`", seen)?;
         let Some(distance) = shadow_distance else { return Ok(()) };
         distance.problem().map_or(Ok(()), |(what, needed)| {
             let what =
@@ -236,97 +375,103 @@ impl Check<'_> {
         }
         self.bad(what, format!("of {size}"), format!("of the depth buffer's {needed}"))
     }
+}
 
-    /// Refuses a view that cannot be bound.
-    fn bindable(
+impl Check<'_, PointFrame<'_>> {
+    fn count(&self) -> Result<(), Error> {
+        let receivers = &self.frame.receivers;
+        if receivers.count == 0 {
+            return self.bad("the points' count", "0", "1 at least");
+        }
+        if receivers.row_length == Some(0) {
+            return self.bad("the points' `row_length`", "0", "1 at least, or `None`");
+        }
+        let size = size_of_points(receivers.count, receivers.row_length);
+        let most = self.gpu.device.limits().max_texture_dimension_2d;
+        if size.max_element() > most {
+            return self.bad(
+                "the points' count",
+                format!("{} in {} rows of {}", receivers.count, size.y, size.x),
+                format!("at most {most} rows of {most} on this device"),
+            );
+        }
+        Ok(())
+    }
+
+    fn buffers(&self, validator: &mut Validator) -> Result<(), Error> {
+        let PointFrame { receivers, visibilities, channels, .. } = self.frame;
+        let widths = if let PointWidths::Each(widths) = receivers.widths { Some(widths) } else { None };
+        for (what, buffer, floats) in [
+            ("the points' positions", Some(receivers.positions), 3),
+            ("the points' normals", receivers.normals, 3),
+            ("the points' widths", widths, 1),
+        ] {
+            if let Some(buffer) = buffer {
+                self.point_buffer(validator, what, &buffer, floats)?;
+                if buffer.buffer == *visibilities {
+                    return self.bad(what, "in the buffer of the visibilities", "in another one");
+                }
+            }
+        }
+        let written = PointBuffer { buffer: visibilities, offset: 0, stride: 4 * channels.count() };
+        self.point_buffer(validator, "the points' visibilities", &written, u64::from(channels.count()))
+    }
+
+    /// Refuses a buffer that does not have so many floats for each point, or cannot be bound.
+    fn point_buffer(
         &self,
         validator: &mut Validator,
         what: &'static str,
-        view: &wgpu::TextureView,
-        kind: ViewKind,
-        needed: &str,
+        of: &PointBuffer<'_>,
+        floats: u64,
     ) -> Result<(), Error> {
-        if !view.texture().usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-            return self.bad(what, "a texture without the usage TEXTURE_BINDING", "one with it");
+        let PointBuffer { buffer, offset, stride } = *of;
+        if !buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
+            return self.bad(what, "in a buffer without the usage STORAGE", "in one with it");
         }
-        let complaint = validator.complaint(self.gpu, view, kind);
-        complaint.map_or(Ok(()), |complaint| self.bad(what, format!("one that cannot be bound ({complaint})"), needed))
-    }
-
-    fn casters(&self) -> Result<(), Error> {
-        match &self.frame.casters {
-            Casters::Set { set, .. } if !set.gpu().is_clone_of(self.gpu) => self.bad(
-                "the set of casters",
-                "of another device or another `Gpu`",
-                "made with a clone of the light's `Gpu`: one serves a device",
-            ),
-            Casters::Set { .. } | Casters::DepthMap(_) => Ok(()),
-            Casters::Meshes(meshes) => meshes.iter().enumerate().try_for_each(|(i, mesh)| self.mesh(i, mesh)),
-        }
-    }
-
-    fn mesh(&self, i: usize, mesh: &MeshCaster<'_>) -> Result<(), Error> {
-        let vertex = wgpu::BufferUsages::VERTEX;
-        let end_of = |first: u32, count: u32, bytes: u64| (u64::from(first) + u64::from(count)) * bytes;
-        let (triangles, is_whole) = (mesh.index_count / 3, mesh.index_count.is_multiple_of(3));
-        if !is_whole {
+        if !offset.is_multiple_of(4) || !stride.is_multiple_of(4) || u64::from(stride) < 4 * floats {
             return self.bad(
-                "a caster's `index_count`",
-                format!("{} (caster {i})", mesh.index_count),
-                "a multiple of three",
+                what,
+                format!("from byte {offset} on, {stride} bytes apart"),
+                format!("at multiples of 4 bytes, {} apart at least", 4 * floats),
             );
         }
-        for (what, buffer, usage, end) in [
-            ("a caster's positions", mesh.positions, vertex, 0),
-            ("a caster's indices", mesh.indices, wgpu::BufferUsages::INDEX, end_of(mesh.first_triangle, triangles, 12)),
-            ("a caster's instances", mesh.instances, vertex, end_of(mesh.first_instance, mesh.instance_count, 64)),
-        ] {
-            if !buffer.usage().contains(usage) {
-                return self.bad(
-                    what,
-                    format!("in a buffer without the usage {usage:?} (caster {i})"),
-                    "in one with it",
-                );
-            }
-            if end > buffer.size() {
-                let had = format!("up to byte {end} of a buffer of {} (caster {i})", buffer.size());
-                return self.bad(what, had, "within the buffer");
-            }
+        let end = offset + u64::from(self.frame.receivers.count - 1) * u64::from(stride) + 4 * floats;
+        if end > buffer.size() {
+            return self.bad(what, format!("up to byte {end} of a buffer of {}", buffer.size()), "within the buffer");
         }
-        let draws = mesh.index_count > 0 && mesh.instance_count > 0;
-        if let Some(problem) = mesh.bounds.problem().filter(|_| draws) {
-            let needed = "a box with its least corner first, infinite where it is not known";
-            return self.bad("a caster's `bounds`", format!("{problem} (caster {i})"), needed);
+        let most = self.gpu.device.limits().max_storage_buffer_binding_size;
+        if buffer.size() > most {
+            return self.bad(
+                what,
+                format!("in a buffer of {} bytes", buffer.size()),
+                format!("in one of {most} at most, which this device binds"),
+            );
         }
-        let is_finite = match mesh.opacity {
-            Opacity::Opaque => true,
-            Opacity::Masked { alpha_factor, cutoff, .. } => alpha_factor.is_finite() && cutoff.is_finite(),
-            Opacity::Translucent { coverage, transmitted, .. } => coverage.is_finite() && transmitted.is_finite(),
+        let complaint = validator.buffer_complaint(self.gpu, buffer);
+        let refuse = |complaint| {
+            self.bad(what, format!("in a buffer that cannot be bound ({complaint})"), "in one of the light's device")
         };
-        if is_finite { Ok(()) } else { self.bad("a caster's opacity", format!("not finite (caster {i})"), "finite") }
+        complaint.map_or(Ok(()), refuse)
     }
 
-    fn depth_map(&self, validator: &mut Validator, map: &DepthMapCaster<'_>) -> Result<(), Error> {
-        const WHAT: &str = "the light's depth map";
-        let texture = map.view.texture();
-        if !texture.format().has_depth_aspect() || texture.format() == wgpu::TextureFormat::Depth16Unorm {
-            return self.bad(WHAT, format!("{:?}", texture.format()), "Depth32Float");
+    fn widths(&self) -> Result<(), Error> {
+        match self.frame.receivers.widths {
+            PointWidths::Same(width_m) if !(width_m >= 0.0 && width_m.is_finite()) => {
+                self.bad("the points' width", format!("{width_m} m"), "0 or more, and finite")
+            }
+            _ => Ok(()),
         }
-        let mut levels = (0..texture.mip_level_count()).map(|level| size_of(texture) >> level);
-        if map.size_px.min_element() == 0 || !levels.any(|size| size.max(UVec2::ONE) == map.size_px) {
-            return self.bad(
-                "the depth map's `size_px`",
-                format!("{}", map.size_px),
-                format!("the texture's {}", size_of(texture)),
-            );
+    }
+
+    /// What is told of where points are.
+    fn point_places(&self) -> Result<(), Error> {
+        let receivers = &self.frame.receivers;
+        if let Some(problem) = receivers.bounds.problem() {
+            return self.bad("the points' box", problem, "a box of all points with its least corner first");
         }
-        self.bindable(
-            validator,
-            WHAT,
-            map.view,
-            ViewKind::Depth,
-            "a 2D view of one layer and of the depth aspect alone",
-        )
+        self.finite("the points' `hull`", receivers.hull)?;
+        self.finite("the points' `seen`", receivers.seen)
     }
 }
 

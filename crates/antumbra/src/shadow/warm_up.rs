@@ -13,6 +13,7 @@ use crate::casters::{
 use crate::contract::{DepthConvention, Error, Mask, MaskChannels, Receivers, SurfaceCoverage};
 use crate::cover::pictures::PartPictures;
 use crate::frame::denoise::Denoiser;
+use crate::frame::points::PointTextures;
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{Coverage, Technique};
 
@@ -46,6 +47,7 @@ impl<T: Technique> Shadow<T> {
                 .map(|(masked, tinted)| WarmUp { masked, tinted }),
         );
         scenes.dedup();
+        PointTextures::compile_ahead(&self.gpu);
         if T::coverage(&self.params) != Coverage::Everything {
             drop(PartPictures::new(&self.gpu));
         }

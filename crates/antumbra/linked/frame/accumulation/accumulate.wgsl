@@ -37,9 +37,9 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u) {
     }
     let size_px = inputs_receiver_view.size_px;
     let index = pixel.y * size_px.x + pixel.x;
-    let depth = bitcast<u32>(inputs_depth_at(pixel));
+    let place = inputs_place_bits(pixel);
     var frames = 0u;
-    if !has_changed() && seen[index].x == depth {
+    if !has_changed() && seen[index].x == place {
         frames = seen[index].y;
     }
     for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
@@ -51,7 +51,7 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u) {
         means[at] = mean;
         inputs_store_mask(pixel, layer, mean);
     }
-    seen[index] = vec2u(depth, frames + 1u);
+    seen[index] = vec2u(place, frames + 1u);
 }
 
 @compute @workgroup_size(1)
@@ -76,7 +76,11 @@ struct inputs_ReceiverView {
     matrix_rounding_m: f32,
     pixel_m_per_w: f32,
     clip_z_row: vec4f,
-    clip_w_row: vec4f
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -103,6 +107,14 @@ fn inputs_is_inside(pixel: vec2u) -> bool {
     return all(pixel < inputs_receiver_view.size_px);
 }
 
-fn inputs_depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
+fn inputs_are_points() -> bool {
+    return inputs_receiver_view.are_points == 1u;
+}
+
+fn inputs_place_bits(pixel: vec2u) -> u32 {
+    let texel = bitcast<vec4u>(textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0));
+    if !inputs_are_points() {
+        return texel.x;
+    }
+    return (((texel.x * 747796405u) ^ texel.y) * 2891336453u) ^ texel.z;
 }

@@ -37,7 +37,7 @@ struct Start {
 
 fn start_of(receiver: inputs_Receiver) -> Start {
     let x = receiver.pos_in_world;
-    let offset_m = traversal_rays.bias_scale * ray_offset_ray_offset_from(x, inputs_receiver_view.eye_in_world, snapped_texels, inputs_receiver_view.matrix_rounding_m);
+    let offset_m = traversal_rays.bias_scale * ray_offset_ray_offset_from(x, snapped_texels, inputs_receiver_view.matrix_rounding_m);
     return Start(x, offset_m, receiver.normal_in_world, inputs_depth_error_m(x));
 }
 
@@ -152,7 +152,11 @@ struct inputs_ReceiverView {
     matrix_rounding_m: f32,
     pixel_m_per_w: f32,
     clip_z_row: vec4f,
-    clip_w_row: vec4f
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -221,6 +225,14 @@ fn inputs_is_inside(pixel: vec2u) -> bool {
     return all(pixel < inputs_receiver_view.size_px);
 }
 
+fn inputs_are_points() -> bool {
+    return inputs_receiver_view.are_points == 1u;
+}
+
+fn inputs_eye_distance_m(pos_in_world: vec3f) -> f32 {
+    return select(distance(pos_in_world, inputs_receiver_view.eye_in_world), 0.0, inputs_are_points());
+}
+
 fn inputs_depth_at(pixel: vec2u) -> f32 {
     return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
@@ -242,6 +254,9 @@ fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
 const inputs_OFFSET_SNAPS = 1.5;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
+    if inputs_are_points() {
+        return vec3f();
+    }
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
     let along = select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
     return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
@@ -280,7 +295,30 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
+    let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
+    if normal.w == 0.0 {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz;
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal.xyz, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
 fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    if inputs_are_points() {
+        return inputs_load_point(pixel);
+    }
     let depth = inputs_depth_at(pixel);
     if depth == inputs_receiver_view.background_depth {
         return inputs_Receiver(vec3f(), vec3f(), true, true);
@@ -414,8 +452,8 @@ fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
 
 const ray_offset_ROUNDING = 3.814697265625e-6;
 
-fn ray_offset_ray_offset_from(pos_in_world: vec3f, eye_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
-    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + inputs_eye_distance_m(pos_in_world));
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
 }
 

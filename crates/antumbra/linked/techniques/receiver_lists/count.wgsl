@@ -77,7 +77,11 @@ struct inputs_ReceiverView {
     matrix_rounding_m: f32,
     pixel_m_per_w: f32,
     clip_z_row: vec4f,
-    clip_w_row: vec4f
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -101,6 +105,14 @@ struct inputs_Receiver {
 
 fn inputs_is_inside(pixel: vec2u) -> bool {
     return all(pixel < inputs_receiver_view.size_px);
+}
+
+fn inputs_are_points() -> bool {
+    return inputs_receiver_view.are_points == 1u;
+}
+
+fn inputs_eye_distance_m(pos_in_world: vec3f) -> f32 {
+    return select(distance(pos_in_world, inputs_receiver_view.eye_in_world), 0.0, inputs_are_points());
 }
 
 fn inputs_depth_at(pixel: vec2u) -> f32 {
@@ -152,7 +164,30 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
+    let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
+    if normal.w == 0.0 {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz;
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal.xyz, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
 fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    if inputs_are_points() {
+        return inputs_load_point(pixel);
+    }
     let depth = inputs_depth_at(pixel);
     if depth == inputs_receiver_view.background_depth {
         return inputs_Receiver(vec3f(), vec3f(), true, true);
@@ -362,7 +397,7 @@ var<uniform> ray_offset_snapped_texels: f32;
 
 fn ray_offset_most_ray_offset_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
     let across = distance(low, high);
-    let distances = length(max(abs(low), abs(high))) + across + distance(low, inputs_receiver_view.eye_in_world);
+    let distances = length(max(abs(low), abs(high))) + across + inputs_eye_distance_m(low);
     let row = inputs_receiver_view.clip_w_row;
     let most_w = abs(dot(row, vec4f(low, 1.0))) + length(row.xyz) * across;
     return max(settings.hair_scale, 1.0) * (ray_offset_ROUNDING * distances + inputs_OFFSET_SNAPS * inputs_snapped_at_w(ray_offset_snapped_texels, most_w) + settings.matrix_rounding_m);

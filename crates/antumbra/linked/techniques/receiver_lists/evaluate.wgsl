@@ -425,8 +425,8 @@ fn share_block(block: u32) {
     block_upwards[block] = shaft_of_block.upwards;
 }
 
-fn share_box_and_shaft(lane: u32, x: vec3f, eye_in_world: vec3f) {
-    positions[lane] = vec4f(x, ray_offset_ray_offset_m(light_bits_settings, x, eye_in_world));
+fn share_box_and_shaft(lane: u32, x: vec3f) {
+    positions[lane] = vec4f(x, ray_offset_ray_offset_m(light_bits_settings, x));
     workgroupBarrier();
     if lane < BLOCKS {
         share_block(lane);
@@ -646,8 +646,8 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     let pixel_index = list[min(first_slot + lane, listed - 1u)];
     let pixel = light_bits_pixel_of(pixel_index);
     let receiver = inputs_load_receiver(pixel);
-    let sight = sight_sight_of(light_bits_settings, inputs_light_source, pixel, receiver, inputs_receiver_view.eye_in_world);
-    share_box_and_shaft(lane, receiver.pos_in_world, inputs_receiver_view.eye_in_world);
+    let sight = sight_sight_of(light_bits_settings, inputs_light_source, pixel, receiver);
+    share_box_and_shaft(lane, receiver.pos_in_world);
     let bits_at = light_bits_first_word_of(pixel_index);
     if is_first_pass && settings_is_on(light_bits_settings, settings_FIRST_TRIANGLES) {
         open_before_casters(receiver, sight.rays);
@@ -724,7 +724,11 @@ struct inputs_ReceiverView {
     matrix_rounding_m: f32,
     pixel_m_per_w: f32,
     clip_z_row: vec4f,
-    clip_w_row: vec4f
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -786,6 +790,14 @@ fn inputs_read_visibility_rgb(pixel: vec2u) -> vec3f {
     return vec3f(first, inputs_load_mask(pixel, 1u), inputs_load_mask(pixel, 2u));
 }
 
+fn inputs_are_points() -> bool {
+    return inputs_receiver_view.are_points == 1u;
+}
+
+fn inputs_eye_distance_m(pos_in_world: vec3f) -> f32 {
+    return select(distance(pos_in_world, inputs_receiver_view.eye_in_world), 0.0, inputs_are_points());
+}
+
 fn inputs_depth_at(pixel: vec2u) -> f32 {
     return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
@@ -807,6 +819,9 @@ fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
 const inputs_OFFSET_SNAPS = 1.5;
 
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
+    if inputs_are_points() {
+        return vec3f();
+    }
     let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
     let along = select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
     return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
@@ -845,7 +860,30 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
+    let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
+    if normal.w == 0.0 {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz;
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal.xyz, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
 fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    if inputs_are_points() {
+        return inputs_load_point(pixel);
+    }
     let depth = inputs_depth_at(pixel);
     if depth == inputs_receiver_view.background_depth {
         return inputs_Receiver(vec3f(), vec3f(), true, true);
@@ -916,8 +954,8 @@ fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
 
 const ray_offset_ROUNDING = 3.814697265625e-6;
 
-fn ray_offset_ray_offset_from(pos_in_world: vec3f, eye_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
-    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + inputs_eye_distance_m(pos_in_world));
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
 }
 
@@ -1335,8 +1373,8 @@ fn open_bits_write_open(pixel: vec2u, pixel_index: u32, seen: f32) {
 @group(1) @binding(14)
 var<uniform> ray_offset_snapped_texels: f32;
 
-fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, eye_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
+fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
+    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 struct settings_SampleSettings {
@@ -1559,9 +1597,9 @@ fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource,
     return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center, inputs_depth_error_m(x));
 }
 
-fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver, eye_in_world: vec3f) -> sight_Sight {
+fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
     let x = receiver.pos_in_world;
-    return sight_sight_from(settings, light, pixel, x, x + ray_offset_ray_offset_m(settings, x, eye_in_world) * receiver.normal_in_world);
+    return sight_sight_from(settings, light, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
 }
 
 fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {

@@ -36,7 +36,11 @@ struct inputs_ReceiverView {
     matrix_rounding_m: f32,
     pixel_m_per_w: f32,
     clip_z_row: vec4f,
-    clip_w_row: vec4f
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)

@@ -18,7 +18,7 @@ fn scatter(@builtin(global_invocation_id) id: vec3u) {
         let receiver = inputs_load_receiver(id.xy);
         let x = receiver.pos_in_world;
         lists_positions[2u * slot] = vec4f(x, 1.0);
-        let hair = ray_offset_ray_offset_m(lists_settings, x, inputs_receiver_view.eye_in_world);
+        let hair = ray_offset_ray_offset_m(lists_settings, x);
         lists_positions[2u * slot + 1u] = vec4f(x + hair * receiver.normal_in_world, 1.0);
     }
 }
@@ -38,7 +38,11 @@ struct inputs_ReceiverView {
     matrix_rounding_m: f32,
     pixel_m_per_w: f32,
     clip_z_row: vec4f,
-    clip_w_row: vec4f
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -62,6 +66,14 @@ struct inputs_Receiver {
 
 fn inputs_is_inside(pixel: vec2u) -> bool {
     return all(pixel < inputs_receiver_view.size_px);
+}
+
+fn inputs_are_points() -> bool {
+    return inputs_receiver_view.are_points == 1u;
+}
+
+fn inputs_eye_distance_m(pos_in_world: vec3f) -> f32 {
+    return select(distance(pos_in_world, inputs_receiver_view.eye_in_world), 0.0, inputs_are_points());
 }
 
 fn inputs_depth_at(pixel: vec2u) -> f32 {
@@ -117,7 +129,30 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
+    let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
+    if normal.w == 0.0 {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz;
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal.xyz, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
 fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    if inputs_are_points() {
+        return inputs_load_point(pixel);
+    }
     let depth = inputs_depth_at(pixel);
     if depth == inputs_receiver_view.background_depth {
         return inputs_Receiver(vec3f(), vec3f(), true, true);
@@ -169,8 +204,8 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
 
 const ray_offset_ROUNDING = 3.814697265625e-6;
 
-fn ray_offset_ray_offset_from(pos_in_world: vec3f, eye_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
-    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + distance(pos_in_world, eye_in_world));
+fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
+    let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + inputs_eye_distance_m(pos_in_world));
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
 }
 
@@ -192,8 +227,8 @@ var<storage, read_write> lists_positions: array<vec4f>;
 @group(1) @binding(14)
 var<uniform> ray_offset_snapped_texels: f32;
 
-fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f, eye_in_world: vec3f) -> f32 {
-    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, eye_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
+fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
+    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 struct settings_SampleSettings {

@@ -518,7 +518,11 @@ struct inputs_ReceiverView {
     matrix_rounding_m: f32,
     pixel_m_per_w: f32,
     clip_z_row: vec4f,
-    clip_w_row: vec4f
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -564,6 +568,10 @@ fn inputs_is_inside(pixel: vec2u) -> bool {
     return all(pixel < inputs_receiver_view.size_px);
 }
 
+fn inputs_are_points() -> bool {
+    return inputs_receiver_view.are_points == 1u;
+}
+
 fn inputs_depth_at(pixel: vec2u) -> f32 {
     return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
@@ -607,7 +615,41 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
+fn inputs_point_width_m(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).w;
+}
+
+fn inputs_point_sides_m(receiver: inputs_Receiver, pixel: vec2u) -> array<vec3f, 2> {
+    let n = receiver.normal_in_world;
+    let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.5);
+    let right = inputs_point_width_m(pixel) * normalize(cross(axis, n));
+    return array<vec3f, 2>(right, cross(n, right));
+}
+
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
+    let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
+    if normal.w == 0.0 {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz;
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal.xyz, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
 fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    if inputs_are_points() {
+        return inputs_load_point(pixel);
+    }
     let depth = inputs_depth_at(pixel);
     if depth == inputs_receiver_view.background_depth {
         return inputs_Receiver(vec3f(), vec3f(), true, true);
@@ -873,18 +915,21 @@ fn soft_kernel_unproject(ndc: vec2f, depth: f32) -> vec3f {
     return (inputs_receiver_view.world_from_view * vec4f(p.xyz / p.w, 1.0)).xyz;
 }
 
+fn soft_kernel_texels_of_step(receiver: inputs_Receiver, uv: vec2f, step_in_world: vec3f) -> vec2f {
+    let step = vec3f(dot(step_in_world, map_light_view.right_in_world), dot(step_in_world, map_light_view.up_in_world), dot(step_in_world, map_light_view.axis_in_world));
+    let p = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let in_plane = select(step.xy, (step.xy - p.xy / p.z * step.z) / p.z, map_light_view.perspective == 1u);
+    let texels = space_uv_step_at(map_light_view, uv, in_plane) * map_light_view.map_size;
+    return texels * min(1.0, soft_kernel_MAX_FOOTPRINT_TEXELS / max(length(texels), 1e-6));
+}
+
 fn soft_kernel_footprint_step(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u, offset_px: vec2f) -> vec2f {
     let ndc = (vec2f(pixel) + 0.5 + offset_px) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
     let a = soft_kernel_unproject(ndc, 1.0 - inputs_receiver_view.background_depth);
     let ray = soft_kernel_unproject(ndc, inputs_depth_at(pixel)) - a;
     let facing = dot(ray, receiver.normal_in_world);
     let t = dot(receiver.pos_in_world - a, receiver.normal_in_world) / min(facing, -0.0001 * length(ray));
-    let step_in_world = a + ray * t - receiver.pos_in_world;
-    let step = vec3f(dot(step_in_world, map_light_view.right_in_world), dot(step_in_world, map_light_view.up_in_world), dot(step_in_world, map_light_view.axis_in_world));
-    let p = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let in_plane = select(step.xy, (step.xy - p.xy / p.z * step.z) / p.z, map_light_view.perspective == 1u);
-    let texels = space_uv_step_at(map_light_view, uv, in_plane) * map_light_view.map_size;
-    return texels * min(1.0, soft_kernel_MAX_FOOTPRINT_TEXELS / max(length(texels), 1e-6));
+    return soft_kernel_texels_of_step(receiver, uv, a + ray * t - receiver.pos_in_world);
 }
 
 const soft_kernel_SHARE_AT_EDGE = 0.75;
@@ -897,12 +942,20 @@ fn soft_kernel_share_towards(receiver: inputs_Receiver, pixel: vec2u, step_px: v
     return select(soft_kernel_SHARE_AT_EDGE, 1.0, is_same);
 }
 
+fn soft_kernel_square_covariance(x: vec2f, y: vec2f) -> vec3f {
+    return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
+}
+
 fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
+    if inputs_are_points() {
+        let sides = inputs_point_sides_m(receiver, pixel);
+        return soft_kernel_square_covariance(soft_kernel_texels_of_step(receiver, uv, sides[0]), soft_kernel_texels_of_step(receiver, uv, sides[1]));
+    }
     let width = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(-1, 0)) + soft_kernel_share_towards(receiver, pixel, vec2i(1, 0)));
     let height = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(0, -1)) + soft_kernel_share_towards(receiver, pixel, vec2i(0, 1)));
     let x = 2.0 * width * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
     let y = 2.0 * height * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
-    return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
+    return soft_kernel_square_covariance(x, y);
 }
 
 fn soft_kernel_light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {

@@ -16,11 +16,10 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use antumbra_light::Light;
-use glam::{Mat4, UVec2};
+use glam::UVec2;
 
 use crate::contract::{
-    CastersKey, DepthConvention, Error, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage,
-    SurfaceTexture,
+    Camera, CastersKey, Error, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage, SurfaceTexture,
 };
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
@@ -87,9 +86,8 @@ pub(crate) struct Accumulation {
 #[derive(Debug, PartialEq)]
 struct Seen {
     light: Light,
-    view_from_world: Mat4,
-    clip_from_view: Mat4,
-    depth_convention: DepthConvention,
+    /// `None` of points.
+    camera: Option<Camera>,
     size_px: UVec2,
     mask_layers: u32,
     casters: SeenCasters,
@@ -151,9 +149,7 @@ impl Accumulation {
         let receivers = &frame.receivers;
         let now = Seen {
             light: frame.light.for_shadows(),
-            view_from_world: receivers.view_from_world,
-            clip_from_view: receivers.clip_from_view,
-            depth_convention: receivers.depth_convention,
+            camera: receivers.camera().copied(),
             size_px: receivers.size_px,
             mask_layers: frame.mask.channels().count(),
             casters: set.map_or_else(|| SeenCasters::Hashed(hash_of_casters(&frame.casters)), SeenCasters::Set),

@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 use glam::{Mat4, UVec2, Vec3};
 
-use crate::contract::{Denoise, DepthConvention, Mask, PreparedFrame};
+use crate::contract::{Camera, Denoise, Mask, PreparedFrame};
 use crate::frame::DEPTH_FORMAT;
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
@@ -123,14 +123,6 @@ struct Kept {
     channels: u32,
     means_view: wgpu::TextureView,
     depth_view: wgpu::TextureView,
-}
-
-/// How the frame before was seen, in the host's world.
-#[derive(Clone, Copy, Debug)]
-struct Camera {
-    view_from_world: Mat4,
-    clip_from_view: Mat4,
-    depth_convention: DepthConvention,
 }
 
 impl Denoiser {
@@ -225,11 +217,7 @@ impl Denoiser {
             ("denoise over pixels", self.over_pixels.clone(), over_pixels),
         ];
         self.kept = Some(kept);
-        self.before = Some(Camera {
-            view_from_world: host.receivers.view_from_world,
-            clip_from_view: host.receivers.clip_from_view,
-            depth_convention: host.receivers.depth_convention,
-        });
+        self.before = host.receivers.camera().copied();
         self.frames += 1;
         self.still_frames = if is_same { self.still_frames + 1 } else { 1 };
         PreparedDenoise { noisy, inputs, passes, channels }

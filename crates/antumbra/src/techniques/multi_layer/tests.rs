@@ -133,7 +133,7 @@ fn record(
     let frame = PreparedFrame {
         light,
         casters: PreparedCasters::Draws(&casters),
-        receivers: test_receivers(size, &depth),
+        receivers: test_receivers(size, &depth).into(),
         mask: &mask,
     };
     let prepared = technique.prepare(&Stage::at_once(gpu), &frame, params).expect("a good frame");

@@ -6,7 +6,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Vec2, Vec3, Vec4};
 
-use crate::contract::Receivers;
+use crate::contract::PreparedReceivers;
 
 use super::light_points::{LocalPoint, box_along, box_of};
 
@@ -30,7 +30,7 @@ const FLATTEST: f32 = 1e-3;
 const MOST_TANGENT: f32 = 2.0;
 
 impl Windows {
-    pub(crate) fn towards(receivers: &Receivers<'_>, light: &Light, points: &[LocalPoint], is_turned: bool) -> Self {
+    pub(crate) fn towards(receivers: &PreparedReceivers<'_>, light: &Light, points: &[LocalPoint], is_turned: bool) -> Self {
         let frame = light.frame();
         let (count, axes) = if light.is_distant() {
             (1, [frame.right, frame.up, frame.axis])
@@ -74,7 +74,7 @@ fn ellipsoid_along(light: &Light, points: &[LocalPoint], axes: [Vec3; 3]) -> [Ve
 }
 
 /// The middle of the directions from a point to all receivers, where one window holds them.
-fn axis_to(receivers: &Receivers<'_>, from: Vec3) -> Option<Vec3> {
+fn axis_to(receivers: &PreparedReceivers<'_>, from: Vec3) -> Option<Vec3> {
     let corners = match receivers.bounds {
         _ if !receivers.hull.is_empty() => receivers.hull.to_vec(),
         Some(bounds) => bounds.corners().to_vec(),

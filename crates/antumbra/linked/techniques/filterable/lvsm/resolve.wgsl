@@ -104,7 +104,11 @@ struct inputs_ReceiverView {
     matrix_rounding_m: f32,
     pixel_m_per_w: f32,
     clip_z_row: vec4f,
-    clip_w_row: vec4f
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @group(0) @binding(0)
@@ -158,6 +162,10 @@ fn inputs_is_inside(pixel: vec2u) -> bool {
     return all(pixel < inputs_receiver_view.size_px);
 }
 
+fn inputs_are_points() -> bool {
+    return inputs_receiver_view.are_points == 1u;
+}
+
 fn inputs_depth_at(pixel: vec2u) -> f32 {
     return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
 }
@@ -201,7 +209,41 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     return select(-normal, normal, dot(normal, to_eye) >= 0.0);
 }
 
+fn inputs_point_width_m(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).w;
+}
+
+fn inputs_point_sides_m(receiver: inputs_Receiver, pixel: vec2u) -> array<vec3f, 2> {
+    let n = receiver.normal_in_world;
+    let axis = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(n.x) > 0.5);
+    let right = inputs_point_width_m(pixel) * normalize(cross(axis, n));
+    return array<vec3f, 2>(right, cross(n, right));
+}
+
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
+    let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
+    if normal.w == 0.0 {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz;
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal.xyz, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
 fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    if inputs_are_points() {
+        return inputs_load_point(pixel);
+    }
     let depth = inputs_depth_at(pixel);
     if depth == inputs_receiver_view.background_depth {
         return inputs_Receiver(vec3f(), vec3f(), true, true);
@@ -542,10 +584,23 @@ fn lookup_uv_offset(receiver: inputs_Receiver, pixel: vec2u, depth: f32, neighbo
     let least = 0.01 * length(along);
     let divisor = select(max(fall, least), min(fall, -least), fall < 0.0);
     let offset = a - receiver.pos_in_world - along * (dot(a - receiver.pos_in_world, receiver.normal_in_world) / divisor);
+    return lookup_uv_of_step(receiver, offset);
+}
+
+fn lookup_uv_of_step(receiver: inputs_Receiver, offset: vec3f) -> vec2f {
     let p = space_light_from_world(map_light_view, receiver.pos_in_world);
     let d = space_light_from_world(map_light_view, map_light_view.origin_in_world + offset);
     let step = select(d.xy, (d.xy - p.xy / p.z * d.z) / p.z, map_light_view.perspective == 1u);
     return space_uv_step_of_plane(map_light_view, step);
+}
+
+fn lookup_sides_in_uv(receiver: inputs_Receiver, pixel: vec2u) -> array<vec2f, 2> {
+    if inputs_are_points() {
+        let sides = inputs_point_sides_m(receiver, pixel);
+        return array<vec2f, 2>(lookup_uv_of_step(receiver, sides[0]), lookup_uv_of_step(receiver, sides[1]));
+    }
+    let depth = inputs_depth_at(pixel);
+    return array<vec2f, 2>(lookup_uv_offset(receiver, pixel, depth, pixel + vec2u(1, 0)), lookup_uv_offset(receiver, pixel, depth, pixel + vec2u(0, 1)));
 }
 
 fn lookup_footprint_of(receiver: inputs_Receiver, pixel: vec2u, uv: vec2f) -> lookup_Footprint {
@@ -553,9 +608,9 @@ fn lookup_footprint_of(receiver: inputs_Receiver, pixel: vec2u, uv: vec2f) -> lo
     if levels == 1u {
         return lookup_Footprint(uv, vec2f(), 1u, 0.0);
     }
-    let depth = inputs_depth_at(pixel);
-    let dx = lookup_uv_offset(receiver, pixel, depth, pixel + vec2u(1, 0)) * map_light_view.map_size;
-    let dy = lookup_uv_offset(receiver, pixel, depth, pixel + vec2u(0, 1)) * map_light_view.map_size;
+    let sides = lookup_sides_in_uv(receiver, pixel);
+    let dx = sides[0] * map_light_view.map_size;
+    let dy = sides[1] * map_light_view.map_size;
     let xx = dx.x * dx.x + dy.x * dy.x;
     let xy = dx.x * dx.y + dy.x * dy.y;
     let yy = dx.y * dx.y + dy.y * dy.y;

@@ -138,7 +138,7 @@ fn fragments_lie_between_the_view_s_planes() {
         let frame = PreparedFrame {
             light: &light,
             casters: PreparedCasters::Draws(casters),
-            receivers: test_receivers(size, &depth),
+            receivers: test_receivers(size, &depth).into(),
             mask: &mask,
         };
         let prepared = technique.prepare(&Stage::at_once(gpu), &frame, &params).expect("a good frame");

@@ -118,8 +118,10 @@ impl Technique for Smrt {
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let layers = if is_own { params.layers } else { 1 };
         let program = TapsProgram::of(&taps, layers);
-        // Of a list of points penumbrae have steps, which are no noise.
-        let is_smooth = params.smooth && !matches!(frame.light.shape, LightShape::Points { .. });
+        // Of a list of points penumbrae have steps, which are no noise; points in any order have no means over neighbours.
+        let is_smooth = params.smooth
+            && !matches!(frame.light.shape, LightShape::Points { .. })
+            && frame.receivers.have_neighbours();
         // Of a tile's pixels together, up to what is enough for any.
         let tile_search_count = (TILE_PIXELS * params.search_samples).min(MOST_SEARCH_TAPS.max(params.search_samples));
         let uniform = SmrtUniform {
