@@ -94,12 +94,13 @@ pub use antumbra_light::ShadowDistance;
 pub use casters::CasterSet;
 pub use contract::{
     Denoise, DepthConvention, DepthMapCaster, DrawnLists, DrawnMap, Error, Mask, MaskChannels, MaskPlace, MeshCaster,
-    MeshVersion, Opacity, Overflow, PointBuffer, PointReceivers, PointWidths, Quality, Receivers, SurfaceCoverage, SurfaceTexture,
+    MeshVersion, Opacity, Overflow, PointBuffer, PointReceivers, PointWidths, Quality, Receivers, SurfaceCoverage,
+    SurfaceTexture,
 };
 pub use frame::split_receivers::SplitReceivers;
 #[doc(hidden)]
 pub use gpu::programs;
-pub use gpu::{Gpu, MemoryBytes, ObjectCounts, PassTime, PassTimer, Recorder};
+pub use gpu::{Gpu, MemoryBytes, ObjectCounts, PassTime, PassTimer, Recorder, ShaderFunction};
 pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp};
 pub use technique_kind::{TechniqueFacts, TechniqueKind};
 pub use techniques::Technique;

@@ -29,6 +29,12 @@ shaders! {
     /// What a frame's receivers are, for tests.
     #[cfg(test)]
     POINTS_PROBE = "frame/points/probe";
+    /// hard for hosts' shaders.
+    HARD_AT = "techniques/single_map/hard/at";
+    /// pcf for hosts' shaders.
+    PCF_AT = "techniques/single_map/pcf/at";
+    /// pcss for hosts' shaders.
+    PCSS_AT = "techniques/single_map/pcss/at";
     /// Receivers of a multisampled depth buffer.
     SPLIT_RECEIVERS_DRAW = "frame/split_receivers/split";
     /// Parts of what a light reaches: the receivers of one.

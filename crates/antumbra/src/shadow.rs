@@ -9,9 +9,7 @@
 
 use std::fmt;
 
-use crate::contract::{
-    Denoise, DrawnLists, DrawnMap, Error, Mask, Overflow, Params, PreparedFrame, PreparedReceivers,
-};
+use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Mask, Overflow, Params, PreparedFrame, PreparedReceivers};
 use crate::frame::denoise::{Denoiser, PreparedDenoise};
 use crate::frame::narrow_mask::NarrowMask;
 use crate::frame::points::PointTextures;
@@ -23,6 +21,7 @@ mod any;
 mod frame;
 mod frame_key;
 mod parted;
+mod shader_function;
 #[cfg(test)]
 mod tests;
 mod validate;
@@ -32,6 +31,7 @@ use anchored::{Anchored, anchor_of};
 use frame::{Asked, FrameCasters, prepared};
 use frame_key::FrameKey;
 use parted::{Parted, PartedPasses};
+use shader_function::ShaderFunctions;
 use validate::Validator;
 
 pub use any::AnyShadow;
@@ -57,6 +57,7 @@ pub struct Shadow<T: Technique> {
     points: Option<PointTextures>,
     denoiser: Option<Denoiser>,
     keep: Keep,
+    functions: ShaderFunctions,
     /// What the mask holds, where the last frame was recorded and no commands were dropped.
     mask: Content<FrameKey<T::Params>>,
     /// A frame that failed or was never recorded leaves a state that is not to be relied on.
@@ -95,6 +96,7 @@ impl<T: Technique> Shadow<T> {
             points: None,
             denoiser: None,
             keep: Keep::default(),
+            functions: ShaderFunctions::default(),
             mask: Content::default(),
             is_recorded: true,
             commands: Commands::default(),

@@ -50,6 +50,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<cover::region::RegionGpu>(),
         entry::<frame::inputs::LightSource>(),
         entry::<frame::inputs::ReceiverView>(),
+        entry::<frame::points::PointLayout>(),
         entry::<frame::split_receivers::Split>(),
         entry::<light_map::light_view::LightViewGpu>(),
         entry::<techniques::summed::summed_area_table::gpu_types::DoublingUniform>(),

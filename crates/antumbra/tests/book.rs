@@ -135,3 +135,17 @@ fn points_in_place_of_a_depth_buffer(
     shadow.prepare_points(&frame)?.record(&mut recorder);
     Ok(())
 }
+
+/// docs/integrating.md, Visibility in your own shaders.
+fn visibility_in_your_own_shaders(
+    (shadow, frame): (&mut AnyShadow, Frame<'_>),
+    mut recorder: Recorder<'_>,
+    (my_wgsl, my_globals, my_material): (&str, wgpu::BindGroupLayout, wgpu::BindGroupLayout),
+) -> Result<(), Error> {
+    shadow.prepare(&frame)?.record(&mut recorder);
+    let function = shadow.shader_function(2, "sun_")?; // your bind group, and how all names begin
+    let source = format!("{}\n{}", function.wgsl, my_wgsl); // calls sun_visibility_at(position, normal, pixel)
+    let layouts = [Some(&my_globals), Some(&my_material), Some(&function.layout)];
+    // In the pass: set_bind_group(2, &function.bind_group, &[]).
+    Ok(())
+}

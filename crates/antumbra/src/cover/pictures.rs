@@ -122,8 +122,7 @@ impl PartPictures {
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.picture.as_ref().map_or(0, |picture| {
             let own = [&picture.depth, &picture.normals].into_iter().flatten();
-            own.map(|(texture, _)| texture_bytes(texture)).sum::<u64>()
-                + texture_bytes(&picture.scratch)
+            own.map(|(texture, _)| texture_bytes(texture)).sum::<u64>() + texture_bytes(&picture.scratch)
         })
     }
 }

@@ -115,7 +115,8 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
         // From so high that all of it is seen.
         let view_from_world = look_at_mat4(Vec3::new(0.0, 150.0, 1.0), Vec3::ZERO, Vec3::Y);
         let receivers = Receivers { hull, view_from_world, ..test_receivers(SIZE, &depth) };
-        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(casters), receivers: receivers.into(), mask: &mask };
+        let frame =
+            PreparedFrame { light, casters: PreparedCasters::Draws(casters), receivers: receivers.into(), mask: &mask };
         parts_of(&frame, coverage, Vec3::ZERO, &mut Still::default())
     };
     let parts = |light: &Light, hull: &[Vec3], coverage| parts_with(&casters, light, hull, coverage);
@@ -229,7 +230,12 @@ fn slices_stay_while_a_camera_walks() {
         let far = 700.0 * (1.0 + 0.02 * unit(1000 + frame).y);
         let hull = Aabb { min: Vec3::new(-far, -0.1, -far), max: Vec3::new(40.0, 9.0, 40.0) }.corners();
         let receivers = Receivers { hull: &hull, seen: &seen, view_from_world, ..test_receivers(SIZE, &depth) };
-        let frame = PreparedFrame { light: &sun, casters: PreparedCasters::Draws(&casters), receivers: receivers.into(), mask: &mask };
+        let frame = PreparedFrame {
+            light: &sun,
+            casters: PreparedCasters::Draws(&casters),
+            receivers: receivers.into(),
+            mask: &mask,
+        };
         let parts = parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut still);
         let now: Vec<_> = parts.iter().map(|part| (part.id, part.still.expect("a slice"))).collect();
         for (part, (_, corners)) in parts.iter().zip(&now) {
@@ -284,11 +290,20 @@ fn parts_end_where_shadows_do() {
     let meshes = [slab(0.0), slab(-700.0)];
     let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
     let receivers = Receivers { hull: &far, ..test_receivers(SIZE, &depth) };
-    let eye = crate::contract::PreparedReceivers::from(receivers).camera().expect("of a depth buffer").eye_in_world().as_vec3();
+    let eye = crate::contract::PreparedReceivers::from(receivers)
+        .camera()
+        .expect("of a depth buffer")
+        .eye_in_world()
+        .as_vec3();
     let forward = -receivers.view_from_world.row(2).truncate();
     let parts = |light: &Light, end_m: Option<f32>| {
         let receivers = Receivers { shadow_distance: end_m.map(ShadowDistance::new), ..receivers };
-        let frame = PreparedFrame { light, casters: PreparedCasters::Draws(&casters), receivers: receivers.into(), mask: &mask };
+        let frame = PreparedFrame {
+            light,
+            casters: PreparedCasters::Draws(&casters),
+            receivers: receivers.into(),
+            mask: &mask,
+        };
         parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut Still::default())
     };
     for (light, end_m) in [(&sun, 150.0), (&sun, 20.0), (&lamp, 30.0), (&spot, 30.0)] {

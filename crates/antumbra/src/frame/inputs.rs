@@ -6,7 +6,9 @@ use glam::{DVec3, Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use super::blue_noise;
 use crate::contract::{Camera, Mask, PreparedFrame, PreparedReceivers, Surfaces};
-use crate::gpu::{Bindings, Gpu, Stage, bindings, create_uniform, gpu_structs, texels, upload_storage, write_uniform};
+use crate::gpu::{
+    Bindings, EmbeddedGroup, Gpu, Stage, bindings, create_uniform, gpu_structs, texels, upload_storage, write_uniform,
+};
 
 /// Threads along each side of a workgroup over the receivers.
 const TILE: u32 = 8;
@@ -33,6 +35,8 @@ gpu_structs! {
         padding_0: u32,
         padding_1: u32,
         padding_2: u32,
+        anchor_in_world: Vec3,
+        padding_3: u32,
     }
 
     /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
@@ -70,6 +74,14 @@ bindings! {
         3 receiver_normals: Texture(texels::FLOAT),
         4 mask: ReadWriteArray(Mask::FORMAT) in COMPUTE,
         5 light_data: Storage in COMPUTE,
+        6 noise_tile: Texture(texels::FLOAT),
+    }
+
+    /// What of them functions of hosts' shaders read. Held against shaders as part of the embedded groups.
+    struct EmbeddedInputs = "frame inputs of hosts' shaders", COMPUTE {
+        0 receiver_view: Uniform,
+        1 light_source: Uniform,
+        5 light_data: Storage,
         6 noise_tile: Texture(texels::FLOAT),
     }
 
@@ -219,6 +231,16 @@ impl FrameInputs {
         MissingInputs { inputs: self.inputs_of(frame, &prepared.light_data), missing }.group(stage, layout)
     }
 
+    /// What of group 0 functions of hosts' shaders read, of the frame prepared last; `None` before there was one.
+    pub(crate) fn embedded(&self) -> Option<EmbeddedGroup> {
+        Some(EmbeddedGroup::of(&EmbeddedInputs {
+            receiver_view: &self.receiver_view,
+            light_source: &self.light_source,
+            light_data: self.light_data.as_ref()?,
+            noise_tile: &self.noise_tile,
+        }))
+    }
+
     fn inputs_of<'a>(&'a self, frame: &PreparedFrame<'a>, light_data: &'a wgpu::Buffer) -> Inputs<'a> {
         Inputs {
             receiver_view: &self.receiver_view,
@@ -298,6 +320,7 @@ fn receiver_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> ReceiverView {
         noise_frame: stage.noise_frame(),
         pixel_stride: 1,
         matrix_rounding_m: matrix_rounding_m(stage, receivers),
+        anchor_in_world: stage.anchor(),
         ..ReceiverView::default()
     };
     let Surfaces::Depth { camera, .. } = &receivers.surfaces else {

@@ -317,6 +317,11 @@ impl Device {
     }
 
     /// A layout, shared by all that have the same entries.
+    /// A shader's text as the device gets it, for a module of the host's.
+    pub(crate) fn host_shader_text(&self, wgsl: String) -> String {
+        self.programs.uniforms.shader_text(wgsl.into()).into_owned()
+    }
+
     pub(crate) fn create_bind_group_layout(
         &self,
         descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,

@@ -87,8 +87,9 @@ struct KeptGroup {
     group: Used<wgpu::BindGroup>,
 }
 
+/// What a bind group holds at a binding.
 #[derive(Debug)]
-enum Resource {
+pub(crate) enum Resource {
     Buffer(wgpu::Buffer, u64, Option<NonZeroU64>),
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
@@ -393,7 +394,18 @@ impl KeptGroup {
 }
 
 impl Resource {
-    fn of(bound: &wgpu::BindingResource<'_>) -> Self {
+    /// What is bound.
+    pub(crate) fn binding(&self) -> wgpu::BindingResource<'_> {
+        match self {
+            Self::Buffer(buffer, offset, size) => {
+                wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: *offset, size: *size })
+            }
+            Self::View(view) => wgpu::BindingResource::TextureView(view),
+            Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+        }
+    }
+
+    pub(crate) fn of(bound: &wgpu::BindingResource<'_>) -> Self {
         match bound {
             wgpu::BindingResource::Buffer(part) => Self::Buffer(part.buffer.clone(), part.offset, part.size),
             wgpu::BindingResource::TextureView(view) => Self::View((*view).clone()),

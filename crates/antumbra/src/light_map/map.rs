@@ -16,8 +16,8 @@ use super::light_view::{FitTo, Followed, LightView, LightViewGpu, WindowShape};
 use super::still_view::{corners_to_hold, in_whole_texels};
 use crate::contract::{CastersKey, DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{
-    Bindings, Content, Gpu, Lease, Recorder, Scratch, Span, Stage, bindings, create_uniform, samples, texels,
-    write_uniform,
+    Bindings, Content, EmbeddedGroup, Gpu, Lease, Recorder, Scratch, Span, Stage, bindings, create_uniform, samples,
+    texels, write_uniform,
 };
 
 /// What the window of a map of our own may be.
@@ -135,7 +135,8 @@ pub(crate) struct LightMap {
     textures: Option<Textures>,
     /// Of the map of our own, layers behind it and pyramid.
     content: Content<(CastersKey, Vec<u8>)>,
-    /// Of the frame prepared last.
+    /// Of the frame prepared last: the map, ours or the host's, and whether no other light draws into it.
+    bound: Option<(wgpu::TextureView, bool)>,
     drawn: Option<DrawnMap>,
 }
 
@@ -173,6 +174,7 @@ impl LightMap {
             }),
             textures: None,
             content: Content::default(),
+            bound: None,
             drawn: None,
         }
     }
@@ -224,6 +226,7 @@ impl LightMap {
             behind.prepare(stage, lease, map, map_size, shape.layers.saturating_sub(1));
         }
         let map = MapBindings { light_view: &self.view_uniform, light_map: map, light_map_sampler: &self.sampler };
+        self.bound = Some((map.light_map.clone(), lease.is_own()));
         self.drawn = Some(view.drawn_map(map.light_map, 1, empty_depth)).filter(|_| lease.is_own());
         let group = self.bind(stage, map);
         Ok(PreparedMap { group, is_drawn, view, size_px: shape.size_px, empty_depth })
@@ -239,6 +242,21 @@ impl LightMap {
             None => searched.group(stage, &self.layout),
             Some(behind) => LayersBindings { searched, further_layers: behind.array() }.group(stage, &self.layout),
         }
+    }
+
+    /// The group as a host's shader binds it, of the frame prepared last, and whether no other light's frame changes what it holds.
+    pub(crate) fn embedded(&self) -> Option<(EmbeddedGroup, bool)> {
+        let (light_map, is_own) = self.bound.as_ref()?;
+        let map = MapBindings { light_view: &self.view_uniform, light_map, light_map_sampler: &self.sampler };
+        let Some(light_map_pyramid) = self.pyramid.as_ref().and_then(DepthPyramid::view) else {
+            return Some((EmbeddedGroup::of(&map), *is_own));
+        };
+        let searched = PyramidBindings { map, light_map_pyramid };
+        let group = match &self.layers_behind {
+            None => EmbeddedGroup::of(&searched),
+            Some(behind) => EmbeddedGroup::of(&LayersBindings { searched, further_layers: behind.array() }),
+        };
+        Some((group, *is_own))
     }
 
     /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one); nothing where

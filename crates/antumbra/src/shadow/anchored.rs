@@ -35,12 +35,13 @@ pub(super) fn anchor_of(asked: &Asked<'_>) -> Vec3 {
     let about = match asked {
         _ if !asked.light().is_distant() => asked.light().center,
         Asked::Mask(frame) => {
-            PreparedReceivers::from(frame.receivers).camera().map_or(Vec3::ZERO, |camera| camera.eye_in_world().as_vec3())
+            let receivers = PreparedReceivers::from(frame.receivers);
+            receivers.camera().map_or(Vec3::ZERO, |camera| camera.eye_in_world().as_vec3())
         }
         Asked::Points(frame) => {
             let Aabb { min, max } = frame.receivers.bounds;
-            0.5 * Vec3::select(min.is_finite_mask() & max.is_finite_mask(), min, Vec3::ZERO)
-                + 0.5 * Vec3::select(min.is_finite_mask() & max.is_finite_mask(), max, Vec3::ZERO)
+            let are_known = min.is_finite_mask() & max.is_finite_mask();
+            Vec3::select(are_known, 0.5 * min + 0.5 * max, Vec3::ZERO)
         }
     };
     anchor_near(about)
@@ -95,13 +96,8 @@ impl<'a> Anchored<'a> {
             }
             points @ Surfaces::Points { .. } => points,
         };
-        let receivers = PreparedReceivers {
-            surfaces,
-            bounds: self.bounds,
-            hull: &self.hull,
-            seen: &self.seen,
-            ..*receivers
-        };
+        let receivers =
+            PreparedReceivers { surfaces, bounds: self.bounds, hull: &self.hull, seen: &self.seen, ..*receivers };
         PreparedFrame { light: &self.light, receivers, casters, ..*frame }
     }
 }

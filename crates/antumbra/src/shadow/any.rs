@@ -6,6 +6,7 @@ use super::{Frame, PointFrame, Prepared, Shadow, WarmUp};
 use crate::contract::{
     Denoise, DrawnLists, DrawnMap, Error, Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
 };
+use crate::gpu::ShaderFunction;
 use crate::techniques::Technique;
 
 /// Object-safe form of [`Shadow`].
@@ -20,6 +21,7 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error>;
+    fn shader_function(&mut self, group: u32, prefix: &str) -> Result<ShaderFunction, Error>;
     fn memory_bytes(&self) -> u64;
     fn drawn_maps(&self) -> Vec<DrawnMap>;
     fn drawn_lists(&self) -> Vec<DrawnLists>;
@@ -56,6 +58,9 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error> {
         Shadow::prepare_points(self, frame)
+    }
+    fn shader_function(&mut self, group: u32, prefix: &str) -> Result<ShaderFunction, Error> {
+        Shadow::shader_function(self, group, prefix)
     }
     fn memory_bytes(&self) -> u64 {
         Shadow::memory_bytes(self)
@@ -153,6 +158,14 @@ impl AnyShadow {
     /// As [`Shadow::prepare_points`].
     pub fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error> {
         self.inner.prepare_points(frame)
+    }
+
+    /// [`Shadow::shader_function`].
+    ///
+    /// # Errors
+    /// As [`Shadow::shader_function`].
+    pub fn shader_function(&mut self, group: u32, prefix: &str) -> Result<ShaderFunction, Error> {
+        self.inner.shader_function(group, prefix)
     }
 
     /// [`Shadow::memory_bytes`].

@@ -5,7 +5,9 @@ use glam::{Mat4, UVec2, Vec3};
 
 use super::frame::Asked;
 use super::{Frame, PointFrame};
-use crate::contract::{CastersKey, Denoise, DepthConvention, MaskChannels, MaskPlace, Params, PointBuffer, PointWidths};
+use crate::contract::{
+    CastersKey, Denoise, DepthConvention, MaskChannels, MaskPlace, Params, PointBuffer, PointWidths,
+};
 
 /// Key of a frame: all that its mask depends on.
 #[derive(Debug, PartialEq)]
@@ -86,10 +88,13 @@ impl<P: Params> FrameKey<P> {
         asked: &Asked<'_>,
         casters: Option<CastersKey>,
     ) -> Option<Self> {
-        let (casters, (version, points)) = (casters?, match asked {
-            Asked::Mask(Frame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
-            Asked::Points(PointFrame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
-        });
+        let (casters, (version, points)) = (
+            casters?,
+            match asked {
+                Asked::Mask(Frame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
+                Asked::Points(PointFrame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
+            },
+        );
         Some(Self {
             casters,
             version,

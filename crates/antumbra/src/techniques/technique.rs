@@ -2,7 +2,7 @@
 
 use crate::contract::{DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::cover::Coverage;
-use crate::gpu::{Gpu, Recorder, Stage};
+use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
 
 /// A shadow technique, as the library runs it: hosts use it through [`Shadow`](crate::Shadow).
 ///
@@ -62,6 +62,13 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     /// none of techniques that keep no lists.
     fn drawn_lists(&self) -> Vec<DrawnLists> {
         Vec::new()
+    }
+
+    /// What a host's shader needs to ask for visibility itself, as the frame prepared last gives it; `None` of techniques that have no
+    /// such function, or before a frame.
+    #[doc(hidden)]
+    fn embeddable(&self) -> Option<Embeddable> {
+        None
     }
 
     /// Bytes of GPU memory that the technique holds, the mask and the host's resources apart.

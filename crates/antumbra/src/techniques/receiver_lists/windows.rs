@@ -30,7 +30,12 @@ const FLATTEST: f32 = 1e-3;
 const MOST_TANGENT: f32 = 2.0;
 
 impl Windows {
-    pub(crate) fn towards(receivers: &PreparedReceivers<'_>, light: &Light, points: &[LocalPoint], is_turned: bool) -> Self {
+    pub(crate) fn towards(
+        receivers: &PreparedReceivers<'_>,
+        light: &Light,
+        points: &[LocalPoint],
+        is_turned: bool,
+    ) -> Self {
         let frame = light.frame();
         let (count, axes) = if light.is_distant() {
             (1, [frame.right, frame.up, frame.axis])

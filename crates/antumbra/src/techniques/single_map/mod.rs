@@ -6,7 +6,10 @@ use bytemuck::Pod;
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
-use crate::gpu::{Bindings, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage, write_uniform};
+use crate::gpu::{
+    Bindings, Embeddable, EmbeddedGroup, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage,
+    write_uniform,
+};
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
 pub mod hard;
@@ -57,6 +60,8 @@ pub(crate) struct MapResolve<P> {
     resolve: Resolve,
     params_uniform: wgpu::Buffer,
     taps: Option<wgpu::Buffer>,
+    /// Of the frame prepared last.
+    constants: Vec<(&'static str, f64)>,
     _params: std::marker::PhantomData<P>,
 }
 
@@ -114,6 +119,7 @@ impl<P: GpuStruct> MapResolve<P> {
             resolve,
             params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
             taps: None,
+            constants: Vec::new(),
             _params: std::marker::PhantomData,
         }
     }
@@ -135,6 +141,8 @@ impl<P: GpuStruct> MapResolve<P> {
             constants: pass.constants,
             layouts: &layouts(&self.map, &self.params_layout, &self.further_layouts),
         };
+        self.constants.clear();
+        self.constants.extend_from_slice(pass.constants);
         let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse, &shader);
         write_uniform(stage, &self.params_uniform, params);
         let taps: &[T] = if taps.is_empty() { &[T::zeroed()] } else { taps };
@@ -164,6 +172,15 @@ impl<P: GpuStruct> MapResolve<P> {
                 pass.set_bind_group(index, *group, &[]);
             }
         });
+    }
+
+    /// What a host's shader needs to do as the pass does, by a linked text with a function `visibility_at`.
+    pub(crate) fn embeddable(&self, wgsl: &'static str) -> Option<Embeddable> {
+        let inputs = self.inputs.embedded()?;
+        let (map, is_own) = self.map.embedded()?;
+        let params = ResolveParams { params: &self.params_uniform, taps: self.taps.as_ref()? };
+        let groups = vec![inputs, map, EmbeddedGroup::of(&params)];
+        Some(Embeddable { wgsl, constants: self.constants.clone(), groups, is_own })
     }
 
     /// The inputs, for a pass behind the resolve.

@@ -9,7 +9,7 @@
 //! thinner than a texel can be missed.
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
-use crate::gpu::{Gpu, Recorder, Stage};
+use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
 use crate::light_map::light_view::Followed;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
@@ -55,6 +55,10 @@ impl Technique for Hard {
 
     fn drawn_map(&self) -> Option<DrawnMap> {
         self.resolve.drawn_map()
+    }
+
+    fn embeddable(&self) -> Option<Embeddable> {
+        self.resolve.embeddable(shaders::HARD_AT)
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -23,7 +23,7 @@ use antumbra_light::SampleSet;
 use glam::Vec2;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
-use crate::gpu::{Gpu, Recorder, Stage};
+use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
 use crate::light_map::light_view::Followed;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
@@ -82,6 +82,10 @@ impl Technique for Pcf {
 
     fn drawn_map(&self) -> Option<DrawnMap> {
         self.resolve.drawn_map()
+    }
+
+    fn embeddable(&self) -> Option<Embeddable> {
+        self.resolve.embeddable(shaders::PCF_AT)
     }
 
     fn memory_bytes(&self) -> u64 {

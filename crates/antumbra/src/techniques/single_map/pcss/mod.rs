@@ -71,7 +71,7 @@ use antumbra_light::Light;
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::kind_of;
-use crate::gpu::{Gpu, Recorder, Stage};
+use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
@@ -142,6 +142,10 @@ impl Technique for Pcss {
 
     fn drawn_map(&self) -> Option<DrawnMap> {
         self.resolve.drawn_map()
+    }
+
+    fn embeddable(&self) -> Option<Embeddable> {
+        self.resolve.embeddable(shaders::PCSS_AT)
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -1,0 +1,988 @@
+// Linked from src/techniques/single_map/pcss/at.wesl by `cargo xtask shaders`: edit that, not this.
+
+fn visibility_at(position: vec3f, normal: vec3f, pixel: vec2u) -> f32 {
+    return resolve_visibility(inputs_receiver_at(position, normal), pixel);
+}
+
+@compute @workgroup_size(1)
+fn keep_visibility_at() {
+    _ = visibility_at(vec3f(), vec3f(), vec2u());
+}
+
+struct inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    pixel_stride: u32,
+    matrix_rounding_m: f32,
+    pixel_m_per_w: f32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+    anchor_in_world: vec3f,
+    padding_3: u32
+}
+
+@group(0) @binding(0)
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> inputs_light_source: light_LightSource;
+
+@group(0) @binding(5)
+var<storage, read> inputs_light_data: array<vec4f>;
+
+struct inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_receiver_at(position: vec3f, normal: vec3f) -> inputs_Receiver {
+    let pos_in_world = position - inputs_receiver_view.anchor_in_world;
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+const light_KIND_RECTANGLE = 0u;
+
+const light_KIND_DISK = 1u;
+
+const light_KIND_SPHERE = 2u;
+
+const light_KIND_ELLIPSOID = 3u;
+
+const light_KIND_SUN = 4u;
+
+const light_KIND_POINTS = 5u;
+
+const light_PI = 3.141592653589793;
+
+struct light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u,
+    cone_cosine: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
+}
+
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
+        return false;
+    }
+    if light.reach_tangent == 0.0 {
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
+        return depth > 0.0 || !has_front;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+fn light_emission_index(light: light_LightSource, u: vec2f) -> u32 {
+    let size = light.emission_size;
+    let column = min(u32(u.x * f32(size.x)), size.x - 1u);
+    let row = min(u32((1.0 - u.y) * f32(size.y)), size.y - 1u);
+    return row * size.x + column;
+}
+
+@group(0) @binding(6)
+var noise_noise_tile: texture_2d<f32>;
+
+const noise_TILE_SIDE: u32 = 64;
+
+fn noise_blue_noise(pixel: vec2u) -> f32 {
+    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
+}
+
+const noise_SECOND_TILE_X: u32 = 29;
+
+const noise_SECOND_TILE_Y: u32 = 41;
+
+fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
+    return vec2f(noise_blue_noise(pixel), noise_blue_noise(pixel + vec2u(noise_SECOND_TILE_X, noise_SECOND_TILE_Y)));
+}
+
+const bias_HALF_TEXEL = 0.5;
+
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
+}
+
+const blocker_range_RIM: f32 = 1.25;
+
+@group(1) @binding(3)
+var blocker_range_light_map_pyramid: texture_2d<f32>;
+
+fn blocker_range_g_of_depth(plane: space_ReceiverPlane, depth: f32) -> f32 {
+    let own = space_unwarped_depth(map_light_view, plane.depth, plane.uv);
+    return map_light_view.depth_sign * (depth - own) / abs(map_light_view.depth_scale);
+}
+
+fn blocker_range_half_extent_uv_at_1(uv: vec2f, extent: vec2f) -> vec2f {
+    return abs(space_uv_step_at(map_light_view, uv, vec2f(extent.x, 0.0))) + abs(space_uv_step_at(map_light_view, uv, vec2f(0.0, extent.y)));
+}
+
+fn blocker_range_nearest_depth(uv: vec2f, half_extent_uv: vec2f) -> f32 {
+    let last = map_light_view.map_size - 1.0;
+    let low = vec2u(clamp((uv - half_extent_uv) * map_light_view.map_size, vec2f(0.0), last));
+    let high = vec2u(clamp((uv + half_extent_uv) * map_light_view.map_size, vec2f(0.0), last));
+    let span = max(high.x - low.x, high.y - low.y);
+    let top = max(textureNumLevels(blocker_range_light_map_pyramid), 2u) - 2u;
+    let shift = clamp(select(32u - countLeadingZeros(span), 0u, span == 0u), 1u, top + 1u);
+    let a = low >> vec2u(shift);
+    let b = high >> vec2u(shift);
+    let level = shift - 1u;
+    let p = textureLoad(blocker_range_light_map_pyramid, a, level);
+    let q = textureLoad(blocker_range_light_map_pyramid, vec2u(b.x, a.y), level);
+    let r = textureLoad(blocker_range_light_map_pyramid, vec2u(a.x, b.y), level);
+    let s = textureLoad(blocker_range_light_map_pyramid, b, level);
+    let least = min(min(p.x, q.x), min(r.x, s.x));
+    let greatest = max(max(p.y, q.y), max(r.y, s.y));
+    return select(least, greatest, map_light_view.depth_sign > 0.0);
+}
+
+fn blocker_range_seen_extent(extent: vec2f, extent_axis: f32, receiver_in_light: vec3f) -> vec2f {
+    if extent_axis == 0.0 {
+        return extent;
+    }
+    let tangent = abs(receiver_in_light.xy) / receiver_in_light.z;
+    let a = min(extent_axis, 0.9 * receiver_in_light.z);
+    return (extent + a * tangent) / (1.0 - a / receiver_in_light.z);
+}
+
+const blocker_range_FAR_FROM_CUT = 2.0;
+
+fn blocker_range_largest_g_that_matters(plane: space_ReceiverPlane) -> f32 {
+    let ends = textureLoad(blocker_range_light_map_pyramid, vec2u(0u), textureNumLevels(blocker_range_light_map_pyramid) - 1u);
+    let nearest = select(ends.x, ends.y, map_light_view.depth_sign > 0.0);
+    let own_z = space_z_of_depth(map_light_view, space_unwarped_depth(map_light_view, plane.depth, plane.uv));
+    let is_far = map_light_view.perspective == 0u || own_z >= blocker_range_FAR_FROM_CUT * space_z_of_depth(map_light_view, nearest);
+    return select(1e30, max(blocker_range_g_of_depth(plane, nearest), 0.0), is_far);
+}
+
+fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
+    let most = blocker_range_largest_g_that_matters(plane);
+    var g = min(blocker_range_g_of_depth(plane, blocker_range_nearest_depth(vec2f(0.5), vec2f(0.5))), most);
+    let at_1 = blocker_range_half_extent_uv_at_1(plane.uv, extent);
+    for (var i = 0; i < 3; i++) {
+        let half_extent_uv = at_1 * g;
+        g = clamp(blocker_range_g_of_depth(plane, blocker_range_nearest_depth(plane.uv, half_extent_uv + 1.0 / map_light_view.map_size)), 0.0, most);
+    }
+    return g;
+}
+
+@group(1) @binding(4)
+var behind_further_layers: texture_depth_2d_array;
+
+override behind_LAYER_COUNT: u32 = 1u;
+
+fn horizon_has_horizon_share() -> bool {
+    return inputs_light_source.kind != light_KIND_POINTS && inputs_light_source.emission_size.x == 0u;
+}
+
+fn horizon_center_height(receiver: inputs_Receiver) -> f32 {
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -dot(inputs_light_source.axis_in_world, receiver.normal_in_world);
+    }
+    return dot(inputs_light_source.center_in_world - receiver.pos_in_world, receiver.normal_in_world);
+}
+
+fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
+    let n = receiver.normal_in_world;
+    let along = vec3f(dot(inputs_light_source.right_in_world, n), dot(inputs_light_source.up_in_world, n), dot(inputs_light_source.axis_in_world, n));
+    if inputs_light_source.kind == light_KIND_SPHERE {
+        let facing = dot(normalize(inputs_light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(inputs_light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    }
+    return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
+}
+
+fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
+    let a = max(max(across.x, across.y), 1e-20);
+    let b = max(min(across.x, across.y) / a, 0.01);
+    let h = height / a;
+    let edges = max(vec4f(h + 1.0 + b, h + 1.0 - b, h - 1.0 + b, h - 1.0 - b), vec4f(0.0));
+    let squares = edges * edges;
+    return saturate((squares.x - squares.y - squares.z + squares.w) / (8.0 * b));
+}
+
+fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
+    let height = horizon_center_height(receiver);
+    let half = horizon_half_axis_heights(receiver);
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
+    let reach = select(length(half), half.x + half.y, is_rectangle);
+    if abs(height) >= reach {
+        return select(0.0, 1.0, height > 0.0);
+    }
+    if is_rectangle {
+        return horizon_rectangle_share(height, half.xy);
+    }
+    let h = height / max(reach, 1e-20);
+    if inputs_light_source.kind == light_KIND_ELLIPSOID {
+        return saturate(0.25 * (1.0 + h) * (1.0 + h) * (2.0 - h));
+    }
+    return saturate((acos(-h) + h * sqrt(max(1.0 - h * h, 0.0))) / light_PI);
+}
+
+@group(1) @binding(0)
+var<uniform> map_light_view: space_LightViewGpu;
+
+@group(1) @binding(1)
+var map_light_map: texture_depth_2d;
+
+@group(1) @binding(2)
+var map_light_map_sampler: sampler;
+
+fn map_widest_blur_texels(plane: space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
+    let rise_per_texel = length(plane.depth_per_uv / map_light_view.map_size);
+    let texel_width = plane.surface_step / space_SURFACE_SLOPE;
+    return 2.0 * max(gap, 0.0) / max(rise_per_texel, texel_width / widest_tangent);
+}
+
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
+}
+
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+}
+
+struct space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    held_from_m: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+const space_MIN_GRAZING_SINE = 0.00390625;
+
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
+}
+
+struct space_ReceiverPlane {
+    uv: vec2f,
+    depth: f32,
+    depth_per_uv: vec2f,
+    farthest_depth: f32,
+    surface_step: f32,
+    bias: f32
+}
+
+const space_SURFACE_SLOPE = 8.0;
+
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
+    let p = x - view.origin_in_world;
+    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
+}
+
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
+}
+
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
+        return view.texel_in_plane;
+    }
+    let w = 1.0 + dot(view.warp, from_center);
+    let u = view.plane_from_uv.xy / view.map_size.x;
+    let v = view.plane_from_uv.zw / view.map_size.y;
+    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
+}
+
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
+    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
+}
+
+fn space_is_warped(view: space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
+    let from_origin = uv - view.uv_origin;
+    return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
+}
+
+fn space_inverse_divisor(view: space_LightViewGpu, uv: vec2f) -> f32 {
+    return max(1.0 - dot(view.warp, space_warped_plane(view, uv)), 0.0001);
+}
+
+fn space_unwarped_depth(view: space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !space_is_warped(view) {
+        return depth;
+    }
+    return depth / space_inverse_divisor(view, uv);
+}
+
+fn space_uv_step_at(view: space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
+    if !space_is_warped(view) {
+        return space_uv_step_of_plane(view, step);
+    }
+    let in_warp = (step - space_warped_plane(view, uv) * dot(view.warp, step)) * space_inverse_divisor(view, uv);
+    return space_uv_step_of_plane(view, in_warp);
+}
+
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
+    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
+    var plane: vec2f;
+    var biased_z: f32;
+    var depth_per_plane: vec2f;
+    if view.perspective == 1u {
+        let distance = length(p);
+        plane = p.xy / p.z;
+        let toward = max(1.0 - bias_m / distance, 0.001);
+        biased_z = p.z * toward;
+        let k = dot(n, p) * toward;
+        let k_min = least_sine * distance;
+        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+    }
+    else {
+        plane = p.xy;
+        biased_z = p.z - bias_m;
+        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        depth_per_plane = -view.depth_scale * n.xy / nz;
+    }
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + dot(view.warp, from_center);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
+    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+}
+
+fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+    return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
+}
+
+fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
+}
+
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
+    if view.perspective == 1u {
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+    }
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
+    let scaled = depth - view.depth_offset;
+    let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
+    return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
+}
+
+override light_taps_LIGHT_KIND: u32 = 0u;
+
+override light_taps_HAS_EMISSION: bool = false;
+
+override light_taps_IS_PROGRESSIVE: bool = false;
+
+@group(2) @binding(1)
+var<storage, read> light_taps_taps: array<vec4f>;
+
+const light_taps_TAU = 6.283185307179586;
+
+struct light_taps_LightPlane {
+    origin: vec2f,
+    right: vec2f,
+    up: vec2f,
+    axis: vec2f,
+    nearness: vec3f,
+    center_nearness: f32,
+    heights: vec3f,
+    center_height: f32,
+    facing: vec3f,
+    shift: vec2f,
+    turn: mat2x2f
+}
+
+fn light_taps_half_axes(receiver: inputs_Receiver) -> mat3x3f {
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
+        return mat3x3f(inputs_light_source.right_in_world, inputs_light_source.up_in_world, inputs_light_source.axis_in_world);
+    }
+    if light_taps_LIGHT_KIND == light_KIND_SPHERE {
+        let towards = normalize(inputs_light_source.center_in_world - receiver.pos_in_world);
+        let across = cross(inputs_light_source.up_in_world, towards);
+        let across_length = length(across);
+        let right = select(inputs_light_source.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
+        return mat3x3f(right * inputs_light_source.half_right, cross(towards, right) * inputs_light_source.half_right, vec3f());
+    }
+    return mat3x3f(inputs_light_source.right_in_world * inputs_light_source.half_right, inputs_light_source.up_in_world * inputs_light_source.half_up, inputs_light_source.axis_in_world * inputs_light_source.half_axis);
+}
+
+fn light_taps_in_light(v: vec3f) -> vec3f {
+    return vec3f(dot(v, map_light_view.right_in_world), dot(v, map_light_view.up_in_world), dot(v, map_light_view.axis_in_world));
+}
+
+fn light_taps_texels_per_offset() -> mat2x2f {
+    let size = map_light_view.map_size;
+    return mat2x2f(map_light_view.uv_from_plane.xy * size, map_light_view.uv_from_plane.zw * size);
+}
+
+fn light_taps_shifted(light: light_taps_LightPlane, shift: vec2f) -> light_taps_LightPlane {
+    let angle = light_taps_TAU * shift.x;
+    var plane = light;
+    plane.shift = shift;
+    plane.turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    return plane;
+}
+
+fn light_taps_light_plane(receiver: inputs_Receiver, receiver_in_light: vec3f, shift: vec2f) -> light_taps_LightPlane {
+    let axes = light_taps_half_axes(receiver);
+    let right = light_taps_in_light(axes[0]);
+    let up = light_taps_in_light(axes[1]);
+    let axis = light_taps_in_light(axes[2]);
+    let texels = light_taps_texels_per_offset();
+    var plane = light_taps_shifted(light_taps_LightPlane(), shift);
+    plane.heights = receiver.normal_in_world * axes;
+    plane.center_height = horizon_center_height(receiver);
+    if light_taps_LIGHT_KIND == light_KIND_SUN {
+        plane.right = texels * right.xy;
+        plane.up = texels * up.xy;
+        return plane;
+    }
+    let center = space_light_from_world(map_light_view, inputs_light_source.center_in_world);
+    let per_z = 1.0 / receiver_in_light.z;
+    let tangent = receiver_in_light.xy * per_z;
+    plane.origin = texels * (center.xy - tangent * center.z);
+    plane.right = texels * (right.xy - tangent * right.z);
+    plane.up = texels * (up.xy - tangent * up.z);
+    plane.axis = texels * (axis.xy - tangent * axis.z);
+    plane.nearness = vec3f(right.z, up.z, axis.z) * per_z;
+    plane.center_nearness = center.z * per_z;
+    let half = max(vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis), vec3f(1e-20));
+    plane.facing = normalize((receiver.pos_in_world - inputs_light_source.center_in_world) * axes / (half * half));
+    return plane;
+}
+
+fn light_taps_place_of(plane: light_taps_LightPlane, tap: vec3f) -> vec3f {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE {
+        return vec3f(2.0 * fract(tap.xy + plane.shift) - 1.0, 0.0);
+    }
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
+        return tap;
+    }
+    return vec3f(plane.turn * tap.xy, tap.z);
+}
+
+fn light_taps_texels_of(plane: light_taps_LightPlane, place: vec3f) -> vec2f {
+    let across = plane.origin + plane.right * place.x + plane.up * place.y;
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE || light_taps_LIGHT_KIND == light_KIND_DISK || light_taps_LIGHT_KIND == light_KIND_SUN {
+        return across;
+    }
+    let divisor = 1.0 - plane.center_nearness - dot(plane.nearness, place);
+    return (across + plane.axis * place.z) / max(divisor, 0.001);
+}
+
+fn light_taps_is_above_horizon(plane: light_taps_LightPlane, place: vec3f) -> bool {
+    return plane.center_height + dot(plane.heights, place) > 0.0;
+}
+
+fn light_taps_gauge(plane: light_taps_LightPlane, place: vec3f) -> f32 {
+    if light_taps_LIGHT_KIND == light_KIND_RECTANGLE {
+        return max(abs(place.x), abs(place.y));
+    }
+    if light_taps_LIGHT_KIND == light_KIND_POINTS {
+        return 1.0;
+    }
+    if light_taps_LIGHT_KIND == light_KIND_ELLIPSOID {
+        return length(cross(place, plane.facing));
+    }
+    return length(place.xy);
+}
+
+fn light_taps_weight_of(place: vec3f) -> f32 {
+    if !light_taps_HAS_EMISSION {
+        return 1.0;
+    }
+    return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
+}
+
+const map_receiver_NO_G = 1e20;
+
+struct map_receiver_MapReceiver {
+    center: vec2f,
+    depth: f32,
+    depth_at_origin: f32,
+    slope: vec2f,
+    g_per_depth: f32,
+    edge_g: f32
+}
+
+fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiver_MapReceiver {
+    let sign = map_light_view.depth_sign;
+    let center = plane.uv * map_light_view.map_size;
+    let slope = sign * plane.depth_per_uv / map_light_view.map_size;
+    let depth = sign * plane.depth;
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m));
+}
+
+fn map_receiver_least_depth() -> f32 {
+    return min(map_light_view.depth_sign, 0.0);
+}
+
+fn map_receiver_most_depth() -> f32 {
+    return max(map_light_view.depth_sign, 0.0);
+}
+
+fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
+    return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
+}
+
+fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
+    return map_receiver_held(receiver, receiver.depth_at_origin + dot(receiver.slope, texel));
+}
+
+fn map_receiver_is_texel(texel: vec2f) -> bool {
+    return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
+}
+
+fn map_receiver_place_in_map(receiver: map_receiver_MapReceiver, place: vec2f, g: f32) -> vec2f {
+    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > receiver.edge_g);
+}
+
+struct map_receiver_Look {
+    texel: vec2f,
+    hiding_g: f32
+}
+
+fn map_receiver_look_at_scale(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, g: f32, index: u32) -> map_receiver_Look {
+    let place = light_taps_place_of(light, light_taps_taps[index].xyz);
+    let texel = floor(map_receiver_place_in_map(receiver, receiver.center + light_taps_texels_of(light, place) * (blocker_range_RIM * g), g));
+    return map_receiver_Look(texel, select(map_receiver_NO_G, light_taps_gauge(light, place) * g, map_receiver_is_texel(texel)));
+}
+
+fn map_receiver_scale_share(index: u32, scale_shift: f32) -> f32 {
+    return fract(light_taps_taps[index].w + scale_shift);
+}
+
+fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
+    let scale = map_receiver_scale_share(index, scale_shift);
+    return map_receiver_look_at_scale(receiver, light, most_g * (scale * scale), index);
+}
+
+struct resolve_PcssUniform {
+    search_count: u32,
+    filter_count: u32,
+    rotate: u32,
+    bias_scale: f32,
+    light_extent: vec2f,
+    light_extent_axis: f32,
+    is_ellipse: u32,
+    light_covariance: vec3f,
+    is_flat: u32,
+    light_mean: vec2f,
+    attach_contacts: u32,
+    search_enough: u32
+}
+
+@group(2) @binding(0)
+var<uniform> resolve_pcss: resolve_PcssUniform;
+
+override resolve_MEANS_OF_RANGES: bool = false;
+
+const resolve_NEAR_SHARE = 0.7;
+
+const resolve_CONTACT_TEXELS = 1.5;
+
+const resolve_ENOUGH_BLOCKERS = 4u;
+
+const resolve_LEAST_TAPS = 8u;
+
+const resolve_PROBES = 40u;
+
+const resolve_BEHIND_TAPS = 8u;
+
+const resolve_CONTACT_TAPS = 16u;
+
+const resolve_LAYER_TAPS = 48u;
+
+const resolve_NARROW_TAPS = 12u;
+
+fn resolve_part_of(count: u32, part: u32) -> u32 {
+    return select(count, min(count, max(part, part * count / 64u)), light_taps_IS_PROGRESSIVE);
+}
+
+fn resolve_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
+    var plane = receiver_light_biased_plane(receiver, resolve_pcss.bias_scale);
+    plane.farthest_depth = plane.depth;
+    if resolve_pcss.is_flat == 1u {
+        plane.depth_per_uv = vec2f(0.0);
+    }
+    return plane;
+}
+
+struct resolve_Window {
+    at: map_receiver_MapReceiver,
+    surface_step: f32,
+    most_g: f32,
+    scale_shift: f32,
+    search_count: u32
+}
+
+fn resolve_search_count(reach: vec2f) -> u32 {
+    let sides = 2.0 * reach + 2.0;
+    return resolve_part_of(resolve_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), resolve_NARROW_TAPS));
+}
+
+fn resolve_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> resolve_Window {
+    let most_g = blocker_range_largest_g(plane, extent);
+    let texels = light_taps_texels_per_offset();
+    return resolve_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, resolve_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+}
+
+fn resolve_blocking_g(window: resolve_Window, texel: vec2f, stored: f32) -> f32 {
+    let depth = map_light_view.depth_sign * stored;
+    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
+    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
+}
+
+struct resolve_Blockers {
+    g: vec4f,
+    groups: u32,
+    least_g: f32,
+    most_g: f32
+}
+
+struct resolve_Sums {
+    g: vec4f,
+    count: vec4f,
+    least_g: f32
+}
+
+const resolve_GROUPS = 4.0;
+
+const resolve_OVERLAP = 1.25;
+
+fn resolve_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
+    if !resolve_MEANS_OF_RANGES {
+        return layer;
+    }
+    return u32(clamp(floor(resolve_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, resolve_GROUPS - 1.0));
+}
+
+fn resolve_range_of_group(group: u32, most_g: f32) -> vec2f {
+    let ends = vec2f(f32(group), f32(group + 1u)) / resolve_GROUPS;
+    return ends * ends * vec2f(1.0 / resolve_OVERLAP, resolve_OVERLAP) * most_g;
+}
+
+fn resolve_add(sums: resolve_Sums, window: resolve_Window, look: map_receiver_Look, stored: f32, layer: u32) -> resolve_Sums {
+    let g = resolve_blocking_g(window, look.texel, stored);
+    let counts = g > 0.0 && g >= look.hiding_g;
+    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    if !resolve_MEANS_OF_RANGES && layer == 0u {
+        return resolve_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+    }
+    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(resolve_group_of(g, window.most_g, layer));
+    return resolve_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+}
+
+fn resolve_search(window: resolve_Window, light: light_taps_LightPlane) -> resolve_Sums {
+    let own = floor(window.at.center);
+    let own_g = resolve_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
+    var sums = resolve_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
+    let least = resolve_part_of(resolve_pcss.search_count, resolve_LEAST_TAPS);
+    let enough = f32(resolve_part_of(resolve_pcss.search_count, resolve_ENOUGH_BLOCKERS));
+    for (var i = 0u; i < min(window.search_count, resolve_pcss.search_count); i++) {
+        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+        sums = resolve_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
+        let found = resolve_sum_of(sums.count);
+        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= resolve_pcss.search_enough && found > 0.0) {
+            break;
+        }
+    }
+    return sums;
+}
+
+fn resolve_search_behind(window: resolve_Window, light: light_taps_LightPlane, first: resolve_Sums) -> resolve_Sums {
+    let own = floor(window.at.center);
+    var sums = first;
+    var found = resolve_sum_of(first.count);
+    let count = min(min(window.search_count, resolve_part_of(resolve_pcss.search_count, resolve_BEHIND_TAPS)), resolve_pcss.search_count);
+    for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0.0; layer++) {
+        let before = resolve_sum_of(sums.count);
+        let own_g = resolve_blocking_g(window, own, textureLoad(behind_further_layers, vec2i(own), layer - 1u, 0));
+        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
+        for (var i = 0u; i < count; i++) {
+            let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+            sums = resolve_add(sums, window, look, textureLoad(behind_further_layers, vec2i(look.texel), layer - 1u, 0), layer);
+        }
+        found = resolve_sum_of(sums.count) - before;
+    }
+    return sums;
+}
+
+fn resolve_sum_of(v: vec4f) -> f32 {
+    return dot(v, vec4f(1.0));
+}
+
+fn resolve_blockers_of(sums: resolve_Sums, window: resolve_Window) -> resolve_Blockers {
+    let some = sums.count > vec4f();
+    let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
+    return resolve_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
+}
+
+const resolve_ANY_G = vec2f(-map_receiver_NO_G, map_receiver_NO_G);
+
+struct resolve_Scale {
+    g: f32,
+    g_range: vec2f,
+    layers: vec2u
+}
+
+const resolve_NEAREST = 4u;
+
+struct resolve_Scales {
+    blockers: resolve_Blockers,
+    near: resolve_Scale,
+    some: u32
+}
+
+fn resolve_scales_of(blockers: resolve_Blockers, extent: vec2f) -> resolve_Scales {
+    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
+    let is_contact = max(near_extent.x, near_extent.y) < resolve_CONTACT_TEXELS;
+    let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
+    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
+    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < resolve_NEAR_SHARE * least_mean;
+    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
+    let near = resolve_Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
+    return resolve_Scales(blockers, near, blockers.groups | select(0u, 1u << resolve_NEAREST, is_near && resolve_pcss.attach_contacts == 1u));
+}
+
+fn resolve_scale_of(scales: resolve_Scales, index: u32) -> resolve_Scale {
+    if index == resolve_NEAREST {
+        return scales.near;
+    }
+    let g = scales.blockers.g[index];
+    if resolve_MEANS_OF_RANGES {
+        return resolve_Scale(g, resolve_range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
+    }
+    return resolve_Scale(g, resolve_ANY_G, vec2u(index, index + 1u));
+}
+
+const resolve_WIDEST_TANGENT = 0.05;
+
+fn resolve_edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
+    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), resolve_WIDEST_TANGENT);
+    return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), resolve_pcss.attach_contacts == 1u);
+}
+
+struct resolve_Quad {
+    corner_uv: vec2f,
+    t: vec2f,
+    at_centers: vec4f,
+    here: f32,
+    is_in_map: bool
+}
+
+fn resolve_quad_about(receiver: map_receiver_MapReceiver, offset: vec2f, g: f32) -> resolve_Quad {
+    let place = map_receiver_place_in_map(receiver, receiver.center + offset * g, g);
+    let corner = floor(place - 0.5);
+    let t = place - 0.5 - corner;
+    let low = receiver.depth_at_origin + dot(receiver.slope, corner);
+    let lows = vec2f(low, low + receiver.slope.x);
+    let centers = vec4f(lows + receiver.slope.y, lows.yx);
+    let here = low + dot(receiver.slope, t);
+    return resolve_Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(receiver.depth)), vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), map_receiver_held(receiver, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
+}
+
+fn resolve_occluding(window: resolve_Window, quad: resolve_Quad, depths: vec4f) -> vec4<bool> {
+    let across = depths.yxwz - depths;
+    let along = depths.wzyx - depths;
+    let from_here = abs(vec4f(quad.t, 1.0 - quad.t));
+    let step = vec4f(window.surface_step);
+    let carried = depths + from_here.xzzx * select(vec4f(), across, abs(across) < step) + from_here.wwyy * select(vec4f(), along, abs(along) < step);
+    return (depths > quad.at_centers) & (carried > vec4f(quad.here));
+}
+
+fn resolve_lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
+    return space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
+}
+
+fn resolve_lit_at_scale(plane: space_ReceiverPlane, window: resolve_Window, texels: vec2f, scale: resolve_Scale) -> f32 {
+    let quad = resolve_quad_about(window.at, texels, scale.g);
+    let sharpness = resolve_edge_sharpness(plane, scale.g);
+    let depths = window.at.depth + scale.g_range / window.at.g_per_depth;
+    var lit = 1.0;
+    var goes_on = quad.is_in_map;
+    for (var layer = scale.layers.x; layer < min(scale.layers.y, behind_LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
+        let stored = map_light_view.depth_sign * resolve_gathered(quad, layer);
+        let occluding = resolve_occluding(window, quad, stored);
+        let counts = (stored >= vec4f(depths.x)) & (stored <= vec4f(depths.y));
+        lit = min(lit, resolve_lit_of(occluding & counts, quad.t, sharpness));
+        goes_on = any(occluding);
+    }
+    return lit;
+}
+
+fn resolve_gathered(quad: resolve_Quad, layer: u32) -> vec4f {
+    if layer == 0u {
+        return textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
+    }
+    return textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
+}
+
+fn resolve_lit_once(window: resolve_Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
+    let quad = resolve_quad_about(window.at, texels, g);
+    let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
+    return select(1.0, resolve_lit_of(resolve_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+}
+
+fn resolve_lit_behind(window: resolve_Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
+    let quad = resolve_quad_about(window.at, texels, g);
+    let stored = map_light_view.depth_sign * textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
+    return select(1.0, resolve_lit_of(resolve_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+}
+
+fn resolve_filter_once(window: resolve_Window, light: light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
+    var sums = vec2f();
+    for (var i = begin; i < end; i++) {
+        let place = light_taps_place_of(light, light_taps_taps[resolve_pcss.search_count + i].xyz);
+        let lit = select(1.0, resolve_lit_once(window, light_taps_texels_of(light, place), g, sharpness), g > 0.0);
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
+    }
+    return sums;
+}
+
+fn resolve_filter_layers(plane: space_ReceiverPlane, window: resolve_Window, light: light_taps_LightPlane, blockers: resolve_Blockers, count: u32) -> vec2f {
+    var sums = vec2f();
+    var sharpness = vec4f(resolve_edge_sharpness(plane, blockers.g.x), 0.0, 0.0, 0.0);
+    for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
+        sharpness[layer] = resolve_edge_sharpness(plane, blockers.g[layer]);
+    }
+    for (var i = 0u; i < min(count, resolve_pcss.filter_count); i++) {
+        let place = light_taps_place_of(light, light_taps_taps[resolve_pcss.search_count + i].xyz);
+        let texels = light_taps_texels_of(light, place);
+        var lit = resolve_lit_once(window, texels, blockers.g.x, sharpness.x);
+        for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
+            let behind = resolve_lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
+            lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
+        }
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
+    }
+    return sums;
+}
+
+fn resolve_filter_scales(plane: space_ReceiverPlane, window: resolve_Window, light: light_taps_LightPlane, scales: resolve_Scales, count: u32) -> vec2f {
+    var sums = vec2f();
+    for (var i = 0u; i < min(count, resolve_pcss.filter_count); i++) {
+        let place = light_taps_place_of(light, light_taps_taps[resolve_pcss.search_count + i].xyz);
+        let texels = light_taps_texels_of(light, place);
+        var lit = select(0.0, 1.0, light_taps_is_above_horizon(light, place));
+        for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
+            lit = min(lit, resolve_lit_at_scale(plane, window, texels, resolve_scale_of(scales, countTrailingZeros(rest))));
+        }
+        sums += light_taps_weight_of(place) * vec2f(1.0, lit);
+    }
+    return sums;
+}
+
+fn resolve_visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
+    if receiver.is_background {
+        return 1.0;
+    }
+    if !receiver.is_reached {
+        return 0.0;
+    }
+    let share = horizon_horizon_share(receiver);
+    if horizon_has_horizon_share() && share <= 0.0 {
+        return 0.0;
+    }
+    let plane = resolve_comparison_plane(receiver);
+    let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let shift = select(vec2f(), noise_shift_of_pixel(pixel), resolve_pcss.rotate == 1u);
+    let extent = blocker_range_seen_extent(resolve_pcss.light_extent, resolve_pcss.light_extent_axis, receiver_in_light);
+    let light = light_taps_light_plane(receiver, receiver_in_light, shift);
+    let window = resolve_window_of(plane, extent, shift, receiver_in_light.z);
+    let sums = resolve_search(window, light);
+    let nearest = resolve_blockers_of(sums, window);
+    if nearest.groups == 0u && horizon_has_horizon_share() {
+        return share;
+    }
+    let sharpness = resolve_edge_sharpness(plane, nearest.g.x);
+    let probes = select(0u, resolve_part_of(resolve_pcss.filter_count, resolve_PROBES), light_taps_IS_PROGRESSIVE && !resolve_MEANS_OF_RANGES);
+    let probed = resolve_filter_once(window, light, nearest.g.x, sharpness, 0u, probes);
+    if probes > 0u && probed.y <= 0.0 {
+        return 0.0;
+    }
+    let blockers = resolve_blockers_of(resolve_search_behind(window, light, sums), window);
+    let scales = resolve_scales_of(blockers, extent);
+    if !resolve_MEANS_OF_RANGES && scales.some <= 1u {
+        let is_lit = probes > 0u && probed.x == probed.y;
+        let rest = resolve_filter_once(window, light, nearest.g.x, sharpness, probes, select(resolve_pcss.filter_count, 0u, is_lit));
+        return (probed.y + rest.y) / max(probed.x + rest.x, 1e-20);
+    }
+    if !resolve_MEANS_OF_RANGES && scales.some < (1u << resolve_NEAREST) {
+        let sums = resolve_filter_layers(plane, window, light, blockers, resolve_part_of(resolve_pcss.filter_count, resolve_LAYER_TAPS));
+        return sums.y / max(sums.x, 1e-20);
+    }
+    let count = select(resolve_part_of(resolve_pcss.filter_count, resolve_CONTACT_TAPS), resolve_pcss.filter_count, resolve_MEANS_OF_RANGES);
+    let all = resolve_filter_scales(plane, window, light, scales, count);
+    return all.y / max(all.x, 1e-20);
+}
