@@ -39,6 +39,9 @@
 //! own formats keeps a [`CasterSet`], which all its lights share: `docs/integrating.md` goes on from there, and
 //! `examples/many_lights` is such a host.
 //!
+//! What is in no depth buffer asks otherwise: [`Shadow::prepare_points`] takes a buffer of points, by every technique
+//! (`examples/anywhere.rs`), and [`Shadow::shader_function`] gives a function for your own shaders.
+//!
 //! [`TechniqueKind`] has the techniques side by side: the penumbra that each makes, what it is for and where it fails. Each of their
 //! pages, in [`techniques`], says so at length. Conventions (spaces, units, depth) are stated once, in [`contract`].
 //!

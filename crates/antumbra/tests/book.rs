@@ -121,7 +121,7 @@ fn a_preset(gpu: Gpu) -> Result<(), Box<dyn std::error::Error>> {
 /// docs/integrating.md, Points in place of a depth buffer.
 fn points_in_place_of_a_depth_buffer(
     shadow: &mut AnyShadow,
-    (light, casters): (&Light, Casters<'_>),
+    (light, casters): (Light, Casters<'_>),
     (point_buffer, normal_buffer, visibilities): (wgpu::Buffer, wgpu::Buffer, wgpu::Buffer),
     (count, bounds): (u32, Aabb),
     mut recorder: Recorder<'_>,
