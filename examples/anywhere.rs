@@ -57,10 +57,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         queue.write_buffer(&buffer, 0, bytes);
         buffer
     };
-    let position_buffer = filled("positions", bytemuck::cast_slice(&positions), wgpu::BufferUsages::VERTEX);
-    let index_buffer = filled("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
-    let instance_buffer = filled("instances", bytemuck::bytes_of(&Mat4::IDENTITY), wgpu::BufferUsages::VERTEX);
-    let point_buffer = filled("points", bytemuck::cast_slice(&points), wgpu::BufferUsages::STORAGE);
+    let readable = wgpu::BufferUsages::STORAGE; // shadows: `ray_traced` reads triangles
+    let position_buffer = filled("positions", bytemuck::cast_slice(&positions), wgpu::BufferUsages::VERTEX | readable);
+    let index_buffer = filled("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX | readable);
+    let instance_buffer =
+        filled("instances", bytemuck::bytes_of(&Mat4::IDENTITY), wgpu::BufferUsages::VERTEX | readable);
+    let point_buffer = filled("points", bytemuck::cast_slice(&points), readable);
 
     // The light, what casts, the points, and a buffer for an `f32` of each.
     let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) }; // shadows
