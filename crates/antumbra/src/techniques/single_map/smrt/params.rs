@@ -28,7 +28,7 @@ params! {
         thickness: f32 = 4.0, in 0.0..=4096.0, unit "texels",
             more "Less light leaks through steep surfaces; more is lost behind thin ones.";
         /// The same of the last layer, behind which nothing is known.
-        last_thickness: f32 = 256.0, in 0.0..=65536.0, unit "texels",
+        last_thickness: f32 = 1024.0, in 0.0..=65536.0, unit "texels",
             more "Less light leaks through what the layers do not show; more is lost behind thin surfaces.";
         /// Shift a rectangle's points by a random offset at each pixel; turn those of other shapes by a random angle.
         rotate: bool = true,
