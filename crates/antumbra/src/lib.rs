@@ -36,7 +36,7 @@
 //! ```
 //!
 //! `examples/minimal.rs` is a whole small renderer around these lines. A host with many lights, moving casters or vertices of its
-//! own formats keeps a [`CasterSet`], which all its lights share: `docs/integrating.md` goes on from there, and
+//! own formats keeps a [`CasterSet`], which all its lights share: see `docs/integrating.md`, and
 //! `examples/many_lights` is such a host.
 //!
 //! [`TechniqueKind`] has the techniques side by side: the penumbra that each makes, what it is for and where it fails. Each of their
