@@ -75,7 +75,7 @@ macro_rules! techniques {
     } )+) => {
         /// Every technique of the families that the crate is built with.
         ///
-        /// | technique | | penumbra | light maps | good for | fails where |
+        /// | technique | | penumbra | shadow maps | good for | fails where |
         /// |---|---|---|---|---|---|
         $( #[doc = concat!(
             "| [`", $name, "`](crate::techniques::", $page, ") | ", $title, " | ", $penumbra, " | ", $light_maps, " | ", $good_for,

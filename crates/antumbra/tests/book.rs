@@ -6,7 +6,7 @@
 #[path = "book/start.rs"]
 mod start;
 
-use antumbra::light::{Light, LightShape};
+use antumbra::light::{Cone, Light, LightShape};
 use antumbra::{
     AnyShadow, CasterSet, Casters, Denoise, Error, Frame, Gpu, Mask, Receivers, Recorder, SplitReceivers, TechniqueKind,
 };
@@ -31,6 +31,17 @@ fn in_your_renderer(
     let frame = Frame { light: &light, casters, receivers, mask: &mask };
     shadow.prepare(&frame)?.record(&mut Recorder::new(&mut encoder, None));
     Ok(())
+}
+
+/// docs/lights.md.
+fn lights(position: Vec3, target: Vec3, direction: Vec3) {
+    let bulb = Light::new(LightShape::Sphere { radius_m: 0.03 }, position, target);
+    let window = Light::new(LightShape::Rectangle { size_m: Vec2::new(1.2, 1.5) }, position, target);
+    let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.0093 }, Vec3::ZERO, direction); // in which light travels
+    let spot = Light {
+        cone: Some(Cone { inner_rad: 0.3, outer_rad: 0.5 }),
+        ..Light::new(LightShape::Disk { radius_m: 0.04 }, position, target)
+    };
 }
 
 /// docs/integrating.md, Set up.

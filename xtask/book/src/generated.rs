@@ -51,7 +51,7 @@ fn techniques(kinds: &[TechniqueKind]) -> String {
             facts.name, facts.title, facts.source, facts.penumbra, facts.light_maps, facts.good_for, facts.fails_where
         )
     });
-    let head = "| name | technique | penumbra | light maps | good for | fails where |\n|---|---|---|---|---|---|\n";
+    let head = "| name | technique | penumbra | shadow maps | good for | fails where |\n|---|---|---|---|---|---|\n";
     head.to_owned() + &rows.collect::<String>()
 }
 

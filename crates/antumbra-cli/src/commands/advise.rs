@@ -110,8 +110,9 @@ fn print(advice: &Advice) {
         if advice.views.len() > 1 { format!(" for {}", advice.views[best.heaviest_view]) } else { String::new() };
     say!("  (its time is a {}{of_view})", best.counted());
     advice.reasons.iter().for_each(|reason| say!("  - {reason}"));
-    let mut rows =
-        vec![["NEXT BEST", "RMSE", "ROUGHNESS", "MS", "MEDIAN OF", "OF BUDGET", "MIB"].map(str::to_owned).to_vec()];
+    let mut rows = vec![
+        ["NEXT BEST", "RMSE", "ROUGHNESS", "MS", "TIMED FRAMES", "MS / BUDGET", "MIB"].map(str::to_owned).to_vec(),
+    ];
     if advice.prefer == Prefer::Motion {
         rows[0].push("FLICKER".into());
     }
@@ -143,11 +144,10 @@ fn print(advice: &Advice) {
             step.worst_ms(),
             step.load
         ),
-        None => say!("\nNothing dearer that was measured errs clearly less."),
+        None => say!("\nNo slower setting that was measured has clearly less error."),
     }
     let spent = &advice.spent;
-    let left_out =
-        if spent.left_out > 0 { format!(", {} left out as too dear", spent.left_out) } else { String::new() };
+    let left_out = if spent.left_out > 0 { format!(", {} skipped as too slow", spent.left_out) } else { String::new() };
     say!("Measured: {} configurations, {:.1} s of techniques at work{left_out}.", spent.measurements, spent.seconds);
 }
 
