@@ -19,7 +19,7 @@ use crate::values::{self, Setting};
 #[command(name = "antumbra", version, max_term_width = 110, disable_help_subcommand = true)]
 #[command(after_help = "\
 Start here:
-  antumbra compare builtin:overlap -o out        compares all techniques with ground truth: open out/index.html
+  antumbra compare builtin:overlap -o out        compares techniques with ground truth
   antumbra advise scene.glb --budget 4ms         recommends a technique and its settings
   antumbra render scene.glb -o picture.png       renders an image with soft shadows
   antumbra view scene.glb                        opens a window: move lights, try techniques
