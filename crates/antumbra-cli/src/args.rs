@@ -14,9 +14,12 @@ use glam::UVec2;
 use crate::technique_text::techniques_help;
 use crate::values::{self, Setting};
 
+/// Version, and the commit that the program was built from.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("ANTUMBRA_COMMIT"), ")");
+
 /// Renders soft shadows by many techniques, and compares them with ray-traced ground truth
 #[derive(Debug, Parser)]
-#[command(name = "antumbra", version, max_term_width = 110, disable_help_subcommand = true)]
+#[command(name = "antumbra", version = VERSION, max_term_width = 110, disable_help_subcommand = true)]
 #[command(after_help = "\
 Start here:
   antumbra compare builtin:overlap -o out        compares techniques with ground truth

@@ -137,7 +137,7 @@ fn print(advice: &Advice) {
     }
     match &advice.next_step {
         Some(step) => say!(
-            "\nA step up: {} errs by {:.4}, {:.0} % less, for {:.2} ms, {:.2} times the budget.",
+            "\nA step up: {} has an error of {:.4}, {:.0} % less, for {:.2} ms, {:.2} times the budget.",
             step.name,
             step.rmse,
             100.0 * (1.0 - step.rmse / best.rmse),
@@ -148,7 +148,7 @@ fn print(advice: &Advice) {
     }
     let spent = &advice.spent;
     let left_out = if spent.left_out > 0 { format!(", {} skipped as too slow", spent.left_out) } else { String::new() };
-    say!("Measured: {} configurations, {:.1} s of techniques at work{left_out}.", spent.measurements, spent.seconds);
+    say!("Measured: {} configurations in {:.1} s{left_out}.", spent.measurements, spent.seconds);
 }
 
 fn mib(one: &Candidate) -> f64 {

@@ -147,7 +147,7 @@ fn print(report: &Report) {
     let info = &report.reference.info;
     let rate = info.rays_per_second().map_or_else(String::new, |rate| format!(", {:.1} M rays/s", rate * 1e-6));
     say!(
-        "\n{}: {} triangles; truth: {} light samples a pixel, {:.1} s{rate}; {}\n",
+        "\n{}: {} triangles; ground truth: {} light samples per pixel, {:.1} s{rate}; {}\n",
         report.scene.name,
         report.scene.triangles,
         info.samples,
