@@ -209,7 +209,7 @@ techniques! {
         light_maps: "3",
         good_for: "near and far occluders, side by side or behind one another",
         fails_where: "rays that pass behind the last layer; penumbrae narrower than a texel, which get a texel's width",
-        worst_case: "tree", "many small surfaces behind one another: three layers do not hold them",
+        worst_case: "tree", "many small surfaces behind one another, which three layers do not hold",
     }
     "light_views", MultiView, "multi_view", "light_views::multi_view", {
         title: "One depth map per light sample",
@@ -227,7 +227,7 @@ techniques! {
         light_maps: "1, filtered",
         good_for: "wide, smooth, cheap edges",
         fails_where: "light bleeding where occluders overlap",
-        worst_case: "overlap", "light bleeding: the shadow of the boards shows on the ground below the table",
+        worst_case: "overlap", "the shadow of the boards shows on the ground below the table",
     }
     "filterable", Lvsm, "lvsm", "filterable::lvsm", {
         title: "Layered variance shadow map",
@@ -245,7 +245,7 @@ techniques! {
         light_maps: "1, filtered",
         good_for: "little light bleeding from one map",
         fails_where: "foliage; large depth ranges",
-        worst_case: "tree", "leaves at many depths in one kernel: the warps keep only the outermost",
+        worst_case: "tree", "leaves at many depths in one kernel, of which the warps keep only the outermost",
     }
     "filterable", Esm, "esm", "filterable::esm", {
         title: "Exponential shadow map",
@@ -317,7 +317,7 @@ techniques! {
         light_maps: "1",
         good_for: "comparison with its paper",
         fails_where: "contacts; memory",
-        worst_case: "leaning-plank", "four terms rise over an eighth of the depth range: contacts are lost",
+        worst_case: "leaning-plank", "four terms rise over an eighth of the depth range, so contacts are lost",
     }
     "summed", Evssm, "evssm", "summed::evssm", {
         title: "Exponential variance soft shadow mapping",
@@ -326,7 +326,7 @@ techniques! {
         light_maps: "1",
         good_for: "less light bleeding than `vssm`",
         fails_where: "occluders behind one another",
-        worst_case: "tree", "its integers hold exponents up to 5: too few for leaves at all depths",
+        worst_case: "tree", "its integers hold exponents up to 5, too few for leaves at all depths",
     }
     "summed", Mssm, "mssm", "summed::mssm", {
         title: "Moment soft shadow mapping",
@@ -335,7 +335,7 @@ techniques! {
         light_maps: "1",
         good_for: "least light bleeding where two occluders overlap",
         fails_where: "lattices and foliage: three or more occluders",
-        worst_case: "tree", "four moments represent three depths: too few for a kernel of leaves",
+        worst_case: "tree", "four moments represent three depths, too few for a kernel of leaves",
     }
     "multi_layer", MultiLayer, "multi_layer", "multi_layer", {
         title: "Filtered multi-layer shadow maps",
