@@ -2,7 +2,7 @@
 //!
 //! The pictures are of fixed kernels, and so are held against exact filtering by the same kernel. At equal storage a term of
 //! the convolution basis takes two bytes a texel and a layer four. Depth is measured along the light's axis where a row compares
-//! with the convolution basis, which behaves there as the paper says; see docs/measurements.md for the world's axis.
+//! with the convolution basis, which behaves there as the paper says; see docs/limits.md for the world's axis.
 
 use crate::reproduce::claim::{Rule, claim};
 use crate::reproduce::exhibit::Reported::Drawn;
