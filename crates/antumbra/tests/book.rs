@@ -6,11 +6,12 @@
 #[path = "book/start.rs"]
 mod start;
 
-use antumbra::light::{Cone, Light, LightShape};
+use antumbra::casters::{Caster, Indices, Instances, Mesh, PositionFormat, Positions};
+use antumbra::light::{Aabb, Cone, Light, LightShape};
 use antumbra::{
     AnyShadow, CasterSet, Casters, Denoise, Error, Frame, Gpu, Mask, Receivers, Recorder, SplitReceivers, TechniqueKind,
 };
-use glam::{UVec2, Vec2, Vec3};
+use glam::{Mat4, UVec2, Vec2, Vec3};
 
 /// README.md, In your renderer.
 fn in_your_renderer(
@@ -50,6 +51,34 @@ fn set_up(device: wgpu::Device, queue: wgpu::Queue, size_px: UVec2) -> Result<()
     let mut casters = CasterSet::new(&gpu); // one for all lights
     let mask = Mask::new(&device, size_px); // one for each light and camera
     let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // one for each light and camera
+    Ok(())
+}
+
+/// docs/integrating.md, Casters.
+fn casters(
+    mut casters: CasterSet,
+    (vertices, indices): (wgpu::Buffer, wgpu::Buffer),
+    (vertex_count, index_count, bounds): (u32, u32, Aabb),
+    world_from_object: Mat4,
+) -> Result<(), Error> {
+    let mesh = casters.add_mesh(&Mesh {
+        vertex_count,
+        positions: Positions { buffer: &vertices, offset: 0, stride: 32, format: PositionFormat::Float32x3 },
+        texture_coordinates: None, // needed for a surface with a texture
+        indices: Some(Indices {
+            buffer: &indices,
+            format: wgpu::IndexFormat::Uint32,
+            first_index: 0,
+            count: index_count,
+            base_vertex: 0,
+        }),
+        topology: wgpu::PrimitiveTopology::TriangleList,
+        closed: true, // a watertight mesh
+        bounds,       // object space
+    })?;
+    let caster = casters.add(&Caster::new(mesh, Instances::Matrices(&[world_from_object])))?;
+    // When it moves:
+    casters.set_instances(caster, Instances::Matrices(&[world_from_object]))?;
     Ok(())
 }
 
