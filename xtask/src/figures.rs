@@ -6,11 +6,11 @@ use std::process::Command;
 use crate::machine;
 use crate::shell::{self, cargo};
 
-/// The page whose generated table has each technique with the scene on which it fails worst.
+/// Page whose generated headings name each technique and the scene on which it fails worst.
 const WORST_CASES: &str = "docs/limits.md";
 
 /// What `docs/choose.md` shows side by side.
-const CHOICES: [&str; 6] = ["hard", "moment", "pcss", "essm", "multi_layer", "sample_based"];
+const CHOICES: [&str; 6] = ["hard", "moment", "pcss", "smrt", "multi_layer", "sample_based"];
 const CHOICES_SCENE: &str = "builtin:bench-under-tree";
 
 /// The pictures of `docs/lights.md`, by name.
@@ -73,9 +73,9 @@ pub fn run(names: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// Techniques and scenes of the rows `` | `NAME` on `SCENE`: … ``, which are made of the techniques' declarations.
+/// Techniques and scenes of the headings `` ### `NAME` on `SCENE` ``, which are generated from the techniques' declarations.
 fn worst_cases(page: &str) -> Vec<(&str, &str)> {
-    page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("`: ")?.0.split_once("` on `")).collect()
+    page.lines().filter_map(|line| line.strip_prefix("### `")?.strip_suffix('`')?.split_once("` on `")).collect()
 }
 
 /// Compares with the truth, and says in which folder the pictures are.
