@@ -80,6 +80,36 @@ pub fn run(names: &[String]) -> Result<(), String> {
     Ok(())
 }
 
+/// Renders the frames of the README's animation and joins them.
+fn animate(binary: &Path, to: &Path) -> Result<(), String> {
+    let folder = crate::root().join("out/figures/moving");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut frames = Vec::new();
+    for frame in 0..MOVING_FRAMES {
+        let setup = folder.join(format!("{frame}.toml"));
+        let image = folder.join(format!("{frame}.png"));
+        std::fs::write(&setup, moving_setup(frame)).map_err(|error| format!("{}: {error}", setup.display()))?;
+        let mut render = Command::new(binary);
+        render.args(["render", MOVING_SCENE, "--size", "320x180", "--setup"]).arg(&setup).arg("-o").arg(&image);
+        shell::run(&mut render)?;
+        frames.push(image);
+    }
+    let mut join = cargo();
+    join.args(["run", "--quiet", "--locked", "--package", "antumbra-animate", "--"]);
+    shell::run(join.arg(to).arg(MOVING_MILLISECONDS).args(frames))
+}
+
+/// Camera and light of a frame; the light's path is closed, so that the animation repeats without a jump.
+fn moving_setup(frame: u32) -> String {
+    let (sin, cos) = (std::f32::consts::TAU * frame as f32 / MOVING_FRAMES as f32).sin_cos();
+    let (x, z) = (2.2 * cos - 1.2, 1.6 * sin - 1.6);
+    format!(
+        "[camera]\neye = [2.5, 1.9, 4.3]\ntarget = [0.25, 0.55, 0.15]\nfov_y = 40.0\n\n\
+         [[light]]\nshape = \"rectangle\"\ncenter = [{x:.3}, 7.6, {z:.3}]\ntarget = [0.0, 0.5, 0.0]\n\
+         size = [0.5, 0.5]\ncolor = [1.0, 0.95, 0.87]\n"
+    )
+}
+
 /// Techniques and scenes of the headings `` ### `NAME` on `SCENE` ``, which are generated from the techniques' declarations.
 fn worst_cases(page: &str) -> Vec<(&str, &str)> {
     page.lines().filter_map(|line| line.strip_prefix("### `")?.strip_suffix('`')?.split_once("` on `")).collect()
