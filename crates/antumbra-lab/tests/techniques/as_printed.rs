@@ -92,7 +92,10 @@ fn each_switch_of_essm_is_what_it_says() {
         let squares = error(&[("kernel", "ellipse"), ("cuts", "squares"), ("level", level)]);
         assert!((squares - ellipse).abs() < 0.004, "level {level}: {squares}, in columns {ellipse}");
     }
-    assert!(run(&[("cuts", "squares")]) != run(&[]), "the switch does nothing");
+    let as_is = run(&[]);
+    for switch in [("cuts", "squares"), ("blocker_mean", "depth"), ("footprint_ends", "false"), ("horizon", "false")] {
+        assert!(run(&[switch]) != as_is, "{switch:?} does nothing");
+    }
 }
 
 /// Selgrad et al.: figure 10, figure 15 and figure 14, then each of our departures taken back by itself.
@@ -182,6 +185,10 @@ fn lvsm_as_printed_bleeds_more_than_ours_and_less_than_one_layer() {
         (&wide, ("relax_over", "map_as_printed")),
         (&wide, ("transition", "mixed")),
         (&few, ("teleport", "weight")),
+        (&few, ("relax_background", "true")),
+        (&few, ("relax_from", "0.1")),
+        (&few, ("relax_up_to", "0.05")),
+        (&few, ("least_variance", "global")),
     ] {
         let [with, without] = [[usual, &[switch]].concat(), usual.to_vec()]
             .map(|settings| judged.run(lab, TechniqueKind::Lvsm, &settings));

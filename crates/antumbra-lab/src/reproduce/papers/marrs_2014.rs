@@ -37,7 +37,7 @@ const SAME_SIZE: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("central_scale", "1")];
 const FOUR_TIMES: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("central_scale", "4")];
-/// As they come but for the view's size, which is the paper's.
+/// The view's size, which is the paper's; all else by the form.
 const VIEWS_OF_512: Settings = &[("view_size", "512")];
 const BIAS_BEFORE: Settings = &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("bias", "before")];
 
@@ -76,6 +76,7 @@ pub const PAPER: Paper = Paper {
     citation: "A. Marrs, B. Watson, C. Healey: Fast Multi-View Soft Shadowing via Fragment Reprojection, 2014",
     hardware: "NVIDIA GeForce GTX Titan",
     bandwidth_gb_s: 288.0,
+    own: &["reprojection"],
     exhibits: &[
         Exhibit {
             id: "figure1",
@@ -87,7 +88,7 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[claim(
                 "Reprojection makes the depth maps ten times as fast (4.85 ms and 0.48 ms).",
-                &[Rule::RatioAtLeast(Ms, "depth maps by brute force", "depth maps by synchronised reprojection", 5.0)],
+                &[Rule::RatioAtLeast(Ms, "depth maps by brute force", "depth maps by synchronised reprojection", 10.0)],
             )],
             note: "",
         },
@@ -186,11 +187,11 @@ pub const PAPER: Paper = Paper {
                 ),
                 claim(
                     "With more triangles it is 10 to 20 times faster than brute force.",
-                    &[Rule::RatioAtLeast(
+                    &[Rule::RatioWithin(
                         Ms,
                         "ten dragons (knots): brute force, 64",
                         "ten dragons (knots): synchronised, 64",
-                        10.0,
+                        [9.0, 25.0],
                     )],
                 ),
                 claim(
@@ -202,8 +203,7 @@ pub const PAPER: Paper = Paper {
                         "dragon (a knot): synchronised, 64",
                         2.0,
                     )],
-                )
-                .on_any_adapter(),
+                ),
                 claim(
                     "Its time depends weakly on the number of light samples: four times as many cost less than \
                      three times as much.",
