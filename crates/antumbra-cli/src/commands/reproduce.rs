@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use antumbra_lab::progress::Progress;
 use antumbra_lab::report::{AdapterInfo, ReproductionInfo, utc_now, write_reproduction};
 use antumbra_lab::reproduce::{
-    Exhibit, ExhibitResult, Form, Judged, Measure, PAPERS, Paper, REPRODUCED_NAME, Readiness, Reported, Ruling, RunOptions,
-    SCENES_HINT, SCENES_VARIABLE, Session, VerdictCount, exhibits,
+    Exhibit, ExhibitResult, Form, Judged, Measure, PAPERS, Paper, REPRODUCED_NAME, Readiness, Reported, Ruling,
+    RunOptions, SCENES_HINT, SCENES_VARIABLE, Session, VerdictCount, exhibits,
 };
 use serde_json::{Value, json};
 

@@ -8,8 +8,8 @@ use super::page::{ICON, STYLE, software_notice};
 use crate::adapter_info::AdapterInfo;
 use crate::output_files::{FileError, write_atomically};
 use crate::reproduce::{
-    ExhibitResult, Form, Judged, Measure, Measured, Outcome, Paper, RowResult, Ruling, SCENES_HINT, SCENES_VARIABLE, Verdict,
-    VerdictCount,
+    ExhibitResult, Form, Judged, Measure, Measured, Outcome, Paper, RowResult, Ruling, SCENES_HINT, SCENES_VARIABLE,
+    Verdict, VerdictCount,
 };
 
 /// How it was reproduced.
@@ -179,7 +179,8 @@ fn section(result: &ExhibitResult, info: &ReproductionInfo) -> String {
 fn claims(judged: &[Judged]) -> String {
     let mut html = String::new();
     for one in judged {
-        let _ = write!(html, "<div class=\"claim\"><p>The paper: {}{}</p>", escape(one.claim.says), escape(&at_size(one)));
+        let _ =
+            write!(html, "<div class=\"claim\"><p>The paper: {}{}</p>", escape(one.claim.says), escape(&at_size(one)));
         for (form, ruling) in rulings(one) {
             let found: String = ruling.found.iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
             let _ = write!(
@@ -220,7 +221,8 @@ fn table(result: &ExhibitResult, info: &ReproductionInfo) -> String {
     for RowResult { row, form, outcome, .. } in &result.rows {
         let settings: Vec<String> = row.settings_of(*form).map(|(key, value)| format!("{key}={value}")).collect();
         let technique = if row.technique.is_empty() { "–" } else { row.technique };
-        let of_form = if row.forms(result.paper).len() > 1 { format!("<br><small>{form}</small>") } else { String::new() };
+        let of_form =
+            if row.forms(result.paper).len() > 1 { format!("<br><small>{form}</small>") } else { String::new() };
         let _ = write!(
             html,
             "<tr><th scope=\"row\">{}</th><td title=\"{}\">{}{of_form}</td>",
@@ -381,8 +383,14 @@ mod tests {
         }],
         note: "",
     };
-    static PAPER: Paper =
-        Paper { id: "nobody-1999", citation: "A & B", hardware: "card", bandwidth_gb_s: 100.0, own: &["pcss"], exhibits: &[] };
+    static PAPER: Paper = Paper {
+        id: "nobody-1999",
+        citation: "A & B",
+        hardware: "card",
+        bandwidth_gb_s: 100.0,
+        own: &["pcss"],
+        exhibits: &[],
+    };
 
     fn page(bandwidth_gb_s: Option<f64>, is_software: bool) -> String {
         let first = Outcome::Measured(Measured { ms: Some(20.0), size_px: [64, 36], ..Measured::default() });

@@ -16,7 +16,7 @@ pub struct Claim {
     pub on_any_adapter: bool,
     /// Why it was found contradicted as published, where that is known; empty where it is not.
     pub because: &'static str,
-    /// Why it was found contradicted by our form, where that is another reason.
+    /// Why it was found contradicted by our form, where that is known.
     pub because_ours: &'static str,
     /// Why nothing here can show it, and what would; empty where there are rules.
     pub needs: &'static str,

@@ -129,8 +129,7 @@ impl Measure {
     /// The paper's own figure as milliseconds a frame.
     pub fn paper_ms(&self) -> Option<f64> {
         match self {
-            Self::Ms { paper: Reported::Number(ms), .. }
-            | Self::SceneMs { paper: Reported::Number(ms) } => Some(*ms),
+            Self::Ms { paper: Reported::Number(ms), .. } | Self::SceneMs { paper: Reported::Number(ms) } => Some(*ms),
             Self::Fps { paper: Reported::Number(fps) } => Some(1e3 / fps),
             _ => None,
         }

@@ -167,7 +167,11 @@ mod tests {
                     _ => None,
                 };
                 let of_row = [row.settings, row.ours];
-                of_row.into_iter().map(|settings| (name.clone(), row.technique, settings)).chain(other).collect::<Vec<_>>()
+                of_row
+                    .into_iter()
+                    .map(|settings| (name.clone(), row.technique, settings))
+                    .chain(other)
+                    .collect::<Vec<_>>()
             })
         })
     }

@@ -4,9 +4,9 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{SCENES_HINT, SCENES_VARIABLE};
 use super::exhibit::Measure;
 use super::figure::Figure;
+use super::{SCENES_HINT, SCENES_VARIABLE};
 use crate::stopwatch::FrameCount;
 
 /// What came of a row.

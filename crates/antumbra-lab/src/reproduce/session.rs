@@ -164,7 +164,11 @@ impl<'a> Session<'a> {
     ) -> Result<ExhibitResult, LabError> {
         let name = exhibit_name(paper, exhibit);
         progress.begin(&name, all as u64);
-        let runs = exhibit.rows.iter().enumerate().flat_map(|(i, row)| row.forms(paper).iter().map(move |form| (i, row, *form)));
+        let runs = exhibit
+            .rows
+            .iter()
+            .enumerate()
+            .flat_map(|(i, row)| row.forms(paper).iter().map(move |form| (i, row, *form)));
         for (done, (i, row, form)) in runs.enumerate() {
             progress.reach((begun + done) as u64);
             if self.kept(&name, row, form).is_some() {
@@ -198,8 +202,12 @@ impl<'a> Session<'a> {
             }
             _ => RowResult { row, form, outcome: Outcome::NotRun, pictures: None },
         };
-        let rows: Vec<RowResult> = exhibit.rows.iter().flat_map(|row| row.forms(paper).iter().map(move |form| (row, *form)))
-            .map(|(row, form)| result(row, form)).collect();
+        let rows: Vec<RowResult> = exhibit
+            .rows
+            .iter()
+            .flat_map(|row| row.forms(paper).iter().map(move |form| (row, *form)))
+            .map(|(row, form)| result(row, form))
+            .collect();
         let of = |form: Form, row: &Row| {
             rows.iter().find(|one| one.form == form && one.row.what == row.what).map(|one| one.outcome.clone())
         };

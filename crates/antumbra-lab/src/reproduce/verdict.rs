@@ -149,15 +149,16 @@ impl Bench<'_> {
             None => Verdict::Holds,
         };
         let because = match form {
-            Form::Ours if !claim.because_ours.is_empty() => claim.because_ours,
-            _ => claim.because,
+            Form::Published => claim.because,
+            Form::Ours => claim.because_ours,
         };
         Ruling { verdict, found: found.into_iter().map(|(text, _)| text).collect(), because }
     }
 
     /// A rule held against what was measured.
     fn look(&self, claim: &Claim, rule: &Rule, form: Form) -> (String, Met) {
-        let values: Result<Vec<f64>, String> = rule.rows().iter().map(|row| self.value(rule.figure(), row, form)).collect();
+        let values: Result<Vec<f64>, String> =
+            rule.rows().iter().map(|row| self.value(rule.figure(), row, form)).collect();
         let values = match values {
             Ok(values) => values,
             Err(why) => return (rule.text(), Met::Unknown(why)),
@@ -169,9 +170,13 @@ impl Bench<'_> {
         };
         if rule.figure() == Figure::Ms && self.is_software {
             let why = if !claim.on_any_adapter {
-                Some("it needs a GPU, since times of a software renderer say little about one: the same command on a GPU would show it")
+                Some(
+                    "it needs a GPU, since times of a software renderer say little about one: the same command on a GPU would show it",
+                )
             } else if values.iter().any(|ms| *ms < LEAST_MS) {
-                Some("a time is too short for a software renderer's clock: a larger image (--size) or a GPU would show it")
+                Some(
+                    "a time is too short for a software renderer's clock: a larger image (--size) or a GPU would show it",
+                )
             } else {
                 None
             };
@@ -182,9 +187,11 @@ impl Bench<'_> {
         if let Some(why) = rule.favored().iter().find_map(|row| self.is_flat(row, form)) {
             return (format!("{}: here {here}, but {why}", rule.text()), Met::No);
         }
-        let ranges: Vec<Range> = rule.rows().iter().zip(&values).map(|(row, v)| self.range(rule.figure(), row, *v, form)).collect();
+        let ranges: Vec<Range> =
+            rule.rows().iter().zip(&values).map(|(row, v)| self.range(rule.figure(), row, *v, form)).collect();
         let met = met(rule, &ranges);
-        let met = met.map_or_else(|| Met::Unknown(too_close(rule.figure())), |is_met| if is_met { Met::Yes } else { Met::No });
+        let met = met
+            .map_or_else(|| Met::Unknown(too_close(rule.figure())), |is_met| if is_met { Met::Yes } else { Met::No });
         (format!("{}: here {here}", rule.text()), met)
     }
 
@@ -212,7 +219,9 @@ impl Bench<'_> {
             None => Err(format!("‘{row}’ was not run")),
             Some(Outcome::Measured(measured)) => match measured.figure(figure) {
                 // Software renderers' clocks do: a ratio to it would say anything.
-                Some(ms) if figure == Figure::Ms && ms <= 0.0 => Err(format!("‘{row}’ was timed as nothing; a GPU would show it")),
+                Some(ms) if figure == Figure::Ms && ms <= 0.0 => {
+                    Err(format!("‘{row}’ was timed as nothing; a GPU would show it"))
+                }
                 found => found.ok_or_else(|| format!("‘{row}’ has no {figure} here; another size (--size) may have")),
             },
             Some(other) => Err(format!("‘{row}’ is {other}")),
@@ -226,8 +235,8 @@ const LEAST_MS: f64 = 1.0;
 /// Noise of a traced reference with one light point a pixel, rmse: below .002 with 1024 points, but in foliage.
 const TRUTH_NOISE: f64 = 0.064;
 
-/// What no image shows: an eighth of an 8-bit step.
-const UNSEEN: f64 = 0.0005;
+/// What no image shows: a twentieth of an 8-bit step.
+const UNSEEN: f64 = 0.0002;
 
 /// By such a part figures of an image change where its size does by one pixel.
 const IMAGE_SPREAD: f64 = 0.01;
@@ -245,7 +254,10 @@ struct Range {
 
 impl Range {
     fn of(figure: Figure, value: f64, truth_samples: Option<u32>, is_software: bool) -> Self {
-        let within = |part: f64, step: f64| Self { low: (value * (1.0 - part) - step).max(0.0), high: value * (1.0 + part) + step };
+        let within = |part: f64, step: f64| Self {
+            low: (value * (1.0 - part) - step).max(0.0),
+            high: value * (1.0 + part) + step,
+        };
         match figure {
             Figure::Ms => within(if is_software { SOFTWARE_TIME_SPREAD } else { TIME_SPREAD }, 0.0),
             Figure::MemoryMib => within(0.0, 0.0),
@@ -302,7 +314,10 @@ fn met(rule: &Rule, of: &[Range]) -> Option<bool> {
 
 fn too_close(figure: Figure) -> String {
     match figure {
-        Figure::Ms => "it is too close to tell: more frames (--frames) on a machine with nothing else to do would show it".to_owned(),
+        Figure::Ms => {
+            "it is too close to tell: more frames (--frames) on a machine with nothing else to do would show it"
+                .to_owned()
+        }
         _ => "it is too close to tell: more pixels and light points (--size, --samples) would show it".to_owned(),
     }
 }

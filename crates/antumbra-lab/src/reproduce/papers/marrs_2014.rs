@@ -324,10 +324,7 @@ pub const PAPER: Paper = Paper {
                 ),
                 claim(
                     "On the shanty town it errs slightly more than PCSS, because light leaks.",
-                    &[
-                        Rule::RatioAtLeast(Rmse, "shanty town: reprojection", "shanty town: PCSS", 1.0),
-                        Rule::RatioAtMost(Rmse, "shanty town: reprojection", "shanty town: PCSS", 2.0),
-                    ],
+                    &[Rule::RatioWithin(Rmse, "shanty town: reprojection", "shanty town: PCSS", [1.0, 2.0])],
                 )
                 .because(
                     "light leaks, twice as much as with PCSS (.027 and .014 of the umbra at 256 × 144), but PCSS \

@@ -110,7 +110,8 @@ pub const PAPER: Paper = Paper {
                     Rule::AtMost(Rmse, "traffic (a street)", 0.1),
                 ],
             )
-            .because(R_AND_MU)],
+            .because(R_AND_MU)
+            .because_ours("one mean depth stands for what blocks near and far, and the street has both before most receivers.")],
             note: "",
         },
         drawing("figure2", "Functions that reconstruct the shadow test"),

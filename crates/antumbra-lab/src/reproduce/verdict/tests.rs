@@ -82,9 +82,8 @@ fn what_is_too_close_is_neither() {
         assert!(matches!(verdict, Verdict::Undecided(why) if why.contains("too close to tell")), "{verdict:?}");
     }
     // A reference of 16 points has noise of .016: an rmse of .02 may be one of .012.
-    let noisy = |rmse: f64| {
-        Outcome::Measured(Measured { rmse: Some(rmse), truth_samples: Some(16), ..Measured::default() })
-    };
+    let noisy =
+        |rmse: f64| Outcome::Measured(Measured { rmse: Some(rmse), truth_samples: Some(16), ..Measured::default() });
     const AT_LEAST: &[Claim] = &[claim("", &[Rule::AtLeast(Figure::Rmse, "a", 0.018)])];
     let exhibit = Exhibit { claims: AT_LEAST, ..EXHIBIT };
     assert!(matches!(judged(&exhibit, &[noisy(0.02)], true)[0].published.verdict, Verdict::Undecided(_)));
@@ -106,7 +105,10 @@ fn the_verdict_is_on_what_was_published() {
 #[test]
 fn a_software_renderer_decides_no_time_but_of_growth() {
     let found = verdicts(&[measured(0.1, 2.0), measured(0.25, 30.0)], true);
-    assert!(matches!(&found[..], [Verdict::Holds, Verdict::Undecided(why), Verdict::Holds] if why.contains("GPU")), "{found:?}");
+    assert!(
+        matches!(&found[..], [Verdict::Holds, Verdict::Undecided(why), Verdict::Holds] if why.contains("GPU")),
+        "{found:?}"
+    );
     // Nor of growth where its clock says nothing.
     let found = verdicts(&[measured(0.1, 0.2), measured(0.25, 30.0)], true);
     assert!(matches!(&found[2], Verdict::Undecided(why) if why.contains("clock")), "{found:?}");
@@ -116,13 +118,20 @@ fn a_software_renderer_decides_no_time_but_of_growth() {
 fn what_was_not_measured_decides_nothing() {
     let not_ready = Outcome::NotReady("sponza.glb".to_owned());
     let found = verdicts(&[not_ready.clone(), measured(0.2, 10.0)], false);
-    assert!(matches!(&found[0], Verdict::Undecided(why) if why.contains("‘a’ is not ready") && why.contains("Khronos")), "{found:?}");
+    assert!(
+        matches!(&found[0], Verdict::Undecided(why) if why.contains("‘a’ is not ready") && why.contains("Khronos")),
+        "{found:?}"
+    );
     assert!(found.iter().all(|verdict| verdict.name() == "cannot be shown"));
     let none = Outcome::Measured(Measured::default());
-    assert!(matches!(&verdicts(&[none.clone(), none], false)[0], Verdict::Undecided(why) if why.contains("‘a’ has no rmse here")));
+    assert!(
+        matches!(&verdicts(&[none.clone(), none], false)[0], Verdict::Undecided(why) if why.contains("‘a’ has no rmse here"))
+    );
     assert!(matches!(verdicts(&[], false)[0], Verdict::Undecided(_)));
     let found = verdicts(&[measured(0.1, 0.0), measured(0.25, 0.0)], false);
-    assert!(found[1..].iter().all(|one| matches!(one, Verdict::Undecided(why) if why.contains("‘b’ was timed as nothing"))));
+    assert!(
+        found[1..].iter().all(|one| matches!(one, Verdict::Undecided(why) if why.contains("‘b’ was timed as nothing")))
+    );
     // But a rule that is not met is enough.
     const TWO: &[Claim] = &[claim("", &[Rule::AtMost(Figure::Rmse, "b", 0.1), Rule::AtMost(Figure::Rmse, "a", 0.1)])];
     let exhibit = Exhibit { claims: TWO, ..EXHIBIT };
@@ -163,7 +172,8 @@ fn truth() -> Visibility {
 fn images() -> [(&'static str, Visibility); 10] {
     let truth = truth();
     let with = |change: &dyn Fn(usize, f32) -> f32| {
-        let values = (0..truth.size_px.element_product() as usize).map(|i| change(i, truth.at(i, 0)).clamp(0.0, 1.0)).collect();
+        let values =
+            (0..truth.size_px.element_product() as usize).map(|i| change(i, truth.at(i, 0)).clamp(0.0, 1.0)).collect();
         Visibility::one(truth.size_px, values)
     };
     let noise = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7 & 255) as f32 / 255.0 - 0.5;
@@ -230,24 +240,29 @@ fn every_rule_about_images_rejects_a_wrong_one() {
                     .iter()
                     .map(|row| place(row.what).map_or_else(|| none.clone(), |image| figures[image].1.clone()))
                     .collect();
-                let bench = Bench { exhibit, outcomes: Outcomes { published: &published, ours: &[] }, is_software: true };
+                let bench =
+                    Bench { exhibit, outcomes: Outcomes { published: &published, ours: &[] }, is_software: true };
                 bench.look(claim, rule, Form::Published).1
             };
             let what = format!("{}/{}: {}", paper.id, exhibit.id, rule.text());
-            let good = assignments(rows.len(), GOOD).find(|images| met_by(images) == Met::Yes);
-            let good = good.unwrap_or_else(|| panic!("{what}: no image meets it"));
+            let good: Vec<Vec<usize>> =
+                assignments(rows.len(), GOOD).filter(|images| met_by(images) == Met::Yes).collect();
+            assert!(!good.is_empty(), "{what}: no image meets it");
+            let with = |good: &[usize], k: usize, image: usize| {
+                let mut images = good.to_vec();
+                images[k] = image;
+                images
+            };
             for row in rule.favored() {
                 let k = rows.iter().position(|one| *one == row).unwrap();
                 for (image, (name, _)) in figures.iter().enumerate().skip(GOOD) {
-                    let mut wrong = good.clone();
-                    wrong[k] = image;
-                    assert!(met_by(&wrong) != Met::Yes, "{what}: ‘{row}’ may be {name} all over");
+                    let is_met = good.iter().any(|good| met_by(&with(good, k, image)) == Met::Yes);
+                    assert!(!is_met, "{what}: ‘{row}’ may be {name} all over");
                 }
             }
             if rule.favored().is_empty() {
-                let mut wrong = good.clone();
-                wrong[0] = 0;
-                assert!(met_by(&wrong) != Met::Yes, "{what}: the truth is found wanting");
+                let is_rejected = good.iter().any(|good| met_by(&with(good, 0, 0)) != Met::Yes);
+                assert!(is_rejected, "{what}: the truth is found wanting");
             }
             looked_at += 1;
         }
@@ -258,7 +273,7 @@ fn every_rule_about_images_rejects_a_wrong_one() {
 /// For every rule about time: times that meet it, and one time for all rows, or times in the reverse order, that do not.
 #[test]
 fn every_rule_about_time_rejects_a_wrong_one() {
-    const MS: [f64; 9] = [10.0, 12.0, 14.0, 16.0, 21.0, 30.0, 45.0, 105.0, 1150.0];
+    const MS: [f64; 10] = [10.0, 11.2, 12.0, 14.0, 16.0, 21.0, 30.0, 45.0, 105.0, 1150.0];
     let mut looked_at = 0;
     for (paper, exhibit) in PAPERS.iter().flat_map(|paper| paper.exhibits.iter().map(move |exhibit| (paper, exhibit))) {
         for (claim, rule) in exhibit.claims.iter().flat_map(|claim| claim.rules.iter().map(move |rule| (claim, rule))) {
@@ -268,16 +283,22 @@ fn every_rule_about_time_rejects_a_wrong_one() {
             let rows = rule.rows();
             let met_by = |times: &[f64]| {
                 let place = |row: &str| rows.iter().position(|one| *one == row).map(|k| times[k]);
-                let published: Vec<Outcome> =
-                    exhibit.rows.iter().map(|row| place(row.what).map_or(Outcome::NotRun, |ms| measured(0.1, ms))).collect();
-                let bench = Bench { exhibit, outcomes: Outcomes { published: &published, ours: &[] }, is_software: false };
+                let published: Vec<Outcome> = exhibit
+                    .rows
+                    .iter()
+                    .map(|row| place(row.what).map_or(Outcome::NotRun, |ms| measured(0.1, ms)))
+                    .collect();
+                let bench =
+                    Bench { exhibit, outcomes: Outcomes { published: &published, ours: &[] }, is_software: false };
                 bench.look(claim, rule, Form::Published).1
             };
             let what = format!("{}/{}: {}", paper.id, exhibit.id, rule.text());
             let of = |places: &[usize]| -> Vec<f64> { places.iter().map(|i| MS[*i]).collect() };
-            let good = assignments(rows.len(), MS.len()).map(|places| of(&places)).find(|times| met_by(times) == Met::Yes);
+            let good =
+                assignments(rows.len(), MS.len()).map(|places| of(&places)).find(|times| met_by(times) == Met::Yes);
             assert!(good.is_some(), "{what}: no times meet it");
-            let wrong = assignments(rows.len(), MS.len()).map(|places| of(&places)).find(|times| met_by(times) == Met::No);
+            let wrong =
+                assignments(rows.len(), MS.len()).map(|places| of(&places)).find(|times| met_by(times) == Met::No);
             assert!(wrong.is_some(), "{what}: no times fail it");
             looked_at += 1;
         }

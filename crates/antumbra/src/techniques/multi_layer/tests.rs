@@ -128,8 +128,13 @@ fn unpruned_levels_are_those_that_are_asked_for() {
     let found = |prune, levels| {
         let mut technique = MultiLayer::new(gpu).expect("default limits");
         (technique.capacity, technique.map_size) = (1 << 20, 128);
-        let params =
-            MultiLayerParams { map_size: 128, hierarchy: MultiLayerHierarchy::MipMap, prune, levels, ..MultiLayerParams::default() };
+        let params = MultiLayerParams {
+            map_size: 128,
+            hierarchy: MultiLayerHierarchy::MipMap,
+            prune,
+            levels,
+            ..MultiLayerParams::default()
+        };
         let prepared = record(gpu, &mut technique, light, meshes, &params);
         let counters: Vec<u32> = read_storage(gpu, &prepared.lists.counters);
         (prepared.levels.len(), counters[1])

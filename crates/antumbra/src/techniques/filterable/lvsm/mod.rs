@@ -60,7 +60,8 @@ mod relaxation;
 mod tests;
 
 pub use params::{
-    LayerPlacement, LvsmBound, LvsmLayersBy, LvsmLeastVariance, LvsmParams, LvsmShow, LvsmTeleport, LvsmTransition, RelaxOver,
+    LayerPlacement, LvsmBound, LvsmLayersBy, LvsmLeastVariance, LvsmParams, LvsmShow, LvsmTeleport, LvsmTransition,
+    RelaxOver,
 };
 use relaxation::{LayerRelaxation, PreparedRelaxation};
 use targets::{LayerTargets, PreparedLayers};

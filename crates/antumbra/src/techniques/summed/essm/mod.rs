@@ -65,7 +65,9 @@ mod params;
 #[cfg(test)]
 mod tests;
 
-pub use params::{EssmBlockerMean, EssmCuts, EssmKernel, EssmParams, EssmRange, EssmScan, EssmSearch, EssmTable, EssmWindow};
+pub use params::{
+    EssmBlockerMean, EssmCuts, EssmKernel, EssmParams, EssmRange, EssmScan, EssmSearch, EssmTable, EssmWindow,
+};
 
 /// Exponential soft shadow mapping.
 pub type Essm = SoftTechnique<EssmParams>;

@@ -146,7 +146,8 @@ fn a_kept_window_follows_what_moves() {
 #[test]
 fn the_horizon_is_a_switch() {
     let Some(gpu) = gpu() else { return };
-    let light = Light::new(LightShape::Rectangle { size_m: Vec2::ONE }, Vec3::new(0.0, 0.3, -3.0), Vec3::new(0.0, 0.0, 0.0));
+    let light =
+        Light::new(LightShape::Rectangle { size_m: Vec2::ONE }, Vec3::new(0.0, 0.3, -3.0), Vec3::new(0.0, 0.0, 0.0));
     let view = View::new(Vec3::new(0.0, 1.5, 3.0), Vec3::ZERO);
     let ground = Mesh::horizontal(gpu, Vec2::splat(-4.0), Vec2::splat(4.0), 0.0);
     let case = Case::new(gpu, light, view, vec![ground]);
