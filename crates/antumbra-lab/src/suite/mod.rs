@@ -208,7 +208,7 @@ pub fn run_slice(
         }
         progress.begin(&paper.id(), 0);
         let here = rows.run(paper.row, Form::Published, false)?.outcome;
-        results.insert(paper.id(), json!({ "here": here.text(&paper.row.measure) }));
+        results.insert(paper.id(), paper.kept(&here.text(&paper.row.measure)));
         results.write(path)?;
         progress.end();
     }
