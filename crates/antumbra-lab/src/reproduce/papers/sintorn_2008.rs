@@ -191,8 +191,7 @@ pub const PAPER: Paper = Paper {
                 claim(
                     "Eight times as many light samples, 128 to 1024, cost about twice as much.",
                     &[Rule::RatioWithin(Ms, "sample-based, 1024", "sample-based, 128", [1.5, 2.7])],
-                )
-                .on_any_adapter(),
+                ),
                 claim(
                     "Sample-based visibility is about an order of magnitude faster than as many shadow maps.",
                     &[
@@ -224,7 +223,10 @@ pub const PAPER: Paper = Paper {
                         Rule::RatioAtMost(Rmse, "alias-free: errors", "shadow map: errors", 0.25),
                     ],
                 ),
-                claim("Soft shadows of a hairball are accurate.", &[Rule::AtMost(Rmse, "sample-based, 256", 0.02)]),
+                claim("Soft shadows of a hairball are accurate.", &[Rule::AtMost(Rmse, "sample-based, 256", 0.02)]).because(
+                    "the bits are the ray tracer's for the same light points; what is left is sampling: a hair hides single ones, \
+                     of the technique's 256 and of the reference's (64 at the smallest sizes).",
+                ),
             ],
             note: "",
         },
