@@ -177,6 +177,11 @@ impl Bench<'_> {
                 Some(
                     "a time is too short for a software renderer's clock: a larger image (--size) or a GPU would show it",
                 )
+            } else if rule.rows().iter().any(|row| self.is_of_few_frames(row, form)) {
+                Some(
+                    "a median of so few frames says little on a processor that others use: more of them (--frames) on an idle one \
+                     would show it",
+                )
             } else {
                 None
             };
@@ -209,6 +214,11 @@ impl Bench<'_> {
         }
     }
 
+    fn is_of_few_frames(&self, row: &str, form: Form) -> bool {
+        let count = self.measured(row, form).and_then(|measured| measured.count);
+        count.is_some_and(|count| count.frames < LEAST_FRAMES)
+    }
+
     fn range(&self, figure: Figure, row: &str, value: f64, form: Form) -> Range {
         let samples = self.measured(row, form).and_then(|measured| measured.truth_samples);
         Range::of(figure, value, samples, self.is_software)
@@ -231,6 +241,9 @@ impl Bench<'_> {
 
 /// Shorter times of a software renderer say nothing of its work: passes begin and end with its scheduler.
 const LEAST_MS: f64 = 1.0;
+
+/// Of fewer frames a software renderer's median may be of a moment in which others had the processor.
+const LEAST_FRAMES: u32 = 5;
 
 /// Noise of a traced reference with one light point a pixel, rmse: below .002 with 1024 points, but in foliage.
 const TRUTH_NOISE: f64 = 0.064;

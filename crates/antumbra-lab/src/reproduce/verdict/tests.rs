@@ -109,7 +109,14 @@ fn a_software_renderer_decides_no_time_but_of_growth() {
         matches!(&found[..], [Verdict::Holds, Verdict::Undecided(why), Verdict::Holds] if why.contains("GPU")),
         "{found:?}"
     );
-    // Nor of growth where its clock says nothing.
+    // Nor of growth by two frames,
+    let of_two = |ms: f64| {
+        let count = Some(crate::stopwatch::FrameCount { frames: 2, warm_up: 1 });
+        Outcome::Measured(Measured { ms: Some(ms), rmse: Some(0.1), count, ..Measured::default() })
+    };
+    let found = verdicts(&[of_two(2.0), of_two(30.0)], true);
+    assert!(matches!(&found[2], Verdict::Undecided(why) if why.contains("few frames")), "{found:?}");
+    // nor where its clock says nothing.
     let found = verdicts(&[measured(0.1, 0.2), measured(0.25, 30.0)], true);
     assert!(matches!(&found[2], Verdict::Undecided(why) if why.contains("clock")), "{found:?}");
 }
