@@ -14,7 +14,7 @@ const SCENES: [&str; 4] =
 
 /// The techniques of the demo: of every family those that one would choose, and the baselines beside them. All of them
 /// would take a software renderer half an hour.
-const TECHNIQUES: &str = "pcf,pcss,lvsm,moment,multi_layer,reprojection_layered,sample_based,multi_view";
+const TECHNIQUES: &str = "pcf,pcss,smrt,lvsm,moment,multi_layer,reprojection_layered,sample_based,multi_view";
 
 /// Sets up, builds, compares, and opens the report where there is a display.
 ///
@@ -48,10 +48,10 @@ pub fn run(args: &[String]) -> Result<(), String> {
 
     let index = out.join("index.html");
     println!("Report: {}", index.display());
-    println!("Window: cargo run -p antumbra-cli -- view   (as it is built; or with a scene behind it)");
+    println!("Viewer: cargo run -p antumbra-cli -- view   (or `view path/to/scene.glb`)");
     let has_display = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
     if flags.is_empty() && has_display && find("xdg-open").is_some() {
-        // The path is printed already; a desktop that opens nothing is no failure of the demo.
+        // The path is already printed, so a failure to open it is not a failure of the demo.
         let _ = shell::run(Command::new("xdg-open").arg(&index));
     }
     Ok(())

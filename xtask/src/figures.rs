@@ -6,18 +6,24 @@ use std::process::Command;
 use crate::machine;
 use crate::shell::{self, cargo};
 
-/// The page whose generated table has each technique with the scene on which it fails worst.
+/// Page whose generated headings name each technique and the scene on which it fails worst.
 const WORST_CASES: &str = "docs/limits.md";
 
 /// What `docs/choose.md` shows side by side.
-const CHOICES: [&str; 6] = ["hard", "moment", "pcss", "essm", "multi_layer", "sample_based"];
+const CHOICES: [&str; 6] = ["hard", "moment", "pcss", "smrt", "multi_layer", "sample_based"];
 const CHOICES_SCENE: &str = "builtin:bench-under-tree";
 
 /// The pictures of `docs/lights.md`, by name.
 const LIGHTS: [(&str, &str); 3] = [("lamp", "builtin:lamp-room"), ("hall", "builtin:hall"), ("sun", "builtin:town")];
 
-/// The README's picture.
-const HERO: (&str, &str) = ("sample_based", "builtin:bench-under-tree");
+/// The README's images, side by side with the truth.
+const HERO_SCENE: &str = "builtin:shanty";
+const HERO: [&str; 2] = ["hard", "smrt"];
+
+/// The README's animation: the light circles above the scene.
+const MOVING_SCENE: &str = "builtin:bench-under-tree";
+const MOVING_FRAMES: u32 = 12;
+const MOVING_MILLISECONDS: &str = "150";
 
 /// Compares each technique with the truth on its worst case and keeps three pictures of it under `docs/figures`; then
 /// draws the other pictures of the book. Where techniques are named, their pictures alone.
@@ -65,17 +71,18 @@ pub fn run(names: &[String]) -> Result<(), String> {
         render.arg(figures.join(format!("lights_{name}.png")));
         shell::run(&mut render)?;
     }
-    let (technique, scene) = HERO;
-    let mut render = Command::new(&binary);
-    render.args(["render", scene, "--technique", technique, "--size", "960x540", "-o"]).arg(figures.join("hero.png"));
-    shell::run(&mut render)?;
+    let from = compare(&binary, HERO_SCENE, &HERO.join(","), "640x360", "hero")?;
+    for name in [HERO[0], HERO[1], "reference"] {
+        copy(&from.join(format!("{name}_shaded.png")), &figures.join(format!("hero_{name}.png")))?;
+    }
+    animate(&binary, &figures.join("moving.png"))?;
     println!("Figures: {}", figures.display());
     Ok(())
 }
 
-/// Techniques and scenes of the rows `` | `NAME` on `SCENE`: … ``, which are made of the techniques' declarations.
+/// Techniques and scenes of the headings `` ### `NAME` on `SCENE` ``, which are generated from the techniques' declarations.
 fn worst_cases(page: &str) -> Vec<(&str, &str)> {
-    page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("`: ")?.0.split_once("` on `")).collect()
+    page.lines().filter_map(|line| line.strip_prefix("### `")?.strip_suffix('`')?.split_once("` on `")).collect()
 }
 
 /// Compares with the truth, and says in which folder the pictures are.

@@ -24,66 +24,59 @@ use std::process::ExitCode;
 use machine::Missing;
 
 const USAGE: &str = "\
-Development commands of Antumbra.
+Development commands of Antumbra. They install what is missing where they can, and say so.
 
     cargo xtask demo [SCENE.glb ...] [--no-open] [--driver default|installed|newer]
-        Sets up what is missing, builds the command `antumbra`, compares the techniques on a few built-in scenes and
-        on every scene given, and prints the path of the report (and opens it where there is a display).
+        Builds the command `antumbra`, compares techniques with ground truth on built-in scenes and on the scenes given, prints the
+        path of the report, and opens it if there is a display.
 
     cargo xtask test [quick|long] [FILTER] [--driver default|installed|newer]
-        Sets up what is missing, checks format and lints, and runs the tests of the workspace that continuous integration requires.
-        `quick` runs those that are done in an instant, and draws one mask by each technique; `long` those that are marked `#[ignore]`,
-        too, every command of the book among them, then the plugin for Bevy and a sample of mutants, which fails where one survives
-        without a reason: hours. Without a graphics card, on Debian 12,
-        tests draw by a newer Mesa than the installed, which is brought into target/newer-mesa and leaves the system as it is;
-        where it cannot be had the installed driver serves, and that is said. `--driver` chooses, or ANTUMBRA_DRIVER does; VK_DRIVER_FILES
-        is left as it is.
+        Checks formatting and lints, and runs the tests that continuous integration requires.
+        quick: only the fastest tests and one mask of each technique. long: also tests marked #[ignore], every command of the book,
+        the Bevy plugin and a sample of mutants, for hours.
+        On Debian 12 without a graphics card, tests use a newer Mesa, installed in target/newer-mesa, or else the installed one.
+        Choose with --driver or ANTUMBRA_DRIVER; VK_DRIVER_FILES is respected.
 
     cargo xtask ci [--driver default|installed|newer]
-        What continuous integration runs: `test`, each family of techniques alone, `packages`, `wasm` and `web --shaders`, with a
-        failure where a check would otherwise be skipped, or where no graphics adapter answers. Where no browser is, nor can be
-        installed, its shaders alone are skipped, and that is said.
+        Runs `test`, each family of techniques alone, `packages`, `wasm` and `web --shaders`. Fails where a check would be
+        skipped, except the last if there is no browser.
 
     cargo xtask shaders
-        Links the library's shaders again, after a change to a .wesl file or to the list in src/shaders.rs.
+        Links the library's shaders. Run it after an edit to a .wesl file or to the list in src/shaders.rs.
 
     cargo xtask docs
-        Writes the parts of the book and the README that are made of the techniques' declarations, after a change to one.
+        Writes the generated parts of the book and the README. Run it after an edit to a technique's declaration.
 
     cargo xtask book [--serve]
-        Builds the book of docs/ in target/book, after `docs`; serves it on this machine. Installs mdbook in target/tools where
-        it is not there: a few minutes, once.
+        Builds the book in target/book; --serve serves it on this machine. Installs mdbook in target/tools once.
 
     cargo xtask packages
-        Makes the packages that would be published, and builds and runs a program outside the repository from them.
+        Makes the packages for publication, and builds and runs a program from them outside the repository.
 
     cargo xtask wasm
-        Checks that the library compiles for browsers; sets up a compiler for them where it can.
+        Checks that the library compiles for browsers.
 
     cargo xtask web [--serve | --shaders | --pipelines | --check | --check-all]
-        Builds the viewer as a page, in target/web, for any host of files; serves it on this machine; has a headless browser make
-        every shader module and layout, without the page, which `ci` does too, or every pipeline of these; or tries the page in a
-        headless browser and holds a mask of every technique there, or of all variants of each, against the system's. Sets up
-        what is missing where it can.
+        Builds the viewer as a static page in target/web.
+        --serve: serves it on this machine. --shaders, --pipelines: compiles every shader module, or every pipeline, in a headless
+        browser. --check, --check-all: tests the page in a headless browser, and compares its masks with native ones.
 
     cargo xtask bevy [FILTER]
-        Checks and tests the plugin for Bevy, by a toolchain of Rust 1.97 or newer where one is installed, nightly for one; says
-        so where none is. Not part of `ci`: its first build takes a quarter of an hour and more. Its shaders and its patch of
-        Bevy's are, which need no build of Bevy.
+        Checks and tests the Bevy plugin, if a toolchain of Rust 1.97 or newer is installed. Not part of `ci`: its first build takes
+        a quarter of an hour or more.
 
     cargo xtask mutants [--count N] [--seed S] [--only PATH] [--jobs N] [--seconds S] [--wide] [--again | --anew | --report] [--check]
-        Changes the shaders one operator, comparison or number at a time, runs the tests that use what is changed, and writes
-        docs/mutants.md: which changes no test notices. Takes an hour or two for 300. With `--check` it writes nothing, and fails where
-        a survivor has no reason in xtask/mutants/reasons.toml.
+        Changes one operator, comparison or number of a shader at a time, runs the tests that use it, and writes docs/mutants.md. An
+        hour or two for 300. --check: writes nothing, and fails if a survivor has no reason in xtask/mutants/reasons.toml.
 
     cargo xtask qualities
-        Measures every technique at every quality but best on a few built-in scenes, and writes bench/qualities.md: ten minutes.
+        Measures every technique at every quality but best on built-in scenes, and writes bench/qualities.md: ten minutes.
 
     cargo xtask figures [TECHNIQUE ...]
-        Makes the pictures of docs/ and the README again, or those of some techniques on docs/limits.md alone.
+        Makes the images of docs/ and the README, or only those of the named techniques in docs/limits.md.
 
     cargo xtask setup
-        Only the setting up: a C++ compiler and a Vulkan driver.
+        Installs a C++ compiler and a Vulkan driver.
 ";
 
 fn main() -> ExitCode {

@@ -15,10 +15,9 @@ const TECHNIQUES: &str = "all:fast,all,all:high";
 const HEAD: &str = "\
 # Qualities
 
-What each technique costs and errs at each of its qualities, by `cargo xtask qualities`: `fast`, as it comes (`balanced`), `high`.
-`best` is for stills, and takes a software adapter seconds to minutes a frame. What a quality sets, `antumbra techniques NAME` says.
-Times are of one adapter, to be compared with one another; `antumbra compare SCENE... --techniques pcss:fast,pcss,pcss:high -o out`
-draws the same for your scenes on yours.
+Error and time of each technique at its qualities `fast`, `balanced` (the default) and `high`, by `cargo xtask qualities`. `best` is for stills,
+and takes a software adapter seconds to minutes a frame. `antumbra techniques NAME` lists what each quality sets. Compare these times only
+with one another; `antumbra compare SCENE... --techniques pcss:fast,pcss,pcss:high -o out` measures your scenes on your adapter.
 
 ";
 

@@ -1,4 +1,4 @@
-//! The command line, declared: what `--help` says is written here and nowhere else.
+//! Declaration of the command line. All texts of `--help` are here.
 
 use std::path::PathBuf;
 
@@ -14,22 +14,25 @@ use glam::UVec2;
 use crate::technique_text::techniques_help;
 use crate::values::{self, Setting};
 
-/// Real-time soft shadows, and the laboratory that tells which technique suits a scene.
+/// Version, and the commit that the program was built from.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("ANTUMBRA_COMMIT"), ")");
+
+/// Renders soft shadows by many techniques, and compares them with ray-traced ground truth
 #[derive(Debug, Parser)]
-#[command(name = "antumbra", version, max_term_width = 110, disable_help_subcommand = true)]
+#[command(name = "antumbra", version = VERSION, max_term_width = 110, disable_help_subcommand = true)]
 #[command(after_help = "\
 Start here:
-  antumbra compare builtin:overlap -o out        every technique against the truth; open out/index.html
-  antumbra advise scene.glb --budget 4ms         which technique, with what settings
-  antumbra render scene.glb -o picture.png       a picture with soft shadows
-  antumbra view scene.glb                        a window on a scene: move lights, try techniques
-  antumbra techniques pcss                       what a technique's parameters do
-  antumbra doctor                                what this machine can draw with
+  antumbra compare builtin:overlap -o out        compares techniques with ground truth
+  antumbra advise scene.glb --budget 4ms         recommends a technique and its settings
+  antumbra render scene.glb -o picture.png       renders an image with soft shadows
+  antumbra view scene.glb                        opens a window: move lights, try techniques
+  antumbra techniques pcss                       explains a technique's parameters
+  antumbra doctor                                lists adapters and what techniques need
 
-SCENE is a .glb or .gltf file, or builtin:NAME (`antumbra scenes` lists them).
-Names of techniques, scenes, qualities and parameters are read in any case.
-Exit codes: 0 done; 2 the arguments or an input file are wrong; 3 no usable adapter, or a feature is missing;
-1 anything else; 130 interrupted. A file appears whole or not at all.")]
+SCENE is a .glb or .gltf file, or builtin:NAME (`antumbra scenes` lists them). Names are not case-sensitive.
+
+Exit codes: 0 success; 2 wrong arguments or input file; 3 no usable adapter or feature; 130 interrupted; 1 anything else. \
+Output files appear complete or not at all.")]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -50,26 +53,24 @@ pub enum Command {
     Reproduce(ReproduceArgs),
 }
 
-/// What is seen of a scene.
+/// Camera, lights and time of a scene.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
-    /// Camera and lights (TOML); without it the scene's own, or, as a line says, a camera that frames it or stands inside
-    /// and one light
+    /// Setup file with camera and lights (TOML); default: the scene's own, or assumed ones, which are printed
     #[arg(long, value_name = "F.toml")]
     pub setup: Option<PathBuf>,
-    /// The time at which animations are sampled, in seconds
+    /// Time at which animations are sampled, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
-    /// Stands the scene on a ground, which casts where it can hide something; auto: where the camera frames an object
-    /// that stands on nothing
+    /// Adds a ground below the scene; auto: if the scene is an object that stands on nothing
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
 }
 
-/// When a ground is put under a scene.
+/// When a ground is added below a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Ground {
-    /// Where nothing says how the scene is looked at, and it stands on nothing.
+    /// If there is no setup file or camera, and the scene stands on nothing.
     #[default]
     Auto,
     Yes,
@@ -87,25 +88,25 @@ impl Ground {
     }
 }
 
-/// How a scene is looked at.
+/// View of a scene.
 #[derive(Debug, Args)]
 pub struct ViewArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Width and height of the picture, in pixels
+    /// Width and height of the image, in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
     pub size: UVec2,
 }
 
-/// Which device draws.
+/// Choice of adapter.
 #[derive(Debug, Args)]
 pub struct AdapterArgs {
-    /// Part of the name of the graphics adapter to use (`antumbra doctor` lists them); default: the fastest
+    /// Graphics adapter, by a part of its name (`antumbra doctor` lists them); default: the fastest
     #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,
 }
 
-/// Renders a scene with soft shadows by one technique
+/// Renders an image with soft shadows by one technique
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -113,80 +114,81 @@ Examples:
   antumbra render scene.glb --setup evening.toml --technique multi_view --set samples=256 -o evening.png
   antumbra render scene.glb --technique pcss --set search_samples=32 --set samples=128 -o a.png --visibility a.exr
 
-`antumbra techniques NAME` lists what --set takes. --visibility writes the plain mask, 1 lit to 0 umbra, as 32-bit float
-OpenEXR with the channel V, before any tone curve. With several lights a.exr is the first one's and a.NAME.exr each other's;
---light NAME writes that one's alone. Pictures are PNG or JPEG, as their names say.")]
+`antumbra techniques NAME` lists the parameters for --set.
+
+--visibility writes the mask as 32-bit float OpenEXR, channel V, 1 lit to 0 umbra. With several lights a.exr is the first one's and a.NAME.exr \
+each other's; --light NAME writes only that one's.")]
 pub struct RenderArgs {
     /// A .glb or .gltf file, or builtin:NAME
     #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scene: String,
     #[command(flatten)]
     pub view: ViewArgs,
-    /// The shadow technique, and how much it may spend: pcss, pcss:fast; or a preset file: advice.toml
+    /// Technique, with a quality if you like: pcss, pcss:fast; or a preset file: advice.toml
     #[arg(long, value_name = "NAME[:QUALITY]", default_value = "smrt", value_parser = values::technique)]
     pub technique: values::Technique,
     /// Sets a parameter of the technique; may be given several times
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// Where to write the picture: .png or .jpg
+    /// Image to write: .png or .jpg
     #[arg(short, long, value_name = "out.png")]
     pub output: PathBuf,
     /// Also writes the visibility mask (OpenEXR, 32-bit float, channel V)
     #[arg(long, value_name = "v.exr")]
     pub visibility: Option<PathBuf>,
-    /// The one light that --visibility is of, by name; default: all of them
+    /// Light that --visibility writes, by name; default: all
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
-    /// Draws shadows up to so many metres from the camera; they fade over the last fifth
+    /// Draws shadows only up to this distance from the camera; they fade over its last fifth
     #[arg(long, value_name = "METRES", value_parser = values::distance)]
     pub shadow_distance: Option<f32>,
-    /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
+    /// Bends smooth normals so that shading ends where triangles face away from the light
     #[arg(long)]
     pub coherent: bool,
-    /// Frames to draw, of which the last is written; techniques that accumulate converge
+    /// Number of frames to draw; the last is written. Techniques that accumulate converge
     #[arg(long, value_name = "N", default_value = "1", value_parser = values::frames)]
     pub frames: u32,
-    /// Also writes the time of every pass in milliseconds (JSON)
+    /// Also writes the time of every pass, in milliseconds (JSON)
     #[arg(long, value_name = "t.json")]
     pub timings: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
 
-/// Traces the truth: the visibility of every light, by rays, on the processor
+/// Traces ground truth on the CPU: the visibility of every light
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   antumbra reference builtin:overlap -o truth.png --visibility truth.exr
   antumbra reference scene.glb --samples 256 --size 640x360 -o quick.png
 
-The visibility needs no graphics adapter; the shaded picture does. Without one, the picture shows the visibility itself.")]
+Visibility needs no graphics adapter; the shaded image does. Without an adapter, the image shows the visibility.")]
 pub struct ReferenceArgs {
     /// A .glb or .gltf file, or builtin:NAME
     #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scene: String,
     #[command(flatten)]
     pub view: ViewArgs,
-    /// Light points per pixel; the truth has 32 x 32
+    /// Light samples per pixel
     #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
     pub samples: u32,
-    /// Seed of the light points
+    /// Seed of the light samples
     #[arg(long, value_name = "N", default_value = "0")]
     pub seed: u32,
-    /// Where to write the picture: .png or .jpg
+    /// Image to write: .png or .jpg
     #[arg(short, long, value_name = "ref.png")]
     pub output: PathBuf,
     /// Also writes the visibility (OpenEXR, 32-bit float; channel V, or V.R, V.G, V.B where occluders tint)
     #[arg(long, value_name = "v.exr")]
     pub visibility: Option<PathBuf>,
-    /// The one light that --visibility is of, by name; default: all of them
+    /// Light that --visibility writes, by name; default: all
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
 
-/// Opens a window on a scene: move camera and lights, try techniques, compare two of them
+/// Opens a window: move camera and lights, try techniques, compare two of them
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -195,45 +197,44 @@ Examples:
   antumbra view builtin:street --technique pcss --against vsm:fast --set map_size=2048
   antumbra view builtin:overlap --show error --screenshot error.png
 
-Drag turns the camera, with shift or another button moves it, the wheel goes nearer, W A S D Q E fly, F shows all. Space plays an
-animated scene, I tells of the pixel under the pointer. A scene or a setup that is dropped on the window is opened. What is on screen is saved as a setup that all other commands take.")]
+Controls: drag turns the camera, Shift-drag moves it, the wheel goes nearer, W A S D Q E fly, F shows the whole scene, Space plays animations, \
+I inspects the pixel under the pointer. Drop a scene or a setup on the window to open it. Save the view as a setup for the other commands.")]
 pub struct WindowArgs {
-    /// A .glb or .gltf file, or builtin:NAME; default: a built-in
+    /// A .glb or .gltf file, or builtin:NAME; default: a built-in scene
     #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scene: Option<String>,
-    /// Camera and lights (TOML); without it the scene's own, or a camera that frames it and a key light
+    /// Setup file with camera and lights (TOML); default: the scene's own, or assumed ones
     #[arg(long, value_name = "F.toml")]
     pub setup: Option<PathBuf>,
-    /// The time at which an animated scene is shown at first, in seconds
+    /// Initial time of an animated scene, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
-    /// Stands the scene on a ground, which casts where it can hide something; auto: where the camera frames an object
-    /// that stands on nothing
+    /// Adds a ground below the scene; auto: if the scene is an object that stands on nothing
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
-    /// The shadow technique, and how much it may spend: pcss, pcss:fast; or a preset file: advice.toml
+    /// Technique, with a quality if you like: pcss, pcss:fast; or a preset file: advice.toml
     #[arg(long, value_name = "NAME[:QUALITY]", default_value = "smrt", value_parser = values::technique)]
     pub technique: values::Technique,
-    /// Another technique, at the right of a divider
+    /// Second technique, to the right of a divider
     #[arg(long, value_name = "NAME[:QUALITY]", value_parser = values::technique)]
     pub against: Option<values::Technique>,
-    /// Sets a parameter of one technique, or of each that has it; may be given several times
+    /// Sets a parameter of one technique, or of every technique that has it; may be given several times
     #[arg(long = "set", value_name = "[NAME.]KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// What is shown at first
+    /// Initial view
     #[arg(long, value_name = "VIEW", default_value = "shaded", ignore_case = true, value_parser = ["shaded", "visibility", "error", "truth", "map", "lists"])]
     pub show: String,
     /// Width and height of the window
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = values::size)]
     pub size: UVec2,
-    /// Writes a picture of the window once it stands still, and ends
+    /// Writes an image of the window once everything is loaded and traced, and exits
     #[arg(long, value_name = "window.png")]
     pub screenshot: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
 
-/// Compares techniques with the truth: pictures, error maps, numbers and milliseconds in one page
+/// Compares techniques with ground truth: images, error maps, numbers and times on one page
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -246,18 +247,17 @@ Examples:
   antumbra compare builtin:lantern-wall --motion all --size 320x180 -o out
   antumbra compare scene.glb --setup end.toml --motion camera --path start.toml,corner.toml -o out
 
-DIR/index.html opens from disk; DIR/metrics.json holds the numbers. A technique may carry a quality: fast, balanced, high or
-best; `all:fast` is all of them. `essm:paper` is as its paper prints it, and --preset is a paper's whole comparison. With
-`+denoised` behind it (pcss:fast+denoised) its masks are made smooth over --frames frames. `--set NAME.KEY=VALUE` is for one
-technique, `--set KEY=VALUE` for every chosen technique that
-has the key.
+Open DIR/index.html; DIR/metrics.json has the numbers.
 
---motion adds what techniques do while something moves: flicker, the rms of the mask's change from frame to frame less the
-truth's own at the same pixels, and how many frames the mask lags once all stands still. One thing moves at a time, to the
-camera's right, and stops where the scene and the setup have it. A frame's truth is traced with --samples light points, so that
-long motions want small pictures.")]
+A technique may have a quality: fast, balanced, high or best; `all:fast` is every technique at fast. `essm:paper` is as its paper publishes it; --preset is a \
+paper's whole comparison. With `+denoised` (pcss:fast+denoised) masks are denoised over --frames frames. `--set NAME.KEY=VALUE` sets a parameter of one \
+technique, `--set KEY=VALUE` of every technique that has it.
+
+--motion measures what happens while one thing moves, to the camera's right, until it is where the scene and the setup place it: flicker, the rms of \
+the mask's change from frame to frame minus the truth's, and the number of frames that the mask lags after everything has stopped. Each frame is \
+traced, so use small images.")]
 pub struct CompareArgs {
-    /// .glb or .gltf files, or builtin:NAME; with several, each gets a folder in DIR
+    /// .glb or .gltf files, or builtin:NAME; several scenes get a folder each in DIR
     #[arg(value_name = "SCENE", required = true, value_parser = values::scene)]
     pub scenes: Vec<String>,
     #[command(flatten)]
@@ -265,33 +265,32 @@ pub struct CompareArgs {
     /// Techniques and preset files (advice.toml), separated by commas, or `all`
     #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::techniques)]
     pub techniques: values::Techniques,
-    /// The techniques of a paper, each as printed there: lauritzen-2008, sintorn-2008, shen-2013, marrs-2014, selgrad-2014
+    /// Techniques of a paper, each as published there: lauritzen-2008, sintorn-2008, shen-2013, marrs-2014, selgrad-2014
     #[arg(long, value_name = "PAPER", conflicts_with = "techniques", value_parser = values::preset)]
     pub preset: Option<Preset>,
     /// Sets a parameter of one technique, or of every technique that has it; may be given several times
     #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// The folder to write the report to
+    /// Folder for the report
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// The light that is judged and timed, by name; default: the first. All of them shine in the pictures
+    /// Light to compare and time, by name; default: the first. Images show all lights
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
-    /// Draws shadows up to so many metres from the camera; they fade over the last fifth. The truth has them all
+    /// Draws shadows only up to this distance from the camera; the ground truth has no limit
     #[arg(long, value_name = "METRES", value_parser = values::distance)]
     pub shadow_distance: Option<f32>,
-    /// Shades coherently: smooth normals bend towards darkness where triangles face away from the light
+    /// Bends smooth normals so that shading ends where triangles face away from the light
     #[arg(long)]
     pub coherent: bool,
-    /// What techniques are held against: rays to the whole light, or, for those with a kernel of fixed width, exact
-    /// filtering of their own map by that kernel
+    /// Ground truth: traced rays, or, for techniques with a kernel of fixed width, exact filtering of their own shadow map by
+    /// that kernel
     #[arg(long, value_name = "traced|filtered", default_value = "traced", value_parser = values::truth)]
     pub truth: Truth,
-    /// Light points per pixel of the traced truth
+    /// Light samples per pixel of the traced ground truth
     #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
     pub samples: u32,
-    /// Timed frames for each technique once it has warmed up, where they take no longer than 3 s; of short ones more, for a quarter of a
-    /// second
+    /// Number of timed frames for each technique after warm-up: fewer if they take more than 3 s, more if they are short
     #[arg(long, value_name = "N", default_value = "5", value_parser = values::frames)]
     pub frames: u32,
     #[command(flatten)]
@@ -300,27 +299,27 @@ pub struct CompareArgs {
     pub adapter: AdapterArgs,
 }
 
-/// What moves, and how.
+/// Motion to measure.
 #[derive(Debug, Args)]
 pub struct MotionArgs {
     /// Also measures flicker and lag while these move, one after the other
     #[arg(long, value_name = "camera,light,caster|all", value_parser = values::motions)]
     pub motion: Option<values::Motions>,
-    /// Frames in which each of them moves
+    /// Number of frames in which each moves
     #[arg(long, value_name = "N", default_value = "16", requires = "motion", value_parser = values::motion_frames)]
     pub motion_frames: u32,
-    /// How far they move in a frame, metres; a sun turns by the angle that this is at ten metres
+    /// Distance per frame, in metres; a sun turns by the angle of this distance at ten metres
     #[arg(long, value_name = "METRES", default_value = "0.15", requires = "motion", value_parser = values::step)]
     pub step: f32,
-    /// The mesh that moves; default: the largest in the picture that is no ground and no wall
+    /// Mesh that moves; default: the largest visible one that is neither ground nor wall
     #[arg(long, value_name = "NAME", requires = "motion")]
     pub caster: Option<String>,
-    /// Setup files whose cameras the camera passes, in even times, before it comes to its own place
+    /// Setup files whose cameras the camera passes at equal intervals on its way
     #[arg(long, value_name = "F.toml,...", requires = "motion", value_delimiter = ',')]
     pub path: Vec<PathBuf>,
 }
 
-/// Finds the technique, and its settings, that errs least within a budget of time
+/// Recommends the technique and settings with the least error within a time budget
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -330,61 +329,60 @@ Examples:
   antumbra advise builtin:tree --budget 4x --size 240x135 --techniques pcss,essm,multi_layer
   antumbra render scene.glb --technique advice/advice.toml -o picture.png
 
-Searches the techniques' qualities and parameters as they are declared, on small pictures first, and says what to take, why, what
-comes next, and what a step up costs. A budget is of one frame's shadows of one light: milliseconds on this adapter, or times what
-pcf takes as it comes (4x). With several setups or times the answer holds for all: the slowest counts, and the errors' mean square.
+Searches techniques, qualities and parameters, on small images first, and prints what to take, why, the next best, and what more quality costs. The \
+budget is for one frame's shadows of one light: in milliseconds on this adapter, or in multiples of the time of pcf at its defaults (4x). With \
+several setups or times, one answer holds for all: the slowest view must keep the budget, and the mean square error is minimised.
 
-DIR/index.html opens from disk; DIR/advice.toml is a preset that render, compare and view take wherever they take a technique.
-DIR/measurements.json holds what was measured: the same line again goes on where it was stopped. See docs/advise.md.")]
+Open DIR/index.html. DIR/advice.toml is a preset for render, compare and view. DIR/measurements.json has all measurements: run the same line again to \
+continue. See docs/advise.md.")]
 pub struct AdviseArgs {
     /// A .glb or .gltf file, or builtin:NAME
     #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scene: String,
-    /// What a frame's shadows may take: milliseconds (4ms), or times what pcf takes (4x)
+    /// Time for one frame's shadows: milliseconds (4ms), or multiples of the time of pcf (4x)
     #[arg(long, value_name = "4ms|4x", value_parser = values::budget)]
     pub budget: Budget,
-    /// GPU memory that the technique may hold
+    /// Limit of the technique's GPU memory
     #[arg(long, value_name = "64MiB", value_parser = values::memory)]
     pub memory: Option<u64>,
-    /// How rough the picture may be: visible artefacts, as `roughness` in metrics.json
+    /// Limit of visible artefacts, as `roughness` in metrics.json
     #[arg(long, value_name = "0.01", value_parser = values::roughness)]
     pub roughness: Option<f64>,
-    /// Camera and lights (TOML); may be given several times
+    /// Setup file with camera and lights (TOML); may be given several times
     #[arg(long = "setup", value_name = "F.toml")]
     pub setups: Vec<PathBuf>,
-    /// The time at which animations are sampled, in seconds; may be given several times
+    /// Time at which animations are sampled, in seconds; may be given several times
     #[arg(long = "time", value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub times: Vec<f32>,
-    /// Stands the scene on a ground, which casts where it can hide something; auto: where the camera frames an object
-    /// that stands on nothing
+    /// Adds a ground below the scene; auto: if the scene is an object that stands on nothing
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
-    /// The light that is judged and timed, by name; default: the first
+    /// Light to compare and time, by name; default: the first
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
-    /// Width and height of the pictures; default: 1280x720, or 480x270 on a software adapter
+    /// Width and height of the images; default: 1280x720, or 480x270 on a software adapter
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     pub size: Option<UVec2>,
-    /// The techniques among which to choose, separated by commas, or `all`
+    /// Techniques to choose from, separated by commas, or `all`
     #[arg(long, value_name = "a,b,c|all", default_value = "all", value_parser = values::kinds)]
     pub techniques: values::Kinds,
-    /// What is to be small: the error of the picture as it stands, or with its flicker while the camera moves
+    /// What to minimise: the error of still images, or that and flicker while the camera moves
     #[arg(long, value_name = "still|motion", default_value = "still", value_parser = values::prefer)]
     pub prefer: Prefer,
-    /// Light points per pixel of the truth
+    /// Light samples per pixel of the ground truth
     #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
     pub samples: u32,
-    /// Measures every combination of a grid instead of searching: slow; what the search is held against
+    /// Measures every combination of a grid instead of searching: slow, for checking the search
     #[arg(long)]
     pub exhaustive: bool,
-    /// The folder for the page, the preset and the measurements; one of an earlier advice on the same view is gone on with
+    /// Folder for the page, the preset and the measurements; an earlier search on the same view is resumed
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
 
-/// Measures the time of every pass of every technique
+/// Measures the time of every pass
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -392,24 +390,21 @@ Examples:
   antumbra bench builtin:street scene.glb --techniques pcss --sizes 1280x720,1920x1080 --frames 100 --json times.json
   antumbra bench scene.glb --setup evening.toml --light lamp --minutes 60
 
-Prints the median over the frames, of how many, and after how many that warm up: programs are compiled then, and lists find their room.
-The JSON also holds adapter, driver, commit and sizes. The minutes are dealt
-out as it goes, each measurement an equal share of what is left; slow ones time fewer frames, and what there is no time for is
-said to be skipped.
+Prints medians, with the number of timed frames and of warm-up frames, in which pipelines are compiled and lists grow. --minutes is shared equally \
+among the measurements: slow ones time fewer frames, and those without time are reported as skipped. The JSON also has adapter, driver and commit.
 
   antumbra bench --suite results.json --minutes 7
   antumbra bench --suite results.json --minutes 7 --parts times,growth
   antumbra bench --tables results.json > BENCHMARKS.md
 
---suite runs everything that BENCHMARKS.md shows, for so many minutes, into one file; the same line again goes on where it
-stopped. --tables makes the page of it.")]
+--suite measures everything in BENCHMARKS.md, for --minutes, into one file; run the same line again to continue. --tables prints the page.")]
 pub struct BenchArgs {
     /// Scenes: .glb or .gltf files, or builtin:NAME; default: overlap, knot and street
     #[arg(value_name = "SCENE", value_parser = values::scene)]
     pub scenes: Vec<String>,
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// The light that is measured, by name; default: the first
+    /// Light to measure, by name; default: the first
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
     /// Techniques and preset files (advice.toml), separated by commas, or `all`
@@ -418,39 +413,39 @@ pub struct BenchArgs {
     /// Sets a parameter of one technique, or of every technique that has it; may be given several times
     #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// Sizes of the picture, separated by commas; default: 1280x720, or 480x270 on a software adapter
+    /// Image sizes, separated by commas; default: 1280x720, or 480x270 on a software adapter
     #[arg(long, value_name = "WxH,...", value_delimiter = ',', value_parser = values::size)]
     pub sizes: Vec<UVec2>,
-    /// Timed frames for each technique, scene and size
+    /// Number of timed frames for each technique, scene and size
     #[arg(long, value_name = "N", default_value = "20", value_parser = values::frames)]
     pub frames: u32,
-    /// Frames before the timed ones, at least; one is always drawn, and more until two take about as long
+    /// Minimum number of warm-up frames; at least one is drawn, and more until two take about as long
     #[arg(long, value_name = "N", default_value = "3", value_parser = values::warm_up)]
     pub warm_up: u32,
-    /// Within so many minutes it is over, but for the measurement that runs then
+    /// Time limit in minutes; the measurement that runs then is finished
     #[arg(long, value_name = "N", default_value = "10", value_parser = values::minutes)]
     pub minutes: u32,
     /// Also writes everything as JSON
     #[arg(long, value_name = "out.json")]
     pub json: Option<PathBuf>,
-    /// Runs what BENCHMARKS.md shows, as far as this file lacks it and the minutes last
+    /// Measures what BENCHMARKS.md shows and this file lacks, within --minutes
     #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE)]
     pub suite: Option<PathBuf>,
-    /// Of the suite only these tables, separated by commas
+    /// Only these tables of the suite, separated by commas
     #[arg(long, value_name = "TABLE,...", value_delimiter = ',', requires = "suite", value_parser = values::suite_part)]
     pub parts: Vec<Part>,
-    /// Prints such a file as BENCHMARKS.md
+    /// Prints the results file of a suite as a page
     #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE, conflicts_with = "suite")]
     pub tables: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
 
-/// What says what is measured, which a suite says itself.
+/// Options that choose what is measured, which a suite does itself.
 const NOT_OF_A_SUITE: [&str; 11] =
     ["scenes", "setup", "time", "ground", "light", "techniques", "settings", "sizes", "frames", "warm_up", "json"];
 
-/// Compares in parts, on one machine or many: many scenes, sizes and settings as independent jobs in files
+/// Runs many comparisons as independent jobs, on one machine or many
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -458,8 +453,8 @@ Examples:
   antumbra sweep run sweep --shard 1/4
   antumbra sweep merge sweep -o results.json
 
-A shard runs those of its jobs that have no result yet, so that one that was stopped is started again by the same line. Errors are
-those of `compare`, whatever the shards. docs/sweep.md has recipes for Slurm arrays, GNU parallel and Kubernetes' indexed jobs.")]
+A shard runs those of its jobs that have no result yet: if it was stopped, run the same line again. Errors equal those of `compare`. \
+docs/sweep.md has recipes for Slurm, GNU parallel and Kubernetes.")]
 pub struct SweepArgs {
     #[command(subcommand)]
     pub command: SweepCommand,
@@ -472,15 +467,15 @@ pub enum SweepCommand {
     Merge(SweepMergeArgs),
 }
 
-/// Writes the jobs: every scene at every size by every technique with every value that varies
+/// Writes the plan: every scene at every size with every technique and every value of --vary
 #[derive(Debug, Args)]
 pub struct SweepPlanArgs {
-    /// .glb or .gltf files, as the shards will find them, or builtin:NAME
+    /// .glb or .gltf files, at paths that the shards can read, or builtin:NAME
     #[arg(value_name = "SCENE", required = true, value_parser = values::scene)]
     pub scenes: Vec<String>,
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// The light that is judged and timed, by name; default: the first
+    /// Light to compare and time, by name; default: the first
     #[arg(long, value_name = "NAME")]
     pub light: Option<String>,
     /// Techniques and preset files (advice.toml), separated by commas, or `all`
@@ -489,48 +484,48 @@ pub struct SweepPlanArgs {
     /// Sets a parameter of one technique, or of every technique that has it; may be given several times
     #[arg(long = "set", value_name = "NAME.KEY=VALUE", value_parser = values::setting)]
     pub settings: Vec<Setting>,
-    /// Runs a technique, or each that has the parameter, once with every value; may be given several times
+    /// Runs a technique, or every technique that has the parameter, with each value; may be given several times
     #[arg(long, value_name = "NAME.KEY=V,W,...", value_parser = values::setting)]
     pub vary: Vec<Setting>,
-    /// Sizes of the picture, separated by commas
+    /// Image sizes, separated by commas
     #[arg(long, value_name = "WxH,...", default_value = "1280x720", value_delimiter = ',', value_parser = values::size)]
     pub sizes: Vec<UVec2>,
-    /// Light points per pixel of the truth
+    /// Light samples per pixel of the ground truth
     #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
     pub samples: u32,
-    /// Timed frames for each job once it has warmed up, as in `compare`
+    /// Number of timed frames for each job after warm-up, as in `compare`
     #[arg(long, value_name = "N", default_value = "5", value_parser = values::frames)]
     pub frames: u32,
-    /// The folder for the plan, and later for the results
+    /// Folder for the plan and its results
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 }
 
-/// Runs the jobs of a plan, or a part of them
+/// Runs a shard of a plan
 #[derive(Debug, Args)]
 pub struct SweepRunArgs {
-    /// A folder that `antumbra sweep plan` wrote
+    /// Folder written by `antumbra sweep plan`
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
-    /// Which part of how many: 1/4 to 4/4
+    /// Shard, and number of shards: 1/4 to 4/4
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = values::shard)]
     pub shard: Shard,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
 
-/// Puts all results of a plan into one file
+/// Collects all results of a plan in one file
 #[derive(Debug, Args)]
 pub struct SweepMergeArgs {
-    /// The sweep's folder, or its copies from several machines
+    /// Folder of the sweep, or its copies from several machines
     #[arg(value_name = "DIR", required = true)]
     pub dirs: Vec<PathBuf>,
-    /// Where to write the results
+    /// File for the results
     #[arg(short, long, value_name = "results.json")]
     pub output: PathBuf,
 }
 
-/// Lists the techniques: what each is for and where it fails; with a name, its parameters with units, ranges and defaults
+/// Lists techniques, their uses and failures; with a name, its parameters with units, ranges and defaults
 #[derive(Debug, Args)]
 #[command(after_help = techniques_help())]
 pub struct TechniquesArgs {
@@ -547,15 +542,15 @@ Examples:
   antumbra scenes --export knot?triangles=100000 -o knot.glb
   antumbra scenes --export overlap -o overlap.gltf")]
 pub struct ScenesArgs {
-    /// The built-in scene to write
+    /// Built-in scene to write
     #[arg(long, value_name = "NAME", requires = "output")]
     pub export: Option<String>,
-    /// Where to write it: .glb, or .gltf as text with its buffer inside
+    /// File to write: .glb, or .gltf with its buffer inside
     #[arg(short, long, value_name = "x.glb", requires = "export")]
     pub output: Option<PathBuf>,
 }
 
-/// Lists adapters, features and limits, and what each technique lacks here
+/// Lists adapters, features and limits, and what each technique needs that is missing
 #[derive(Debug, Args)]
 pub struct DoctorArgs {
     #[command(flatten)]

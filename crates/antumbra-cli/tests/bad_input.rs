@@ -40,6 +40,18 @@ fn reproductions_go_into_folders_of_their_own() {
     refuses_in(dir.path(), &words, &["cannot write notes", "nothing that was reproduced", "another folder"]);
 }
 
+/// Files of other formats are answered with how to convert them.
+#[test]
+fn other_formats_are_to_be_converted() {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, bytes) in
+        [("a.obj", &b"v 0 0 0\n"[..]), ("a.fbx", b"Kaydara FBX Binary  \0"), ("a.blend", b"BLENDER-v300")]
+    {
+        fs::write(dir.path().join(name), bytes).unwrap();
+        refuses_in(dir.path(), &["render", name, "-o", "a.png"], &[name, "not a glTF file", "Blender", "glTF 2.0"]);
+    }
+}
+
 /// Before a window opens.
 #[test]
 #[cfg(feature = "viewer")]

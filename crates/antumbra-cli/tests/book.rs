@@ -53,6 +53,7 @@ pages! {
     choose = "docs/choose.md", "long";
     integrating = "docs/integrating.md";
     laboratory = "docs/laboratory.md", "long";
+    measurements = "docs/measurements.md", "long";
     reproducibility = "docs/reproducibility.md";
     start = "docs/start.md";
     sweep = "docs/sweep.md", "long";

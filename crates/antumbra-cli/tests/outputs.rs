@@ -308,7 +308,7 @@ fn a_preset_is_a_paper_s_comparison_as_printed() {
     let dir = tempfile::tempdir().unwrap();
     let told = run(dir.path(), &["techniques", "lvsm"]);
     let told = String::from_utf8_lossy(&told.stdout).into_owned();
-    assert!(told.contains("As printed, as in lvsm:paper") && told.contains("  transition = mixed\n"), "{told}");
+    assert!(told.contains("As published: lvsm:paper") && told.contains("  transition = mixed\n"), "{told}");
     if !has_adapter(dir.path()) {
         return;
     }

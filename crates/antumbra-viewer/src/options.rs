@@ -37,7 +37,7 @@ pub struct ViewerOptions {
 pub enum ViewerError {
     /// There is no display, or no adapter that can draw to it.
     #[error(
-        "the window cannot be opened: {0}; the viewer needs a desktop and a graphics driver, `antumbra render` neither"
+        "the window cannot be opened: {0}; the viewer needs a display and a graphics driver that can draw to it; `antumbra render` needs no display"
     )]
     Window(String),
     /// The device was lost, and so was the next one.

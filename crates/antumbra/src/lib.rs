@@ -1,4 +1,4 @@
-//! Real-time soft shadows for wgpu: a light, casters and a depth buffer in, a visibility mask out.
+//! Soft shadows of area lights in real time, for wgpu: a light, casters and a depth buffer in, a visibility mask out.
 //!
 //! ```text
 //!  light (shape, size in metres) ──┐
@@ -6,9 +6,8 @@
 //!  receivers (your depth buffer) ──┘
 //! ```
 //!
-//! The library uses the device that you have, records into your encoder, submits nothing and blocks on nothing. The
-//! penumbra follows from the light's physical size, and the bias from each receiver's plane: there is no softness and
-//! no bias to tune.
+//! The library uses your device and encoder, submits nothing and never blocks. Lights have a size in metres, from which most
+//! techniques derive the width of each penumbra. Depth bias is derived for each receiver.
 //!
 //! ```no_run
 //! use antumbra::light::{Light, LightShape};
@@ -35,20 +34,16 @@
 //! # }
 //! ```
 //!
-//! `examples/minimal.rs` is a whole small renderer around these lines. A host with many lights, moving casters or vertices of its
-//! own formats keeps a [`CasterSet`], which all its lights share: `docs/integrating.md` goes on from there, and
-//! `examples/many_lights` is such a host.
-//!
-//! [`TechniqueKind`] has the techniques side by side: the penumbra that each makes, what it is for and where it fails. Each of their
-//! pages, in [`techniques`], says so at length. Conventions (spaces, units, depth) are stated once, in [`contract`].
+//! - [`TechniqueKind`] compares the techniques: penumbra, use and failure of each. The pages in [`techniques`] have the details.
+//! - [`contract`] states the conventions: spaces, units, depth.
+//! - [`CasterSet`] holds the meshes that many lights share. `docs/integrating.md` continues from there.
+//! - [`AnyShadow`] is a light's state with a technique chosen at run time, [`Shadow`] with one known at compile time.
+//! - `examples/minimal.rs` is a complete small renderer around the lines above, `examples/many_lights` one with eight lights.
 //!
 //! Families of techniques are features of the crate, all on by default: `single_map`, `filterable`, `summed`, `multi_layer`,
-//! `light_views`, `ray_traced`, `receiver_lists`. A host that wants one compiles one.
-//!
-//! A technique chosen while the program runs makes an [`AnyShadow`]; one known at compile time a [`Shadow`] with its own
-//! parameter struct.
+//! `light_views`, `ray_traced`, `receiver_lists`.
 #![forbid(unsafe_code)]
-// Rooms that families share hold what one family alone uses, and its shaders.
+// Modules that families share contain code and shaders that only one family uses.
 #![cfg_attr(
     not(all(
         feature = "filterable",

@@ -1,4 +1,4 @@
-//! The list of techniques, and what is to be known of each.
+//! List of techniques, with the facts needed to choose one.
 
 use std::fmt;
 
@@ -25,30 +25,30 @@ use crate::techniques::single_map::{hard::Hard, pcf::Pcf, pcss::Pcss, pcss_aniso
 #[cfg(feature = "summed")]
 use crate::techniques::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
 
-/// What is to be known of a technique before it is chosen, declared once: tables of the documentation, the command line's help
-/// and this page are made of it. Texts are Markdown without a full stop, to stand in a table.
+/// Facts for choosing a technique. Tables of the documentation, the command line's help and this page are generated from them.
+/// Texts are Markdown without a full stop, for table cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct TechniqueFacts {
-    /// The name that command lines and files use.
+    /// Name in command lines and files.
     pub name: &'static str,
-    /// A title for people.
+    /// Display name.
     pub title: &'static str,
     /// Authors, year, venue.
     pub source: &'static str,
     /// The feature of this crate that compiles it.
     pub family: &'static str,
-    /// How wide it makes a penumbra.
+    /// What the width of a penumbra follows from.
     pub penumbra: &'static str,
-    /// How many light maps it draws, and of what kind.
+    /// Number and kind of its shadow maps.
     pub light_maps: &'static str,
-    /// What it is for.
+    /// Use case.
     pub good_for: &'static str,
-    /// What it misses.
+    /// Failure case.
     pub fails_where: &'static str,
-    /// The built-in scene of the laboratory, by name, on which it fails in the most telling way.
+    /// Name of the laboratory's built-in scene that shows its worst failure.
     pub worst_scene: &'static str,
-    /// What goes wrong there.
+    /// What goes wrong there, for a caption.
     pub worst_case: &'static str,
 }
 
@@ -75,7 +75,7 @@ macro_rules! techniques {
     } )+) => {
         /// Every technique of the families that the crate is built with.
         ///
-        /// | technique | | penumbra | light maps | good for | fails where |
+        /// | technique | | penumbra | shadow maps | good for | fails where |
         /// |---|---|---|---|---|---|
         $( #[doc = concat!(
             "| [`", $name, "`](crate::techniques::", $page, ") | ", $title, " | ", $penumbra, " | ", $light_maps, " | ", $good_for,
@@ -100,7 +100,7 @@ macro_rules! techniques {
             /// Every technique, in the order of documentation.
             pub const ALL: &'static [Self] = &[$( #[cfg(feature = $family)] Self::$variant, )+];
 
-            /// What is to be known of it.
+            /// Facts for choosing it.
             pub fn facts(self) -> &'static TechniqueFacts {
                 match self { $(
                     #[cfg(feature = $family)]
@@ -180,7 +180,7 @@ techniques! {
         source: "Williams 1978, SIGGRAPH",
         penumbra: "none",
         light_maps: "1",
-        good_for: "a baseline; the zero-size light",
+        good_for: "a baseline; lights of no size",
         fails_where: "every penumbra",
         worst_case: "overlap", "no penumbra at all",
     }
@@ -190,35 +190,35 @@ techniques! {
         penumbra: "of one width",
         light_maps: "1",
         good_for: "antialiased edges of one width",
-        fails_where: "penumbrae that vary",
-        worst_case: "lantern-wall", "one width for a near and a far occluder",
+        fails_where: "penumbrae of varying width",
+        worst_case: "lantern-wall", "the same width for a near and a far occluder",
     }
     "single_map", Pcss, "pcss", "single_map::pcss", {
         title: "Percentage-closer soft shadows",
         source: "Fernando 2005, SIGGRAPH sketches",
-        penumbra: "from an averaged blocker for each of three layers",
+        penumbra: "from the mean blocker of each of three layers",
         light_maps: "3",
-        good_for: "occluders one behind another, contact to far",
-        fails_where: "near and far bars side by side: one mean depth a layer",
-        worst_case: "window", "one mean depth for bars near and far; `means=ranges` has .024 where this has .058",
+        good_for: "occluders one behind another; sharp contacts",
+        fails_where: "near and far bars side by side: one mean depth per layer",
+        worst_case: "window", "one mean depth for near and far bars; `means=ranges` reduces the error from .058 to .024",
     }
     "single_map", Smrt, "smrt", "single_map::smrt", {
         title: "Shadow map ray tracing",
         source: "Agrawala et al. 2000, SIGGRAPH; Xie, Tabellion, Pearce 2007, EGSR",
         penumbra: "from rays through three layers",
         light_maps: "3",
-        good_for: "near and far occluders side by side or behind one another",
-        fails_where: "rays that pass behind the last layer; penumbrae narrower than a texel, which are as wide as one",
-        worst_case: "tree", "many small open surfaces behind one another",
+        good_for: "near and far occluders, side by side or behind one another",
+        fails_where: "rays that pass behind the last layer; penumbrae narrower than a texel, which get a texel's width",
+        worst_case: "tree", "many small surfaces behind one another, which three layers do not hold",
     }
     "light_views", MultiView, "multi_view", "light_views::multi_view", {
         title: "One depth map per light sample",
         source: "Heckbert, Herf 1997, CMU-CS-97-104",
-        penumbra: "as true as its samples",
-        light_maps: "one a sample",
-        good_for: "truth on the GPU; stills",
-        fails_where: "cost: as many passes as samples; what many thin things hide from every view",
-        worst_case: "ring-in-grass", "what lies behind several blades within a few texels of the 1024² views is guessed",
+        penumbra: "as exact as its samples",
+        light_maps: "1 per sample",
+        good_for: "ground truth on the GPU; stills",
+        fails_where: "cost: one pass per sample; thin casters that hide one another in every view",
+        worst_case: "ring-in-grass", "surfaces behind several blades, within a few texels of the 1024² views, are guessed",
     }
     "filterable", Vsm, "vsm", "filterable::vsm", {
         title: "Variance shadow map",
@@ -226,35 +226,35 @@ techniques! {
         penumbra: "of one width",
         light_maps: "1, filtered",
         good_for: "wide, smooth, cheap edges",
-        fails_where: "light bleeds where occluders overlap",
-        worst_case: "overlap", "the boards' shadows show through the table",
+        fails_where: "light bleeding where occluders overlap",
+        worst_case: "overlap", "the shadow of the boards shows on the ground below the table",
     }
     "filterable", Lvsm, "lvsm", "filterable::lvsm", {
         title: "Layered variance shadow map",
         source: "Lauritzen, McCool 2008, Graphics Interface",
         penumbra: "of one width",
         light_maps: "1, filtered, in layers",
-        good_for: "wide, smooth edges without the bleeding: .0007 where `vsm` has .052 on `overlap`",
+        good_for: "wide, smooth edges without light bleeding: umbra leak .0007 on `overlap`, `vsm` .052",
         fails_where: "foliage without gaps in depth",
-        worst_case: "bench-under-tree", "one width for leaves far above, and depths without gaps between layers",
+        worst_case: "bench-under-tree", "one width for leaves far above; their depths leave no gaps between layers",
     }
     "filterable", Evsm, "evsm", "filterable::evsm", {
         title: "Exponential variance shadow map",
         source: "Lauritzen, McCool 2008, Graphics Interface",
         penumbra: "of one width",
         light_maps: "1, filtered",
-        good_for: "little bleeding in one map",
-        fails_where: "foliage; deep ranges",
-        worst_case: "tree", "a kernel among leaves holds many depths, and the warps see the outermost",
+        good_for: "little light bleeding from one map",
+        fails_where: "foliage; large depth ranges",
+        worst_case: "tree", "leaves at many depths in one kernel, of which the warps keep only the outermost",
     }
     "filterable", Esm, "esm", "filterable::esm", {
         title: "Exponential shadow map",
         source: "Annen et al. 2008, Graphics Interface; Salvi 2008",
         penumbra: "of one width",
         light_maps: "1, filtered",
-        good_for: "one channel",
+        good_for: "one channel of memory",
         fails_where: "contacts; silhouettes",
-        worst_case: "stacked-panels", "light at every contact, and where receivers tilt away",
+        worst_case: "stacked-panels", "light at every contact, and on receivers that tilt away from the light",
     }
     "filterable", Convolution, "convolution", "filterable::convolution", {
         title: "Convolution shadow map",
@@ -262,43 +262,43 @@ techniques! {
         penumbra: "of one width",
         light_maps: "1, filtered",
         good_for: "8-bit storage",
-        fails_where: "contacts; ringing; every term is read",
-        worst_case: "leaning-plank", "light within 1/(2M) of the range of every contact",
+        fails_where: "contacts; ringing; reads every term of its series",
+        worst_case: "leaning-plank", "light within 1/(2M) of the depth range of every contact",
     }
     "filterable", Moment, "moment", "filterable::moment", {
         title: "Moment shadow map",
         source: "Peters, Klein 2015, I3D",
         penumbra: "of one width",
         light_maps: "1, filtered",
-        good_for: "least bleeding for 64 bits a texel",
-        fails_where: "three occluders and more under one kernel",
-        worst_case: "lantern-wall", "no bleeding to speak of, and one width for a near and a far occluder",
+        good_for: "least light bleeding for 64 bits per texel",
+        fails_where: "three or more occluders in one kernel",
+        worst_case: "lantern-wall", "hardly any light bleeding, but one width for a near and a far occluder",
     }
     "single_map", PcssAnisotropic, "pcss_anisotropic", "single_map::pcss_anisotropic", {
         title: "Percentage-closer soft shadows over the pixel's footprint",
         source: "Shen, Guennebaud, Yang, Feng 2011, CGF 30(2)",
-        penumbra: "from one averaged blocker, over the pixel too",
+        penumbra: "from one mean blocker, filtered over the pixel too",
         light_maps: "1",
-        good_for: "distant receivers without moiré, by as many taps as `pcss`",
-        fails_where: "layered occluders",
-        worst_case: "tree", "64 taps over leaves of all depths, and one mean depth for them",
+        good_for: "distant receivers without moiré, with as many samples as `pcss`",
+        fails_where: "occluders behind one another",
+        worst_case: "tree", "64 samples over leaves at all depths, and one mean depth for them",
     }
     "summed", Essm, "essm", "summed::essm", {
         title: "Exponential soft shadow mapping",
         source: "Shen, Feng, Yang 2013, CGF 32(4)",
-        penumbra: "from one averaged blocker, in constant time",
+        penumbra: "from one mean blocker, in constant time",
         light_maps: "1",
-        good_for: "`pcss` without noise, large kernels",
-        fails_where: "layered occluders",
-        worst_case: "tree", "one mean depth for leaves near and far, and comparisons that miss what is finer than half a part",
+        good_for: "large kernels without noise",
+        fails_where: "occluders behind one another",
+        worst_case: "tree", "one mean depth for near and far leaves; details finer than half a part of the kernel are missed",
     }
     "summed", Savsm, "savsm", "summed::savsm", {
         title: "Summed-area variance shadow maps",
         source: "Lauritzen 2007, GPU Gems 3",
         penumbra: "from two moments",
         light_maps: "1",
-        good_for: "one lookup a kernel",
-        fails_where: "overlapping occluders bleed",
+        good_for: "one lookup per kernel",
+        fails_where: "light bleeding where occluders overlap",
         worst_case: "overlap", "light bleeds through the table where the boards above overlap it",
     }
     "summed", Vssm, "vssm", "summed::vssm", {
@@ -306,36 +306,36 @@ techniques! {
         source: "Yang, Dong, Feng, Seidel, Kautz 2010, CGF 29(7)",
         penumbra: "from two moments, in constant time",
         light_maps: "1",
-        good_for: "as `savsm`, with kernels subdivided where a part tells more",
-        fails_where: "overlapping occluders bleed",
-        worst_case: "overlap", "light bleeds through the table, less where a part holds one depth alone",
+        good_for: "as `savsm`; subdivides its kernel to reduce light bleeding",
+        fails_where: "light bleeding where occluders overlap",
+        worst_case: "overlap", "light bleeds through the table, less where a part of the kernel holds a single depth",
     }
     "summed", Cssm, "cssm", "summed::cssm", {
         title: "Convolution soft shadow maps",
         source: "Annen, Dong, Mertens, Bekaert, Seidel, Kautz 2008, SIGGRAPH",
         penumbra: "from a Fourier series",
         light_maps: "1",
-        good_for: "what its paper compares with",
+        good_for: "comparison with its paper",
         fails_where: "contacts; memory",
-        worst_case: "leaning-plank", "four terms rise over an eighth of the depth: contacts are lost",
+        worst_case: "leaning-plank", "four terms rise over an eighth of the depth range, so contacts are lost",
     }
     "summed", Evssm, "evssm", "summed::evssm", {
         title: "Exponential variance soft shadow mapping",
         source: "Lauritzen, McCool 2008, Graphics Interface; Yang et al. 2010, CGF 29(7)",
         penumbra: "from warped moments",
         light_maps: "1",
-        good_for: "less bleeding than `vssm`",
-        fails_where: "layered occluders",
-        worst_case: "tree", "integers hold exponents of 5: too few for leaves of all depths",
+        good_for: "less light bleeding than `vssm`",
+        fails_where: "occluders behind one another",
+        worst_case: "tree", "its integers hold exponents up to 5, too few for leaves at all depths",
     }
     "summed", Mssm, "mssm", "summed::mssm", {
         title: "Moment soft shadow mapping",
         source: "Peters, Münstermann, Wetzstein, Klein 2017, JCGT 6(1)",
         penumbra: "from four moments",
         light_maps: "1",
-        good_for: "least bleeding where two occluders overlap",
-        fails_where: "lattices and foliage: three occluders and more",
-        worst_case: "tree", "three depths stand for a whole kernel of leaves",
+        good_for: "least light bleeding where two occluders overlap",
+        fails_where: "lattices and foliage: three or more occluders",
+        worst_case: "tree", "four moments represent three depths, too few for a kernel of leaves",
     }
     "multi_layer", MultiLayer, "multi_layer", "multi_layer", {
         title: "Filtered multi-layer shadow maps",
@@ -343,35 +343,35 @@ techniques! {
         penumbra: "of each occluder, opaque or translucent",
         light_maps: "1, of lists",
         good_for: "layered, translucent and masked occluders from one view",
-        fails_where: "receivers that the light grazes; wires",
-        worst_case: "fence-geometry", "wires as thin as a texel of the 1024² base come and go in bands",
+        fails_where: "receivers at grazing angles; wires",
+        worst_case: "fence-geometry", "wires as thin as a texel of the 1024² map appear and disappear in bands",
     }
     "light_views", Reprojection, "reprojection", "light_views::reprojection", {
         title: "Fragment reprojection",
         source: "Marrs, Watson, Healey 2014",
-        penumbra: "as true as its samples",
-        light_maps: "one central map",
-        good_for: "many light points for one rasterisation",
-        fails_where: "what the light's centre does not see",
-        worst_case: "tree", "what the light's middle does not see is not in the maps, and the crown lets light through",
+        penumbra: "as exact as its samples",
+        light_maps: "1 central map",
+        good_for: "many light samples from one rasterisation",
+        fails_where: "casters that the centre of the light does not see",
+        worst_case: "tree", "leaves hidden from the centre of the light are missing, and the crown lets light through",
     }
     "light_views", ReprojectionLayered, "reprojection_layered", "light_views::reprojection_layered", {
         title: "Fragment reprojection from layers",
         source: "after Marrs, Watson, Healey 2014; Everitt 2001",
-        penumbra: "as true as its samples",
-        light_maps: "a few layers of one",
-        good_for: "layered occluders, large lights",
-        fails_where: "about thrice the arithmetic; silhouettes within a texel",
-        worst_case: "tree", "behind the fourth leaf nothing more is known",
+        penumbra: "as exact as its samples",
+        light_maps: "several layers of one view",
+        good_for: "layered occluders; large lights",
+        fails_where: "about three times the arithmetic of `reprojection`; silhouettes within a texel",
+        worst_case: "tree", "nothing is known behind the fourth leaf",
     }
     "ray_traced", RayTraced, "ray_traced", "ray_traced", {
-        title: "Rays through trees over the triangles",
+        title: "Rays through bounding volume hierarchies",
         source: "Cook, Porter, Carpenter 1984, SIGGRAPH; Karras 2012, HPG",
-        penumbra: "as true as its rays",
+        penumbra: "as exact as its rays",
         light_maps: "none",
-        good_for: "truth on the GPU, tinted casters along each ray; few rays, denoised",
-        fails_where: "few rays are noise; leaves near the light are dear",
-        worst_case: "tree", "sixty-four rays a pixel among leaves are noise",
+        good_for: "ground truth on the GPU; tinted casters along each ray; few rays with a denoiser",
+        fails_where: "noise with few rays; cost of foliage near the light",
+        worst_case: "tree", "64 rays a pixel among leaves are noisy",
     }
     "receiver_lists", AliasFree, "alias_free", "receiver_lists::alias_free", {
         title: "Alias-free hard shadows",
@@ -380,26 +380,26 @@ techniques! {
         light_maps: "none",
         good_for: "exact hard shadows without a bias",
         fails_where: "every penumbra",
-        worst_case: "columns", "edges as sharp as the ray tracer's, and no penumbra at all",
+        worst_case: "columns", "edges as sharp as the ray tracer's, and no penumbra",
     }
     "receiver_lists", SampleBased, "sample_based", "receiver_lists::sample_based", {
         title: "Sample-based visibility",
         source: "Sintorn, Eisemann, Assarsson 2008, EGSR",
-        penumbra: "exact for its samples",
+        penumbra: "exact at its samples",
         light_maps: "none",
-        good_for: "the ray tracer's bits, but for one in 10 000 on solids",
-        fails_where: "many triangles before a large light",
-        worst_case: "stained-glass", "tint by the share of the light that each pane covers, not by light point",
+        good_for: "the ray tracer's result at its light samples, but for 1 in 10 000 on solids",
+        fails_where: "many triangles between receivers and a large light",
+        worst_case: "stained-glass", "tint follows the fraction of the light that each pane covers, not each light sample",
     }
 }
 
 impl TechniqueKind {
-    /// The name that command lines and files use.
+    /// Name in command lines and files.
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
-    /// A title for people.
+    /// Display name.
     pub fn title(self) -> &'static str {
         self.facts().title
     }

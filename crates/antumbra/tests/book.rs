@@ -1,77 +1,89 @@
-//! The snippets of the book (`docs/`), compiled. A test of `antumbra-book` holds each snippet against these lines; nothing here is
-//! run, since the examples run the same calls.
+//! Snippets of the book (`docs/`) and the README, compiled. A test of `antumbra-book` compares each snippet with these lines.
+//! Nothing here is run; the examples run the same calls.
 #![cfg(feature = "single_map")]
 #![allow(dead_code, unused_mut, unused_variables, reason = "a snippet shows what a host has, not what it does with it")]
 
-use antumbra::light::{Aabb, Light, LightShape};
+#[path = "book/start.rs"]
+mod start;
+
+use antumbra::casters::{Caster, Indices, Instances, Mesh, PositionFormat, Positions};
+use antumbra::light::{Aabb, Cone, Light, LightShape};
 use antumbra::{
-    AnyShadow, CasterSet, Casters, Denoise, DepthConvention, Error, Frame, Gpu, Mask, MeshCaster, Opacity, Receivers,
-    Recorder, SplitReceivers, TechniqueKind,
+    AnyShadow, CasterSet, Casters, Denoise, Error, Frame, Gpu, Mask, Receivers, Recorder, SplitReceivers, TechniqueKind,
 };
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
-/// docs/start.md, The library in thirty lines.
-fn the_library_in_thirty_lines(
+/// README.md, In your renderer.
+fn in_your_renderer(
     device: wgpu::Device,
     queue: wgpu::Queue,
     mut encoder: wgpu::CommandEncoder,
-    (position_buffer, index_buffer, instance_buffer): (wgpu::Buffer, wgpu::Buffer, wgpu::Buffer),
-    (index_count, bounds): (u32, Aabb),
-    (size_px, depth_view): (UVec2, wgpu::TextureView),
-    (view_from_world, clip_from_view): (Mat4, Mat4),
+    casters: CasterSet,
+    (size_px, receivers): (UVec2, Receivers<'_>),
 ) -> Result<(), Error> {
-    // Once: a light of physical size, a technique, a mask of the picture's size.
     let gpu = Gpu::new(&device, &queue);
     let mut shadow = TechniqueKind::Smrt.create(&gpu)?;
     let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) };
-    let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO);
+    let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO); // position and target, metres
     let mask = Mask::new(&device, size_px);
 
-    // Each frame: what casts, and the depth buffer that you have anyway.
-    let casters = [MeshCaster {
-        positions: &position_buffer, // [f32; 3] a vertex
-        indices: &index_buffer,      // u32, three a triangle
-        first_triangle: 0,
-        index_count,
-        instances: &instance_buffer, // world-from-object matrices
-        first_instance: 0,
-        instance_count: 1,
-        closed: true,
-        opacity: Opacity::Opaque,
-        bounds,
-        version: None,
-    }];
-    let receivers = Receivers {
-        size_px,
-        origin_px: UVec2::ZERO, // or a viewport's corner
-        depth: &depth_view,
-        depth_convention: DepthConvention::Reversed,
-        view_from_world,
-        clip_from_view,
-        normals: None,         // derived from depth
-        bounds: None,          // the casters' box
-        hull: &[],             // or points around what is seen, for tighter light maps
-        seen: &[],             // or some points that are seen, for finer shadows there
-        shadow_distance: None, // or how far from the camera shadows are drawn
-        version: None,         // or a number that changes with the depth buffer, for frames in which nothing does
+    // Each frame, after your depth pass and before shading:
+    let casters = Casters::Set { set: &casters, layers: u32::MAX };
+    let frame = Frame { light: &light, casters, receivers, mask: &mask };
+    shadow.prepare(&frame)?.record(&mut Recorder::new(&mut encoder, None));
+    Ok(())
+}
+
+/// docs/lights.md.
+fn lights(position: Vec3, target: Vec3, direction: Vec3) {
+    let bulb = Light::new(LightShape::Sphere { radius_m: 0.03 }, position, target);
+    let window = Light::new(LightShape::Rectangle { size_m: Vec2::new(1.2, 1.5) }, position, target);
+    let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.0093 }, Vec3::ZERO, direction); // in which light travels
+    let spot = Light {
+        cone: Some(Cone { inner_rad: 0.3, outer_rad: 0.5 }),
+        ..Light::new(LightShape::Disk { radius_m: 0.04 }, position, target)
     };
-    let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask };
-    let work = shadow.prepare(&frame)?;
-    work.record(&mut Recorder::new(&mut encoder, None));
+}
+
+/// docs/integrating.md, Set up.
+fn set_up(device: wgpu::Device, queue: wgpu::Queue, size_px: UVec2) -> Result<(), Error> {
+    let gpu = Gpu::new(&device, &queue); // cheap to clone; all clones share compiled pipelines
+    let mut casters = CasterSet::new(&gpu); // one for all lights
+    let mask = Mask::new(&device, size_px); // one for each light and camera
+    let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // one for each light and camera
     Ok(())
 }
 
-/// docs/integrating.md, Once.
-fn once(device: wgpu::Device, queue: wgpu::Queue, size_px: UVec2) -> Result<(), Error> {
-    let gpu = Gpu::new(&device, &queue); // clone it; programs are made once for all clones
-    let mut casters = CasterSet::new(&gpu); // what casts, for all lights
-    let mask = Mask::new(&device, size_px); // one a light
-    let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // one a light and view
+/// docs/integrating.md, Casters.
+fn casters(
+    mut casters: CasterSet,
+    (vertices, indices): (wgpu::Buffer, wgpu::Buffer),
+    (vertex_count, index_count, bounds): (u32, u32, Aabb),
+    world_from_object: Mat4,
+) -> Result<(), Error> {
+    let mesh = casters.add_mesh(&Mesh {
+        vertex_count,
+        positions: Positions { buffer: &vertices, offset: 0, stride: 32, format: PositionFormat::Float32x3 },
+        texture_coordinates: None, // needed for a surface with a texture
+        indices: Some(Indices {
+            buffer: &indices,
+            format: wgpu::IndexFormat::Uint32,
+            first_index: 0,
+            count: index_count,
+            base_vertex: 0,
+        }),
+        topology: wgpu::PrimitiveTopology::TriangleList,
+        closed: true, // a watertight mesh
+        bounds,       // object space
+    })?;
+    let caster = casters.add(&Caster::new(mesh, Instances::Matrices(&[world_from_object])))?;
+    // When it moves:
+    casters.set_instances(caster, Instances::Matrices(&[world_from_object]))?;
     Ok(())
 }
 
-/// docs/integrating.md, Each frame.
-fn each_frame(
+/// docs/integrating.md, Many lights.
+fn many_lights(
     mut encoder: wgpu::CommandEncoder,
     mut casters: CasterSet,
     lights: Vec<(&Light, &mut AnyShadow, &Mask)>,
@@ -87,7 +99,7 @@ fn each_frame(
     Ok(())
 }
 
-/// docs/integrating.md, Depth buffers and masks of yours.
+/// docs/integrating.md, Depth buffers.
 fn four_samples_a_pixel(
     mut recorder: Recorder<'_>,
     mut split: SplitReceivers,
@@ -106,7 +118,13 @@ fn four_samples_a_pixel(
 fn few_samples(mut shadow: AnyShadow) -> Result<(), Box<dyn std::error::Error>> {
     shadow.set("search_samples", "8")?;
     shadow.set("samples", "8")?;
-    shadow.set_denoise(Some(Denoise::default())); // Shadow::denoise, where the technique is known at compile time
+    shadow.set_denoise(Some(Denoise::default())); // or the field Shadow::denoise
+    Ok(())
+}
+
+/// docs/integrating.md, Fewer pixels.
+fn fewer_pixels(mut shadow: AnyShadow) -> Result<(), Box<dyn std::error::Error>> {
+    shadow.set("sub", "true")?;
     Ok(())
 }
 

@@ -56,22 +56,23 @@ fn techniques(kinds: &[TechniqueKind]) -> String {
             facts.name, facts.title, facts.source, facts.penumbra, facts.light_maps, facts.good_for, facts.fails_where
         )
     });
-    let head = "| name | technique | penumbra | light maps | good for | fails where |\n|---|---|---|---|---|---|\n";
+    let head = "| name | technique | penumbra | shadow maps | good for | fails where |\n|---|---|---|---|---|---|\n";
     head.to_owned() + &rows.collect::<String>()
 }
 
-/// Each technique's pictures where it fails worst; `cargo xtask figures` reads scene and name off these rows.
+/// Each technique's worst case: a heading, of which `cargo xtask figures` reads name and scene, and three images at full size.
 fn worst_cases() -> String {
-    let rows = TechniqueKind::ALL.iter().map(|kind| {
+    let sections = TechniqueKind::ALL.iter().map(|kind| {
         let facts = kind.facts();
-        let name = facts.name;
+        let (name, scene, failure) = (facts.name, facts.worst_scene, facts.worst_case);
         format!(
-            "| `{name}` on `builtin:{}`: {} | ![truth](figures/{name}_truth.png) | ![{name}](figures/{name}.png) | \
-             ![error](figures/{name}_error.png) |\n",
-            facts.worst_scene, facts.worst_case
+            "### `{name}` on `builtin:{scene}`\n\nFailure: {failure}.\n\n\
+             ![ground truth on {scene}](figures/{name}_truth.png)\n\
+             ![{name} on {scene}](figures/{name}.png)\n\
+             ![error of {name} on {scene}](figures/{name}_error.png)\n\n"
         )
     });
-    "| | truth | technique | error |\n|---|---|---|---|\n".to_owned() + &rows.collect::<String>()
+    format!("\n{}", sections.collect::<String>())
 }
 
 /// Each departure of techniques from their papers, with the switch that the preset `paper` sets; those without a switch last.

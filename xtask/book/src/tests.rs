@@ -49,11 +49,11 @@ fn generated_parts_are_what_the_declarations_say() {
 }
 
 #[test]
-fn every_technique_is_in_one_table_of_each_kind() {
+fn every_technique_is_on_each_page_once() {
     let rows = |path: &str, row: &str| page(path).text.matches(row).count();
     for kind in TechniqueKind::ALL {
         assert_eq!(rows("docs/choose.md", &format!("\n| `{kind}` | {}: ", kind.title())), 1, "{kind}");
-        assert_eq!(rows("docs/limits.md", &format!("\n| `{kind}` on `builtin:")), 1, "{kind}");
+        assert_eq!(rows("docs/limits.md", &format!("\n### `{kind}` on `builtin:")), 1, "{kind}");
         assert!(rows("README.md", &format!("`{kind}`")) >= 1, "{kind}");
     }
 }
@@ -169,30 +169,29 @@ fn code_lines<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
         .collect()
 }
 
-/// Every file of Rust under a folder.
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+/// Every file with one of the endings under a folder.
+fn sources(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            sources(&path, endings, found);
+        } else if path.extension().is_some_and(|found| endings.iter().any(|ending| found == *ending)) {
             found.push(path);
         }
     }
 }
 
-/// A snippet that stands in a file of Rust, line by line, compiles and stays right.
-#[test]
-fn rust_snippets_stand_in_what_is_compiled() {
+/// Asserts that each snippet of a language stands, line by line, in a source file that is compiled; returns how many there are.
+fn compiled_snippets(language: &str, folders: &[&str], endings: &[&str]) -> usize {
     let mut files = Vec::new();
-    for folder in ["crates", "examples"] {
-        sources(&root().join(folder), &mut files);
+    for folder in folders {
+        sources(&root().join(folder), endings, &mut files);
     }
     let texts: Vec<String> = files.iter().map(|file| std::fs::read_to_string(file).unwrap()).collect();
     let compiled: Vec<Vec<&str>> = texts.iter().map(|text| code_lines(text.lines())).collect();
     let mut snippets = 0;
     for page in crate::pages() {
-        for block in blocks(&page.text).into_iter().filter(|block| block.language == "rust") {
+        for block in blocks(&page.text).into_iter().filter(|block| block.language == language) {
             let lines = code_lines(block.lines.iter().map(|(_, line)| *line));
             assert!(!lines.is_empty());
             let is_there = compiled.iter().any(|file| file.windows(lines.len()).any(|window| window == lines));
@@ -200,5 +199,18 @@ fn rust_snippets_stand_in_what_is_compiled() {
             snippets += 1;
         }
     }
-    assert!(snippets >= 6, "{snippets}");
+    snippets
+}
+
+#[test]
+fn rust_snippets_stand_in_what_is_compiled() {
+    let snippets = compiled_snippets("rust", &["crates", "examples"], &["rs"]);
+    assert!(snippets >= 8, "{snippets}");
+}
+
+/// Shaders of the examples, which stand in files of their own or in strings.
+#[test]
+fn wgsl_snippets_stand_in_a_shader_that_runs() {
+    let snippets = compiled_snippets("wgsl", &["examples"], &["wgsl", "rs"]);
+    assert!(snippets >= 2, "{snippets}");
 }

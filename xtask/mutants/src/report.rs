@@ -12,7 +12,7 @@ use crate::sources::Sources;
 /// What follows this line of the page is of other programs, and kept.
 const REST: &str = "## Rust";
 
-/// Why no test can tell a mutant from what it was made of; `reasons.toml`.
+/// Reasons why no test can detect a mutant: `reasons.toml`.
 #[derive(Debug, Deserialize)]
 struct Reasons {
     #[serde(default)]
@@ -115,15 +115,14 @@ fn head(run: &Run<'_>) -> String {
     let sources: std::collections::BTreeSet<_> = run.judged.iter().map(|(mutant, _)| &mutant.file).collect();
     format!(
         "\
-# Mutants
+# Mutation tests
 
-Which changes to a shader no test notices: `{command}` at commit {commit}. One operator, comparison or number of a source is
-changed at a time, by a seed's choice over all sources, the shaders that import it are linked anew, and tests of library and
-laboratory that use one of them are run until one fails, the most promising first, or for {seconds} s; what survives has passed
-those alone. `CONTRIBUTING.md` says how to run it.
+How well the tests detect faults in shaders. `{command}` at commit {commit} changed one operator, comparison or number of a shader at a
+time, chosen by seed over all sources, linked the shaders that import it, and ran the tests of library and laboratory that use one of them:
+the most promising first, until one failed or {seconds} s had passed. A survivor has passed only those tests. CONTRIBUTING.md says how to run it.
 
-**{killed} of {made} killed, {percent:.1} %**; {hung} of them ran on and were ended. They are from {files} of the {all} sources.
-{invalid} more changes did not compile or changed no shader, and are not counted.
+**{killed} of {made} killed, {percent:.1} %**, {hung} of them by a time limit. They are from {files} of the {all} sources. {invalid} further changes did not
+compile or changed no shader, and are not counted.
 
 ",
         command = run.command,
@@ -151,12 +150,12 @@ fn table_of_named(page: &mut String, run: &Run<'_>) {
 
 fn table_of_survivors(page: &mut String, run: &Run<'_>, reasons: &Reasons) {
     page.push_str(
-        "\n## Survivors\n\n| source | line | change | tests asked | why none can tell |\n|---|---|---|---|---|\n",
+        "\n## Survivors\n\n| source | line | change | tests run | why no test can detect it |\n|---|---|---|---|---|\n",
     );
     let mut survivors: Vec<_> = run.judged.iter().filter(|(_, fate)| !is_killed(fate)).collect();
     survivors.sort();
     for (mutant, fate) in survivors {
-        let why = reasons.of(mutant).unwrap_or("to be found");
+        let why = reasons.of(mutant).unwrap_or("not yet explained");
         let line = mutant.line_in(&run.sources.texts[&mutant.file]).map_or("gone".to_owned(), |line| line.to_string());
         let code = |text: &str| format!("`{}`", text.replace('|', "\\|"));
         let (from, to, text) = (code(&mutant.from), code(&mutant.to), code(&mutant.text));

@@ -13,7 +13,7 @@ const MOST_WASM_BYTES: u64 = 8_000_000;
 /// The page's own files, from `crates/antumbra-web/page`.
 const PAGE: [&str; 4] = ["index.html", "style.css", "page.js", "check.js"];
 /// Pictures for those without WebGPU, from `docs/figures`.
-const FIGURES: [&str; 3] = ["hero.png", "viewer_compare.png", "viewer_error.png"];
+const FIGURES: [&str; 3] = ["hero_smrt.png", "viewer_compare.png", "viewer_error.png"];
 
 /// What was built.
 pub struct Built {

@@ -110,8 +110,9 @@ fn print(advice: &Advice) {
         if advice.views.len() > 1 { format!(" for {}", advice.views[best.heaviest_view]) } else { String::new() };
     say!("  (its time is a {}{of_view})", best.counted());
     advice.reasons.iter().for_each(|reason| say!("  - {reason}"));
-    let mut rows =
-        vec![["NEXT BEST", "RMSE", "ROUGHNESS", "MS", "MEDIAN OF", "OF BUDGET", "MIB"].map(str::to_owned).to_vec()];
+    let mut rows = vec![
+        ["NEXT BEST", "RMSE", "ROUGHNESS", "MS", "TIMED FRAMES", "MS / BUDGET", "MIB"].map(str::to_owned).to_vec(),
+    ];
     if advice.prefer == Prefer::Motion {
         rows[0].push("FLICKER".into());
     }
@@ -136,19 +137,18 @@ fn print(advice: &Advice) {
     }
     match &advice.next_step {
         Some(step) => say!(
-            "\nA step up: {} errs by {:.4}, {:.0} % less, for {:.2} ms, {:.2} times the budget.",
+            "\nA step up: {} has an error of {:.4}, {:.0} % less, for {:.2} ms, {:.2} times the budget.",
             step.name,
             step.rmse,
             100.0 * (1.0 - step.rmse / best.rmse),
             step.worst_ms(),
             step.load
         ),
-        None => say!("\nNothing dearer that was measured errs clearly less."),
+        None => say!("\nNo slower setting that was measured has clearly less error."),
     }
     let spent = &advice.spent;
-    let left_out =
-        if spent.left_out > 0 { format!(", {} left out as too dear", spent.left_out) } else { String::new() };
-    say!("Measured: {} configurations, {:.1} s of techniques at work{left_out}.", spent.measurements, spent.seconds);
+    let left_out = if spent.left_out > 0 { format!(", {} skipped as too slow", spent.left_out) } else { String::new() };
+    say!("Measured: {} configurations in {:.1} s{left_out}.", spent.measurements, spent.seconds);
 }
 
 fn mib(one: &Candidate) -> f64 {

@@ -102,9 +102,9 @@ fn as_json(adapter: &AdapterReport, frames: Frames, rows: &[BenchRow]) -> Value 
 }
 
 fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
-    let times = "milliseconds, medians of so many frames after so many that warm up";
-    say!("Adapter: {} ({}); {times}\n", adapter.name, adapter.backend);
-    let heading = ["SCENE", "SIZE", "TECHNIQUE", "MS", "CPU MS", "FRAMES", "AFTER", "MIB", "PASSES"];
+    say!("Adapter: {} ({})\n", adapter.name, adapter.backend);
+    let heading =
+        ["SCENE", "SIZE", "TECHNIQUE", "MEDIAN MS", "MEDIAN CPU MS", "TIMED FRAMES", "WARM-UP FRAMES", "MIB", "PASSES"];
     let mut cells = vec![heading.map(str::to_owned).to_vec()];
     cells.extend(rows.iter().map(|row| {
         let size = format!("{}x{}", row.size[0], row.size[1]);

@@ -147,7 +147,7 @@ fn print(report: &Report) {
     let info = &report.reference.info;
     let rate = info.rays_per_second().map_or_else(String::new, |rate| format!(", {:.1} M rays/s", rate * 1e-6));
     say!(
-        "\n{}: {} triangles; truth: {} light points a pixel, {:.1} s{rate}; {}\n",
+        "\n{}: {} triangles; ground truth: {} light samples per pixel, {:.1} s{rate}; {}\n",
         report.scene.name,
         report.scene.triangles,
         info.samples,
@@ -161,16 +161,16 @@ fn print(report: &Report) {
     let heading = [
         "TECHNIQUE",
         "RMSE",
-        "PENUMBRA",
+        "PENUMBRA RMSE",
         "UMBRA LEAK",
         "LIT LOSS",
         "ROUGHNESS",
         "WORST TILE",
         "SSIM",
         "FLIP",
-        "MS",
-        "FRAMES",
-        "AFTER",
+        "MEDIAN MS",
+        "TIMED FRAMES",
+        "WARM-UP FRAMES",
         "MIB",
     ];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
@@ -197,7 +197,6 @@ fn print(report: &Report) {
         std::iter::once(name).chain(figures).collect()
     }));
     table::print(&rows);
-    say!("\nMS are medians of so many frames, after so many that warm up.");
     if let Some(info) = &report.motion {
         print_motion(report, info);
     }

@@ -27,7 +27,7 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
     say!("\nFeatures beyond WebGPU's core that the library or the laboratory uses:");
     let has = |feature| if adapter.features.contains(feature) { "yes" } else { "no" };
     let features = [
-        (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without, of whole frames"),
+        (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without it, of whole frames"),
         (wgpu::Features::DEPTH_CLIP_CONTROL, "depth clip control", "casters nearer than a light map's near plane"),
         (
             wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES,
@@ -40,16 +40,16 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
             "reprojection's path=fragment_two_pass leaves out hidden fragments, alias_free's stencil empty lists",
         ),
     ];
-    let mut rows: Vec<Vec<String>> = vec![["FEATURE", "HERE", "WHAT FOR"].map(str::to_owned).to_vec()];
+    let mut rows: Vec<Vec<String>> = vec![["FEATURE", "AVAILABLE", "USED FOR"].map(str::to_owned).to_vec()];
     rows.extend(features.map(|(feature, name, use_)| vec![name.into(), has(feature).into(), use_.into()]));
     table::print(&rows);
 
     let needed = wgpu::Limits::default();
     let had = &adapter.limits;
-    say!("\nLimits (WebGPU's least is what every technique keeps to):");
+    say!("\nLimits (every technique stays within WebGPU's guaranteed minimum):");
     let limit = |name: &str, had: u64, least: u64| vec![name.to_owned(), had.to_string(), least.to_string()];
     table::print(&[
-        ["LIMIT", "HERE", "WEBGPU'S LEAST"].map(str::to_owned).to_vec(),
+        ["LIMIT", "THIS ADAPTER", "WEBGPU MINIMUM"].map(str::to_owned).to_vec(),
         limit("side of a texture, texels", had.max_texture_dimension_2d.into(), needed.max_texture_dimension_2d.into()),
         limit("layers of a texture", had.max_texture_array_layers.into(), needed.max_texture_array_layers.into()),
         limit("size of a buffer, bytes", had.max_buffer_size, needed.max_buffer_size),

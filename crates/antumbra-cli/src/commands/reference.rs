@@ -38,7 +38,7 @@ pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
     let picture = match lab {
         Some(lab) => View::new(&lab, &scene, &setup, args.view.size)?.shade(&visibilities)?.to_srgb8(),
         None => {
-            bars.note(&format!("the picture shows visibility, not shading: {}", DeviceError::NoAdapter));
+            bars.note(&format!("the image shows visibility, not shading: {}", DeviceError::NoAdapter));
             visibilities[chosen.unwrap_or(0)].to_gray_levels()
         }
     };

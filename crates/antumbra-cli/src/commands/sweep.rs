@@ -80,7 +80,7 @@ fn run(args: &SweepRunArgs, bars: &Bars) -> Result<(), Failure> {
     Plan::read(&args.dir)?;
     let lab = open_device(&args.adapter)?;
     let done = run_shard(&lab, &args.dir, args.shard, COMMIT, bars)?;
-    say!("shard {}: {} jobs run, {} had results", args.shard, done.ran, done.had);
+    say!("shard {}: {} jobs run, {} already had results", args.shard, done.ran, done.had);
     Ok(())
 }
 

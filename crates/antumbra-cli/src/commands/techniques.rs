@@ -19,7 +19,7 @@ pub fn techniques(args: &TechniquesArgs) -> Result<(), Failure> {
                 [facts.name, facts.good_for, facts.fails_where].map(plain).to_vec()
             }));
             table::print(&rows);
-            say!("\n`antumbra techniques NAME` has a technique's source, parameters and qualities.");
+            say!("\n`antumbra techniques NAME` shows a technique's source, parameters and qualities.");
         }
     }
     Ok(())
@@ -29,7 +29,7 @@ fn print_one(kind: TechniqueKind) {
     let facts = kind.facts();
     say!("{kind}: {}\n{}\n", facts.title, facts.source);
     say!("  penumbra     {}", plain(facts.penumbra));
-    say!("  light maps   {}", plain(facts.light_maps));
+    say!("  shadow maps  {}", plain(facts.light_maps));
     say!("  good for     {}", plain(facts.good_for));
     say!("  fails where  {}", plain(facts.fails_where));
     say!("  worst on     builtin:{}: {}\n", facts.worst_scene, plain(facts.worst_case));
@@ -39,7 +39,7 @@ fn print_one(kind: TechniqueKind) {
         say!("      {}{unit}; default {}", spec.expected(), spec.default);
         say!("      {}", spec.more);
     }
-    say!("\nQualities, as in {kind}:{}:", Quality::Fast);
+    say!("\nQualities, for example {kind}:{}:", Quality::Fast);
     for quality in Quality::LADDER {
         let set: Vec<_> =
             kind.quality_settings(quality).iter().map(|(key, value)| format!("{key} = {value}")).collect();
@@ -57,7 +57,7 @@ fn print_one(kind: TechniqueKind) {
 /// Where it departs from its paper, and what turns that off.
 fn print_printed(kind: TechniqueKind) {
     let Some(printed) = kind.printed() else { return };
-    say!("\nAs printed, as in {kind}:{}; what ours does in the paper's place:", Quality::Paper);
+    say!("\nAs published: {kind}:{}. What ours does instead:", Quality::Paper);
     let set = kind.quality_settings(Quality::Paper);
     for departure in printed.departures {
         let value = set.iter().find(|(key, _)| *key == departure.key).map(|(_, value)| value.to_string());
@@ -65,7 +65,7 @@ fn print_printed(kind: TechniqueKind) {
         say!("      {}", departure.ours);
     }
     if !printed.kept.is_empty() {
-        say!("\nWhere it departs and no parameter turns that off:");
+        say!("\nDepartures that no parameter turns off:");
         printed.kept.iter().for_each(|text| say!("  {text}"));
     }
 }

@@ -33,21 +33,31 @@ impl Place {
         })
     }
 
+    /// The mask of a technique by default parameters.
+    fn mask_by(&self, technique: &str) -> Vec<f32> {
+        let mut shadow = kind_of(technique).create(&self.device.gpu).expect("any device");
+        mask_of(self.device, &mut shadow, &self.light, self.casters.all(), self.picture.receivers())
+    }
+
     /// Holds techniques by default parameters to the most that each may err.
     fn holds(&self, what: &str, bounds: &[(&str, f64)]) {
-        let errors: Vec<f64> = bounds
-            .iter()
-            .map(|(name, _)| {
-                let mut shadow = kind_of(name).create(&self.device.gpu).expect("any device");
-                let mask = mask_of(self.device, &mut shadow, &self.light, self.casters.all(), self.picture.receivers());
-                rmse(&mask, &self.truth)
-            })
-            .collect();
+        let errors: Vec<f64> = bounds.iter().map(|(name, _)| rmse(&self.mask_by(name), &self.truth)).collect();
         println!("{what}: {:?}", bounds.iter().map(|(name, _)| *name).zip(&errors).collect::<Vec<_>>());
         for ((name, most), error) in bounds.iter().zip(errors) {
             assert!(error <= *most, "{what}, {name}: {error}, and may be {most}");
         }
     }
+}
+
+/// How dark a mask is on average where all of the light is seen.
+fn lit_loss(mask: &[f32], truth: &Truth) -> f64 {
+    let lit: Vec<f64> = mask
+        .iter()
+        .zip(truth)
+        .filter(|(_, right)| right.is_some_and(|right| right == 1.0))
+        .map(|(had, _)| 1.0 - f64::from(*had))
+        .collect();
+    lit.iter().sum::<f64>() / lit.len().max(1) as f64
 }
 
 /// The base scene with more in it.
@@ -132,6 +142,22 @@ fn walls_beside_bulbs_are_lit() {
     let scene = base_with([Mesh::cuboid(Vec3::new(-6.0, 0.0, -2.2), Vec3::new(6.0, 4.0, -2.0))]);
     let Some(place) = Place::new(&scene, &Camera::base(), sphere(0.01, Vec3::new(0.0, 2.4, -1.98))) else { return };
     place.holds("a bulb before a wall", &[("hard", 0.1), ("pcss", 0.1), ("sample_based", 0.02), ("multi_view", 0.02)]);
+}
+
+/// A tall wall in the light: from the light's middle its feet lie before its top, where segments to the light's near side pass.
+#[test]
+fn tall_walls_do_not_darken_what_they_face() {
+    let scene = base_with([Mesh::cuboid(Vec3::new(-6.0, 0.0, -1.8), Vec3::new(6.0, 6.0, -1.6))]);
+    let light = Light::new(
+        LightShape::Rectangle { size_m: Vec2::splat(4.0) },
+        Vec3::new(0.0, 9.0, 1.0),
+        Vec3::new(0.0, 0.0, 1.0),
+    );
+    let camera = Camera { eye: Vec3::new(1.5, 1.4, 2.2), target: Vec3::new(-0.5, 0.2, -1.6), ..Camera::base() };
+    let Some(place) = Place::new(&scene, &camera, light) else { return };
+    let lost = lit_loss(&place.mask_by("smrt"), &place.truth);
+    println!("a tall wall: {lost} of what is lit is dark");
+    assert!(lost <= 0.0003, "a tall wall: {lost} of what is lit is dark");
 }
 
 /// A room of walls of five millimetres around the receivers, and the lamp outside.

@@ -106,49 +106,56 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let layered = |several: f64| format!("two or more depths of occluders in {} of the penumbra", percent(several));
         match self {
-            Self::OverBudget => f.write_str("nothing that was measured keeps budget and limits; this comes nearest"),
-            Self::PointsForDepths { several } => {
-                write!(f, "{}: it asks the light's points one by one and assumes no mean depth", layered(*several))
+            Self::OverBudget => {
+                f.write_str("nothing that was measured keeps the budget and the limits; this comes nearest")
             }
-            Self::Points => f.write_str("the budget is enough to ask the light's points one by one"),
+            Self::PointsForDepths { several } => {
+                write!(f, "{}: it tests light samples one by one and needs no mean depth", layered(*several))
+            }
+            Self::Points => f.write_str("the budget is enough to test light samples one by one"),
             Self::SeveralDepths { several } => {
-                write!(f, "{}: one mean depth is not enough, and it keeps several", layered(*several))
+                write!(f, "{}: one mean depth is not enough, and it uses several", layered(*several))
             }
             Self::OneDepthIsEnough { one } => {
                 write!(f, "one depth of occluders in {} of the penumbra: a mean depth is enough", percent(*one))
             }
             Self::OneDepthMisses { several } => write!(
                 f,
-                "{}, which one mean depth misses; what does not miss it takes longer or errs more",
+                "{}, which one mean depth cannot represent; techniques that can take longer or have more error",
                 layered(*several)
             ),
             Self::OneWidthFits { median_px, p90_px } => write!(
                 f,
-                "penumbrae are alike, {median_px:.1} px wide and nine of ten below {p90_px:.1}: one width of blur does"
+                "penumbrae have similar widths (median {median_px:.1} px, 90th percentile {p90_px:.1}): one width of blur is enough"
             ),
             Self::OneWidthAnyway { median_px, p90_px } => write!(
                 f,
-                "penumbrae vary, {median_px:.1} px wide and one in ten beyond {p90_px:.1}, but what follows them takes longer or errs \
-                 more than one width of blur"
+                "penumbrae vary in width (median {median_px:.1} px, 90th percentile {p90_px:.1}), but techniques that follow them take \
+                 longer or have more error than one width of blur"
             ),
             Self::WidthsAreFollowed { median_px, p90_px } => write!(
                 f,
-                "penumbrae are {median_px:.1} px wide and one in ten beyond {p90_px:.1}: a blur of one width misses them"
+                "penumbrae vary in width (median {median_px:.1} px, 90th percentile {p90_px:.1}): a blur of one width does not fit"
             ),
-            Self::SharpFits { p90_px } => write!(f, "nine of ten penumbrae are below {p90_px:.1} px: sharp edges do"),
+            Self::SharpFits { p90_px } => {
+                write!(f, "90 % of penumbrae are narrower than {p90_px:.1} px: sharp edges are enough")
+            }
             Self::SharpAnyway { median_px, p90_px } => write!(
                 f,
-                "penumbrae are {median_px:.1} px wide and one in ten beyond {p90_px:.1}, and it draws sharp edges in their place: what \
-                 draws them takes longer or errs more"
+                "penumbrae are wide (median {median_px:.1} px, 90th percentile {p90_px:.1}), and it draws sharp edges: techniques that \
+                 draw them take longer or have more error"
             ),
             Self::Thin { share } => write!(
                 f,
-                "{} of what blocks is narrower than a texel of a map of {DEFAULT_MAP_TEXELS}: errors depend on the map's resolution",
+                "{} of the occluders are narrower than a texel of a {DEFAULT_MAP_TEXELS}² map: the error depends on the map's resolution",
                 percent(*share)
             ),
-            Self::Tinted { share } => write!(f, "{} of what blocks lets some light through", percent(*share)),
+            Self::Tinted { share } => write!(f, "{} of the occluders let some light through", percent(*share)),
             Self::NextBest { name, errs, best_errs } => {
-                write!(f, "{name}, the next technique within the budget, errs by {errs:.4} for {best_errs:.4}")
+                write!(
+                    f,
+                    "{name}, the next best technique within the budget, has an error of {errs:.4}, this one {best_errs:.4}"
+                )
             }
             Self::Pays { key, value, default, error, time } => {
                 let change = |ratio: f64, what: &str| {
@@ -160,12 +167,11 @@ impl fmt::Display for Reason {
                         .into_iter()
                         .flatten()
                         .collect();
-                write!(f, "{key} {value} rather than {default}: {}", changes.join(", "))
+                write!(f, "{key} {value} instead of {default}: {}", changes.join(", "))
             }
             Self::TooNoisyToTell { low_ms, high_ms } => write!(
                 f,
-                "whether it keeps the budget is too noisy to tell: its times run from {low_ms:.2} to {high_ms:.2} ms; time it on an idle \
-                 machine"
+                "times are too noisy to tell whether it keeps the budget: from {low_ms:.2} to {high_ms:.2} ms; measure on an idle machine"
             ),
         }
     }

@@ -66,8 +66,8 @@ fn summary_markdown(entries: &[IndexEntry]) -> String {
     let scenes: Vec<_> = entries.iter().map(|entry| entry.scene.as_str()).collect();
     let adapter = entries.first().map(|entry| entry.adapter.name.as_str()).unwrap_or_default();
     let mut text = format!(
-        "Geometric means over {}, on {adapter}; in **bold** what no other beats in both. Times are medians of at least so many frames, \
-         after at least so many that warm up.\n\n| technique | rmse | ms | frames | after |\n|---|---|---|---|---|\n",
+        "Geometric means over {}, on {adapter}; in **bold** what no other beats in both. Times are medians, with the least numbers of \
+         timed frames and of warm-up frames.\n\n| technique | rmse | median ms | timed frames | warm-up frames |\n|---|---|---|---|---|\n",
         scenes.join(", ")
     );
     let rows = over_all(entries, &technique_names(entries));

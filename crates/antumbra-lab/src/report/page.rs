@@ -229,7 +229,7 @@ fn table(report: &Report, rows: &[Measured]) -> String {
     let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"numbers-title\"><table \
      class=\"numbers\" id=\"table\"><thead><tr><th scope=\"col\" data-key=\"technique\">Technique</th>"
         .to_owned();
-    let meaning = "Time of a frame's shadows, milliseconds: the median of so many frames, after so many that warm up.";
+    let meaning = "Median time of one frame's shadows, in milliseconds, with the number of timed frames and of warm-up frames before them.";
     html += &head("total_ms", "ms", meaning, "lower is better");
     for info in &METRICS {
         html += &head(info.key, info.label, info.meaning, info.direction());

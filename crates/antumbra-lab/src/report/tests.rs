@@ -245,7 +245,10 @@ fn an_index_links_its_reports() {
     assert!(html.contains("href=\"disc/index.html\"") && html.contains("src=\"other/images/reference_shaded.png\""));
     assert!(html.contains("Error against time") && html.contains("class=\"scatter\""), "a front over all scenes");
     let summary = fs::read_to_string(dir.path().join("summary.md")).unwrap();
-    assert!(summary.contains("| technique | rmse | ms | frames | after |") && summary.contains("**`"), "{summary}");
+    assert!(
+        summary.contains("| technique | rmse | median ms | timed frames | warm-up frames |") && summary.contains("**`"),
+        "{summary}"
+    );
     assert!(
         summary.contains(" | 1.00 | 5 | 2 |") && html.contains("1.00 ms<br>median of 5 frames after 2"),
         "{summary}"

@@ -177,7 +177,7 @@ impl SceneFacts {
     pub fn lines(&self) -> Vec<String> {
         let p = &self.picture;
         let mut lines = vec![format!(
-            "picture: {} lit, {} penumbra, {} umbra, {} turned from the light, {} background",
+            "image: {} lit, {} penumbra, {} umbra, {} facing away from the light, {} background",
             percent(p.lit),
             percent(p.penumbra),
             percent(p.umbra),
@@ -188,7 +188,7 @@ impl SceneFacts {
             None => lines.push("penumbra: none".into()),
             Some(penumbra) => {
                 lines.push(format!(
-                    "penumbra: {} px wide (nine of ten below {}); one depth of occluders in {} of it, two in {}, more in {}",
+                    "penumbra: median width {} px, 90th percentile {} px; one depth of occluders in {} of it, two in {}, more in {}",
                     short(penumbra.width_px.median),
                     short(penumbra.width_px.p90),
                     percent(penumbra.one_depth),
@@ -196,7 +196,7 @@ impl SceneFacts {
                     percent(penumbra.more_depths)
                 ));
                 lines.push(format!(
-                    "what blocks there: {} narrower than a texel of a map of {DEFAULT_MAP_TEXELS}, {} masked, {} translucent",
+                    "its occluders: {} narrower than a texel of a {DEFAULT_MAP_TEXELS}² map, {} alpha-tested, {} translucent",
                     percent(penumbra.thin),
                     percent(penumbra.masked),
                     percent(penumbra.tinted)
@@ -205,10 +205,14 @@ impl SceneFacts {
         }
         if let (Some(diameter), Some(grazing)) = (self.light_diameter_deg, self.grazing) {
             let off_axis = self.off_axis_deg.map_or_else(String::new, |angle| {
-                format!(", {}° off its axis (nine of ten below {}°)", short(angle.median), short(angle.p90))
+                format!(
+                    ", receivers {}° off its axis (median; 90th percentile {}°)",
+                    short(angle.median),
+                    short(angle.p90)
+                )
             });
             lines.push(format!(
-                "light: {}° wide{off_axis}; it grazes {} of the receivers at less than {GRAZING_DEG}°",
+                "light: {}° wide{off_axis}; {} of the receivers at grazing angles below {GRAZING_DEG}°",
                 short(diameter.median),
                 percent(grazing)
             ));

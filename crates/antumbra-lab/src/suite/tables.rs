@@ -15,19 +15,19 @@ pub fn markdown(results: &Results) -> String {
     let plan = Plan::whole();
     let Done { jobs, of } = results.done(&plan);
     let clock = if results.is_of_software() {
-        " This adapter is a software renderer: its times say little about those of a GPU, which rasterises and filters textures in \
-         hardware and has more bandwidth for its arithmetic. Frames are timed by the processor's clock, passes by the driver's, \
-         which dates ends of passes when it gets to them: some come out as nothing, and their sum falls short of the frame."
+        " This adapter is a software renderer: its times say little about a GPU, which rasterises and filters textures in hardware and \
+         has more bandwidth for its arithmetic. Frames are timed by the CPU's clock, passes by the driver's. The driver reports \
+         some passes late or with no time, so their sum is less than the frame."
     } else {
         " Times are GPU timestamps."
     };
     let mut text = format!(
         "# Benchmarks\n\n\
          {adapter} ({driver}), commit {commit}, begun {begun}; {jobs} of {of} measurements.{clock}\n\n\
-         Every figure comes from `antumbra bench --suite FILE`, and this page is `antumbra bench --tables FILE`. Techniques are as they \
-         come, but for what a table says. Errors are root mean squares over the pixels that face the light's centre, against rays to \
-         {TRUTH_SAMPLES} stratified points of the light a pixel. Times are milliseconds, medians of {counts}: to be compared within \
-         one table. An empty cell was not measured, a dash is what the adapter cannot run. What else was measured, by commands of its own, is in `bench/measurements.md`.\n",
+         `antumbra bench --suite FILE` measures every figure, and `antumbra bench --tables FILE` prints this page. Techniques have their \
+         default settings unless a table says otherwise. Errors are root mean squares over pixels that face the light's centre, against \
+         {TRUTH_SAMPLES} stratified rays a pixel. Times are milliseconds, medians of {counts}; compare them within one table. An empty \
+         cell was not measured; a dash is what the adapter cannot run. `bench/measurements.md` has other measurements.\n",
         adapter = results.about("adapter"),
         driver = results.about("driver"),
         commit = results.about("commit"),
@@ -44,7 +44,7 @@ pub fn markdown(results: &Results) -> String {
     text
 }
 
-/// `5 frames (2 where one is long) after 3 to 6 that warm up`: of how many frames the times are medians, and after how many.
+/// `5 frames (2 for long ones) after 3 to 6 warm-up frames`: number of frames of which times are medians, and of frames before them.
 fn counts(results: &Results) -> String {
     let of = |key: &str| {
         let counts = results.rows().filter_map(|row| row["timings"][key].as_u64()).collect::<Vec<_>>();
@@ -53,9 +53,9 @@ fn counts(results: &Results) -> String {
     let (Some((fewest, most)), Some((least, greatest))) = (of("frames"), of("warm_up")) else {
         return format!("{} frames", TIMING.frames);
     };
-    let long = if fewest < most { format!(" ({fewest} where one is long)") } else { String::new() };
+    let long = if fewest < most { format!(" ({fewest} for long ones)") } else { String::new() };
     let warm_up = if least < greatest { format!("{least} to {greatest}") } else { least.to_string() };
-    format!("{most} frames{long} after {warm_up} that warm up")
+    format!("{most} frames{long} after {warm_up} warm-up frames")
 }
 
 /// A cell: the number that `value` finds in a result, with so many decimals.
@@ -143,7 +143,8 @@ fn growth(results: &Results) -> String {
     if table.is_empty() {
         return table;
     }
-    table + "\nTime grows with the exponent's power of what the column has more of, all else at its default.\n"
+    table
+        + "\nThe exponent is that of the column's quantity: 1 is proportional, 0.5 grows with the square root. Everything else is at its default.\n"
 }
 
 /// The passes of a result with their times.
@@ -281,7 +282,7 @@ mod tests {
         }
         assert!(!text.contains("Many views"), "nothing is known of these");
         assert!(text.contains("; 12 of "), "{text}");
-        let frames = "medians of 5 frames (2 where one is long) after 3 to 4 that warm up";
+        let frames = "medians of 5 frames (2 for long ones) after 3 to 4 warm-up frames";
         assert!(text.contains(frames), "{text}");
     }
 }

@@ -17,6 +17,9 @@ const HEADER_BYTES: usize = 12;
 const CHUNK_HEADER_BYTES: usize = 8;
 const CHUNK_JSON: u32 = u32::from_le_bytes(*b"JSON");
 const CHUNK_BIN: u32 = u32::from_le_bytes(*b"BIN\0");
+/// Remedy for files of other formats.
+const CONVERT: &str = "give a .glb or .gltf file of version 2.0; convert .obj, .fbx, .usd or .blend with Blender: File > Import, then \
+    File > Export > glTF 2.0";
 const UTF8_BYTE_ORDER_MARK: &[u8] = &[0xEF, 0xBB, 0xBF];
 
 /// Splits a file by its first bytes, whatever its name says.
@@ -27,11 +30,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>> {
     let json = bytes.strip_prefix(UTF8_BYTE_ORDER_MARK).unwrap_or(bytes);
     match json.iter().find(|b| !b.is_ascii_whitespace()) {
         Some(b'{' | b'[') => Ok(Container { json, bin: None }),
-        Some(_) => Err(Fault::new(
-            "byte 0",
-            "is not a glTF file: it begins with neither `glTF` nor `{`",
-            "give a .glb container or a .gltf text of version 2.0",
-        )),
+        Some(_) => Err(Fault::new("byte 0", "is not a glTF file: it begins with neither `glTF` nor `{`", CONVERT)),
         None => Err(Fault::new("byte 0", "the file is empty", "give a .glb container or a .gltf text of version 2.0")),
     }
 }

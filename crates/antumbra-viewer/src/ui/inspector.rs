@@ -50,7 +50,7 @@ fn rows(state: &State, inspected: &Inspected, truth: Option<f32>) -> Vec<(String
     }
     match truth {
         Some(truth) if truth >= 0.0 => row("truth", format!("{truth:.4} of the light")),
-        Some(_) => row("truth", "not judged: turned from the light".into()),
+        Some(_) => row("truth", "not judged: faces away from the light".into()),
         None => row("truth", "…".into()),
     }
     let color = surface.base_color;

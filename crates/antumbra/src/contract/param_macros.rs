@@ -19,13 +19,13 @@ macro_rules! params_in_full {
     };
     ($head:tt [$($done:tt)*] $rest:tt shared map_size, more $more:literal; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
-            /// Texels along a side of the light map.
+            /// Texels along a side of the shadow map.
             map_size: u32 = 1024, in 16..=8192, unit "texels", scale Log, more $more;
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared map_size of lists; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
-            /// Texels along a side of a light map with as many texels as there are lists of receivers; rounded up to a power of
+            /// Texels along a side of a shadow map with as many texels as there are lists of receivers; rounded up to a power of
             /// two. The lists take space by distance from the light too.
             map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
                 more "Shorter lists, which changes the time and never the shadow.";
@@ -33,16 +33,16 @@ macro_rules! params_in_full {
     };
     ($head:tt [$($done:tt)*] $rest:tt shared sub; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
-            /// Look up every other pixel in both directions, and interpolate.
+            /// Evaluation of every other pixel in both directions, with interpolation.
             sub: bool = false,
-                more "true takes down to a quarter of the lookups; shadows of things a pixel wide blur.";
+                more "true evaluates down to a quarter of the pixels; shadows of things a pixel wide blur.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared seed; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Seed of the sample points.
             seed: u32 = 1, in 0..=65535,
-                more "Another set of the same quality.";
+                more "Another set of samples of the same quality.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared bias_scale; $($body:tt)*) => {
@@ -54,9 +54,9 @@ macro_rules! params_in_full {
     };
     ($head:tt [$($done:tt)*] $rest:tt shared bias_scale of rays; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
-            /// Scale of the distance off their surface at which segments start where casters are not closed.
+            /// Scale of the ray offset on casters that are not closed.
             bias_scale: f32 = 1.0, in 0.0..=8.0,
-                more "Above 1 detaches contact shadows by thousandths of a pixel's width, below 1 risks acne on open meshes.";
+                more "Above 1 detaches contact shadows by thousandths of a pixel, below 1 risks acne on open meshes.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt

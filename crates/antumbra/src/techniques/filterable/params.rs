@@ -39,7 +39,7 @@ impl Multisampling {
 }
 
 param_choice! {
-    /// What turns the light map into visibility.
+    /// Source of visibility.
     pub enum ResolveBy {
         /// The technique: the filtered basis.
         Basis = "basis",
@@ -119,30 +119,30 @@ macro_rules! filterable_params {
             $(#[$outer])*
             pub struct $name {
                 shared map_size, more "Sharper edges and a narrower blur; memory and time grow with the square.";
-                /// Samples of each texel of the light map, averaged after encoding.
+                /// Number of samples per texel of the shadow map, averaged after encoding.
                 msaa: $crate::techniques::filterable::Multisampling =
                     $crate::techniques::filterable::Multisampling::One,
                     more "Smoother edges where the kernel is narrow; 2 and 8 need native features.";
-                /// The kernel of the blur.
+                /// Kernel of the blur.
                 filter: $crate::techniques::filterable::FilterKernel =
                     $crate::techniques::filterable::FilterKernel::Gaussian,
                     more "gaussian has no corners; box ends where its width says.";
                 /// Width of the kernel; a Gaussian has the standard deviation of the box of this width.
                 kernel_size: f32 = 7.0, in 1.0..=127.0, unit "texels", scale Log,
-                    more "Wider blur of every shadow edge alike; time of the blur grows in proportion.";
-                /// Whether the map has a mip chain, looked up trilinearly.
+                    more "Blurs every shadow edge more, whatever the light's size; blur time grows in proportion.";
+                /// Mip chain of the map, with trilinear lookups.
                 mips: bool = true,
                     more "Distant receivers are filtered over their pixel's footprint, for a third more memory.";
-                /// The most probes along a pixel's footprint; needs `mips`.
+                /// Maximum number of probes along a pixel's footprint; needs `mips`.
                 anisotropy: u32 = 16, in 1..=16,
                     more "Sharper shadows on surfaces seen at a grazing angle; 1 is trilinear alone.";
                 $($own)*
-                /// The direction in which depth is measured.
+                /// Direction in which depth is measured.
                 depth_axis: $crate::techniques::filterable::DepthAxis = $crate::techniques::filterable::DepthAxis::World,
                     more "world gives floors under a slanted light one depth each, and less light bleeds; light suits \
                           scenes that lie along no axis; distance is that of Lauritzen and McCool 2008, along each ray, and \
                           floors are curved by it.";
-                /// What turns the light map into visibility.
+                /// Source of visibility.
                 resolve: $crate::techniques::filterable::ResolveBy =
                     $crate::techniques::filterable::ResolveBy::Basis,
                     more "exact compares every texel under the kernel: the truth that the technique approximates.";

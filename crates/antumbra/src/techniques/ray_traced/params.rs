@@ -5,21 +5,21 @@ use crate::contract::params;
 params! {
     /// Parameters of [`RayTraced`](super::RayTraced).
     pub struct RayTracedParams {
-        /// Rays a pixel, to points of the light; a list of points is asked for each.
+        /// Number of rays per pixel; a light of points gets one ray to each point.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
-        /// How the rays' ends are spread over the light.
+        /// Distribution of the rays' ends over the light.
         sample_set: SampleSet = SampleSet::Sobol,
             more "sobol is the most even for powers of two, r2 and stratified for other numbers.";
-        /// Shift the points by a random offset at each pixel, but for those of a list and of a picture.
+        /// Random offset of the samples at each pixel, except for lights of points and emission textures.
         rotate: bool = true,
-            more "true shows noise where false shows bands.";
-        /// Picks the points.
+            more "true shows noise, false shows bands.";
+        /// Seed of the samples.
         seed: u32 = 1, in 0..=65535,
             more "Another set of the same quality.";
-        /// Scale of the distance off their surface at which rays start where casters are not closed.
+        /// Scale of the ray offset on casters that are not closed.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows by thousandths of a pixel's width, below 1 risks acne on open meshes.";
+            more "Above 1 detaches contact shadows by thousandths of a pixel, below 1 risks acne on open meshes.";
     }
     Fast { samples: 16, }
     High { samples: 256, }

@@ -77,20 +77,39 @@ fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
     return Open(true, share, shift, blocker_range_largest_g(plane, extent), per_g, texel_magnification, pixel_m, fan, light);
 }
 
+fn texel_at(fan: fan_Fan, offset: vec2f, g: f32, jitter: vec2f) -> vec2f {
+    return floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter - 0.5), g));
+}
+
+fn blocker_g_in_step(fan: fan_Fan, offset: vec2f, steps: bins_Steps, step: u32, along: f32, jitter: vec2f) -> f32 {
+    let begin_g = steps.begin_g + steps.width_g * f32(step);
+    let end_g = begin_g + steps.width_g;
+    let texel = texel_at(fan, offset, bins_g_in_step(fan.at, steps, step, along), jitter);
+    if !map_receiver_is_texel(texel) {
+        return map_receiver_NO_G;
+    }
+    let hit_g = fan_blocker_g_in(fan, texel, begin_g, end_g);
+    if hit_g == map_receiver_NO_G {
+        return map_receiver_NO_G;
+    }
+    let passed = texel_at(fan, offset, clamp(hit_g, max(begin_g, 0.0), end_g), jitter);
+    if all(abs(passed - texel) <= vec2f(1.0)) {
+        return hit_g;
+    }
+    if !map_receiver_is_texel(passed) {
+        return map_receiver_NO_G;
+    }
+    return fan_blocker_g_in(fan, passed, begin_g, end_g);
+}
+
 fn blocker_g(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> f32 {
     var along = jitter.z;
     for (var rest = steps.some; rest > 0u; rest &= rest - 1u) {
-        let step = countTrailingZeros(rest);
-        let begin_g = steps.begin_g + steps.width_g * f32(step);
-        let g = bins_g_in_step(fan.at, steps, step, along);
-        along = fract(along + GOLDEN);
-        let texel = floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter.xy - 0.5), g));
-        if map_receiver_is_texel(texel) {
-            let hit_g = fan_blocker_g_in(fan, texel, begin_g, begin_g + steps.width_g);
-            if hit_g < map_receiver_NO_G {
-                return hit_g;
-            }
+        let hit_g = blocker_g_in_step(fan, offset, steps, countTrailingZeros(rest), along, jitter.xy);
+        if hit_g < map_receiver_NO_G {
+            return hit_g;
         }
+        along = fract(along + GOLDEN);
     }
     return map_receiver_NO_G;
 }
@@ -939,8 +958,12 @@ struct bins_SearchTaps {
     scale_shift: f32
 }
 
+fn bins_texel_corner(lane: u32) -> vec2f {
+    return vec2f(f32(lane & 1u), f32((lane >> 3u) & 1u)) - 0.5;
+}
+
 fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, count: u32, bins: bins_Bins) {
-    let own = floor(receiver.center);
+    let own = floor(receiver.center + bins_texel_corner(search_taps.first));
     bins_mark_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
     for (var i = 0u; i < count; i++) {
         let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;

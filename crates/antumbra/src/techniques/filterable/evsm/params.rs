@@ -14,9 +14,9 @@ param_choice! {
 filterable_params! {
     /// Parameters of [`Evsm`](super::Evsm).
     pub struct EvsmParams {
-        /// Which warps there are.
+        /// Warps in use.
         components: EvsmComponents = EvsmComponents::Four,
-            more "four also holds on receivers that are not planar, for twice the memory.";
+            more "four also works on receivers that are not planar, for twice the memory.";
         /// Exponent c of the positive warp e^{cu}, u from −1 at the near plane to 1 at the far; 42 in float32 and 5.5 in
         /// float16 at the most.
         exponent: f32 = 5.0, in 0.5..=42.0, scale Log,
@@ -24,7 +24,7 @@ filterable_params! {
         /// Exponent of the negative warp −e^{−cu}, with the same bounds.
         exponent_negative: f32 = 10.0, in 0.5..=42.0, scale Log,
             more "Smoother shadows on near receivers, and less light bleeding where two occluders lie close.";
-        /// How the moments are stored.
+        /// Storage format of the moments.
         storage: FloatStorage = FloatStorage::Float32,
             more "float16 takes half of the memory and allows small exponents alone.";
     } => Paper {

@@ -24,10 +24,10 @@ param_choice! {
 filterable_params! {
     /// Parameters of [`Moment`](super::Moment).
     pub struct MomentParams {
-        /// Which distributions of depth are allowed for.
+        /// Depth distributions that are considered.
         problem: MomentProblem = MomentProblem::Hamburger,
             more "hausdorff knows that no depth lies outside of the light's range, for some arithmetic more.";
-        /// How the moments are stored.
+        /// Storage format of the moments.
         storage: FourMomentStorage = FourMomentStorage::Unorm16,
             more "float32 needs less bias against rounding, and so bleeds less, for twice the memory.";
     }

@@ -34,17 +34,17 @@ params! {
         /// Texels along a side of each view.
         view_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// Light points, and so views. A light that is a list of points has its own number.
+        /// Number of light samples, and of views. A light of points has one for each point.
         samples: u32 = 64, in 1..=1024, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
-        /// How the light points are spread.
+        /// Distribution of the light samples.
         sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge alike; poisson is the papers' and converges more slowly.";
-        /// Where the texels of each view lie.
+            more "stratified, r2 and sobol converge equally fast; poisson is as published and converges more slowly.";
+        /// Placement of each view's texels.
         window: MultiViewWindow = MultiViewWindow::Warped,
             more "warped resolves what is near the camera and averages what one view's texels miss; plain has texels of \
                   one size.";
-        /// How four texels are compared with a receiver.
+        /// Comparison of four texels with a receiver.
         compare: MultiViewCompare = MultiViewCompare::Triangles,
             more "triangles finds edges where they are, for 32 bytes a pixel and 48 and more a triangle; sharp finds them \
                   between the views, for 24 bytes a pixel; gather keeps nothing; hardware is the papers' form and \

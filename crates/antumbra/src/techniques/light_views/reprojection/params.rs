@@ -19,39 +19,39 @@ params! {
         /// Texels along a side of each view, twice those of a cube's face.
         view_size: u32 = 512, in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// Light points, and so views. A light that is a list of points has its own number.
+        /// Number of light samples, and of views. A light of points has one for each point.
         samples: u32 = 64, in 1..=1024, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
-        /// How the light points are spread.
+        /// Distribution of the light samples.
         sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge alike; poisson is the paper's and converges more slowly.";
-        /// The central map's side as a multiple of a view's.
+            more "stratified, r2 and sobol converge equally fast; poisson is as published and converges more slowly.";
+        /// Side of the central map, as a multiple of a view's.
         central_scale: u32 = 2, in 1..=4,
             more "Fills gaps that leak light, and widens occluders; time grows with the square.";
-        /// Keep the nearest of the fragments that meet in a texel; otherwise the last one stored stays.
+        /// Keeps the nearest fragment of a texel; otherwise the last one stored remains.
         synchronized: bool = true,
-            more "The same picture every time; without, scenes of high depth complexity flicker.";
-        /// Bring fragments of 2 × 2 texels that meet in a texel together, the nearest first, before it is stored. Not of
-        /// fragment_two_pass, which has them one by one.
+            more "true gives the same image every time; without it, scenes of high depth complexity flicker.";
+        /// Combines fragments of 2 × 2 texels that fall into one texel, nearest first, before storing. Not for
+        /// fragment_two_pass, which stores them one by one.
         bring_together: bool = true,
-            more "false is the paper's: twice the stores, and the same picture; unsynchronised, a coarser one.";
-        /// The shader stage that scatters.
+            more "false is as published: twice the stores and the same image; unsynchronised, a coarser one.";
+        /// Shader stage that scatters.
         path: ReprojectionPath = ReprojectionPath::Compute,
             more "compute and fragment differ in time alone; fragment_two_pass needs no central map but draws the \
                   casters again for each batch, and reprojects hidden fragments too.";
-        /// How the integer maps are compared with receivers.
+        /// Comparison of the integer maps with receivers.
         filter: ReprojectionFilter = ReprojectionFilter::Manual,
             more "manual and copy compare each texel with the receiver's plane; draw compares one depth, as the paper \
                   does, and detaches grazing contacts.";
-        /// Where the bias is added.
+        /// Place where the bias is added.
         bias: ReprojectionBias = ReprojectionBias::After,
-            more "before is the paper's counter-example: its surfaces shadow themselves.";
-        /// The central map's shape.
+            more "before is the paper's counter-example: surfaces shadow themselves.";
+        /// Shape of the central map.
         projection: ReprojectionProjection = ReprojectionProjection::Auto,
             more "cube sees all around a light inside a room, at five or six times the memory.";
-        /// Other light points every frame, the same points moved together.
+        /// Moves all light samples together in every frame.
         jitter: bool = false,
-            more "The frames' mean converges; a single frame is no better.";
+            more "The mean over frames converges; a single frame is no better.";
         shared seed;
         shared bias_scale;
     }

@@ -31,38 +31,38 @@ params! {
         /// Texels along a side of each view, twice those of a cube's face.
         view_size: u32 = 1024, in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// Light points, and so views. A light that is a list of points has its own number.
+        /// Number of light samples, and of views. A light of points has one for each point.
         samples: u32 = 64, in 1..=1024, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
-        /// How the light points are spread.
+        /// Distribution of the light samples.
         sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge alike; poisson is the paper's and converges more slowly.";
-        /// The central map's side as a multiple of a view's.
+            more "stratified, r2 and sobol converge equally fast; poisson is as published and converges more slowly.";
+        /// Side of the central map, as a multiple of a view's.
         central_scale: u32 = 2, in 1..=4,
-            more "Truer silhouettes; time grows with the square.";
-        /// Which fragments are reprojected.
+            more "More exact silhouettes; time grows with the square.";
+        /// Fragments that are reprojected.
         source: ReprojectionSource = ReprojectionSource::Layers,
-            more "all leaves no layer out.";
-        /// Nearest layers of the central view, where the source is layers.
+            more "all skips no layer.";
+        /// Number of nearest layers of the central view, if the source is layers.
         layers: u32 = 4, in 1..=8,
-            more "Fewer hidden surfaces are missing; a geometry pass each.";
-        /// Where a fragment is stored.
+            more "Fewer hidden surfaces are missing; each layer is a geometry pass.";
+        /// Texels in which a fragment is stored.
         splat: ReprojectionSplat = ReprojectionSplat::Surfel,
             more "surfel stores exact depths without gaps; near_centre needs a central_scale of 4; point widens \
                   occluders.";
-        /// The steepest surface that a surfel follows, depth a width.
+        /// Steepest surface that a surfel follows, depth per width.
         steepest: f32 = 16.0, in 0.0..=1000.0, scale Log,
             more "Fewer gaps on steep sides.";
-        /// How the integer maps are compared with receivers.
+        /// Comparison of the integer maps with receivers.
         filter: ReprojectionFilter = ReprojectionFilter::Manual,
             more "manual and copy compare each texel with the receiver's plane; draw compares one depth, as the paper \
                   does, and detaches grazing contacts.";
-        /// The central map's shape.
+        /// Shape of the central map.
         projection: ReprojectionProjection = ReprojectionProjection::Auto,
             more "cube sees all around a light inside a room, at five or six times the memory.";
-        /// Other light points every frame, the same points moved together.
+        /// Moves all light samples together in every frame.
         jitter: bool = false,
-            more "The frames' mean converges; a single frame is no better.";
+            more "The mean over frames converges; a single frame is no better.";
         shared seed;
         shared bias_scale;
     }

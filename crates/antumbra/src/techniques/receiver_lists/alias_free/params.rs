@@ -25,22 +25,22 @@ params! {
     /// Parameters of [`AliasFree`](super::AliasFree).
     pub struct AliasFreeParams {
         shared map_size of lists;
-        /// How triangles find the receivers that they may hide the light from.
+        /// Method by which triangles find the receivers that they may shadow.
         traversal: Traversal = Traversal::Chosen,
             more "raster is the paper's way: up to four times as fast where receivers are spread over one window, and without \
                   bound where many share a texel. chosen takes it where few do. The shadow is the same, bit for bit.";
-        /// What of the light's map a triangle is drawn over, where triangles are drawn.
+        /// Region of the light's map over which a triangle is drawn, where triangles are drawn.
         region: RegionHull = RegionHull::SixVertices,
             more "six_vertices is the paper's, smaller, and a texel wider at sharp corners; the shadow is the same, bit for bit.";
-        /// Which planes receivers are tested against, where triangles are drawn.
+        /// Planes that receivers are tested against, where triangles are drawn.
         planes: TestedPlanes = TestedPlanes::Receiver,
             more "triangle is the paper's: less to do for each receiver; edges move by the rounding of positions.";
-        /// Keep receivers' positions in the lists, where triangles are drawn; else they come from the depth buffer.
+        /// Stores receivers' positions in the lists, where triangles are drawn; otherwise they come from the depth buffer.
         stored_positions: bool = false,
-            more "Spares each test a look at the depth buffer, for 32 bytes a pixel; changes nothing else.";
-        /// Drop what is drawn over empty lists by a depth test before the fragment stage, on devices that have one.
+            more "Saves each test a read of the depth buffer, for 32 bytes per pixel; changes nothing else.";
+        /// Early depth test that discards fragments over empty lists, on devices that have one.
         stencil: bool = true,
-            more "Spares fragments that would end at once, for a pass over each window; changes nothing else.";
+            more "Saves fragments that would end at once, for a pass over each window; changes nothing else.";
         shared bias_scale of rays;
     }
     => Paper {

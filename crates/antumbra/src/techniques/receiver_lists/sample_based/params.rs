@@ -26,54 +26,54 @@ param_choice! {
 params! {
     /// Parameters of [`SampleBased`](super::SampleBased).
     pub struct SampleBasedParams {
-        /// Light points. A light that is a list of points has its own number.
+        /// Number of light samples. A light of points has one for each point.
         samples: u32 = 256, in 1..=1024, scale Log,
             more "Smoother penumbrae; eight times as many cost about twice as much.";
-        /// How the light points are spread.
+        /// Distribution of the light samples.
         sample_set: SampleSet = SampleSet::Relaxed,
-            more "relaxed and stratified err least; r2 and sobol a tenth more, poisson more slowly.";
+            more "relaxed and stratified have the least error; r2 and sobol a tenth more; poisson converges more slowly.";
         shared seed;
-        /// How the light points behind a plane are found.
+        /// Method that finds the light samples behind a plane.
         evaluation: SampleEvaluation = SampleEvaluation::Exact,
             more "exact gives the ray tracer's bits; lookup is the paper's, and off by the table's cells.";
         /// Cells along each axis of the lookup table.
         lookup_size: u32 = 128, in 16..=256, unit "cells", scale Log,
             more "Finer planes; memory grows with the cube, 32 MiB at 128 for each 128 light points.";
         shared map_size of lists;
-        /// How triangles find the receivers that they may hide the light from.
+        /// Method by which triangles find the receivers that they may shadow.
         traversal: Traversal = Traversal::Groups,
             more "raster is the paper's way; the shadow is the same, bit for bit.";
-        /// What of the light's map a triangle is drawn over, where triangles are drawn.
+        /// Region of the light's map over which a triangle is drawn, where triangles are drawn.
         region: RegionOfInfluence = RegionOfInfluence::Boxes,
             more "hexagons is the paper's: an ellipsoid about the light, a pass over the triangles; the shadow is the same, bit for bit.";
-        /// Keep receivers' positions in the lists, where triangles are drawn; else they come from the depth buffer.
+        /// Stores receivers' positions in the lists, where triangles are drawn; otherwise they come from the depth buffer.
         stored_positions: bool = false,
-            more "Spares each test a look at the depth buffer, for 32 bytes a pixel; changes nothing else.";
-        /// Drop what is drawn over empty lists by a depth test before the fragment stage, on devices that have one.
+            more "Saves each test a read of the depth buffer, for 32 bytes per pixel; changes nothing else.";
+        /// Early depth test that discards fragments over empty lists, on devices that have one.
         stencil: bool = false,
-            more "Spares fragments that would end at once, for a pass over each window; changes nothing else.";
-        /// Stop where every light point of every receiver of a group is hidden.
+            more "Saves fragments that would end at once, for a pass over each window; changes nothing else.";
+        /// Stops when every light sample of every receiver of a group is hidden.
         stop_when_occluded: bool = true,
             more "Saves time in the umbra, changes nothing else.";
-        /// Test one light point alone where no silhouette lies between the receivers and the light.
+        /// Tests a single light sample where no silhouette lies between the receivers and the light.
         penumbra_only: bool = false,
-            more "Saves tests in wide umbrae and costs a look for silhouettes everywhere, changes nothing else.";
+            more "Saves tests in wide umbrae and costs a silhouette test everywhere; changes nothing else.";
         /// Leave out triangles whose plane has receivers and light on one side; drawn ones over that side of their plane.
         cut_by_plane: bool = true,
             more "Saves time near large triangles, changes nothing else.";
-        /// Leave out triangles of closed meshes that show their front to all of the light.
+        /// Skips triangles of closed meshes that face all of the light.
         cull_facing: bool = true,
             more "Saves up to half of the triangles, changes nothing else.";
-        /// Turn the light points about the light's axis by another angle at each pixel, where the light's shape allows.
+        /// Random rotation of the light samples at each pixel, where the light's shape allows.
         rotate: bool = false,
-            more "Noise in place of bands, for few samples.";
-        /// Take other light points in each frame, and give the mean of the frames since something last moved.
+            more "Shows noise instead of bands with few samples.";
+        /// Different light samples in each frame, averaged over the frames since something last moved.
         accumulate: bool = false,
             more "Noise and bands fade while nothing moves; costs a pass over pixels and casters, and 12 bytes a pixel.";
-        /// Keep every pixel's bits for the host to read.
+        /// Keeps every pixel's bits for the host to read.
         keep_bits: bool = false,
             more "Costs a bit of memory for each pixel and light point.";
-        /// Count what is tested, for the host to read.
+        /// Counts tests, for the host to read.
         count_tests: bool = false,
             more "Costs a little time.";
         shared bias_scale of rays;

@@ -16,21 +16,21 @@ params! {
     /// Parameters of [`Pcf`](super::Pcf).
     pub struct PcfParams {
         shared map_size, more "Finer edges and a narrower blur; memory and fill grow with the square.";
-        /// Which taps the kernel has.
+        /// Samples of the kernel.
         kernel: PcfKernel = PcfKernel::Box,
             more "box is exact and costs its area; poisson and vogel cost their samples, whatever the width.";
         /// Width of the kernel.
         kernel_size: f32 = 3.0, in 1.0..=127.0, unit "texels", scale Log,
-            more "Wider blur of every shadow edge alike.";
-        /// Taps of the poisson and vogel kernels.
+            more "Blurs every shadow edge more, whatever the light's size.";
+        /// Number of samples of the poisson and vogel kernels.
         samples: u32 = 32, in 1..=1024, scale Log,
             more "Less banding or noise; time grows in proportion.";
-        /// Turn the poisson and vogel kernels by a random angle at each pixel.
+        /// Rotation of the poisson and vogel kernels by a random angle at each pixel.
         rotate: bool = true,
-            more "true shows noise where false shows bands.";
-        /// Narrow the kernel where the blocker is near the receiver.
+            more "true shows noise, false shows bands.";
+        /// Narrower kernel where the blocker is near the receiver.
         attach_contacts: bool = true,
-            more "false blurs contacts as wide as every other edge, as printed.";
+            more "false blurs contacts as much as every other edge, as published.";
         shared seed;
         shared bias_scale;
     }

@@ -26,31 +26,30 @@ params! {
     /// Parameters of [`Pcss`](super::Pcss).
     pub struct PcssParams {
         shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// Taps of the filter.
+        /// Number of samples of the filter.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
-        /// Taps of the blocker search.
+        /// Number of samples of the blocker search.
         search_samples: u32 = 64, in 1..=4096, scale Log,
             more "Fewer thin occluders missed; time grows in proportion.";
-        /// How the taps are spread over the light.
+        /// Distribution of the samples over the light.
         sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge alike; poisson is more even to the eye and slower to converge.";
-        /// What each texel is compared with.
+            more "stratified, r2 and sobol converge equally fast; poisson looks more even and converges more slowly.";
+        /// Depth that each texel is compared with.
         compare: PcssCompare = PcssCompare::Plane,
-            more "flat is the sketch's: tilted receivers shadow themselves, unless `bias_scale` rises and contacts detach.";
-        /// Look again at the nearest blocker's own scale where it is much nearer than the mean; with `plane` alone.
+            more "flat is as published: tilted receivers shadow themselves, unless `bias_scale` is larger and contacts detach.";
+        /// Second search at the scale of the nearest blocker, where it is much nearer than the mean; only with `plane`.
         attach_contacts: bool = true,
-            more "false takes one layer and one mean depth for all blockers, as the sketch does, and leaks at contacts.";
-        /// Layers of casters that are searched, each the nearest of what lies behind the one before; with `attach_contacts`
-        /// and a map of our own.
+            more "false takes one layer and one mean depth of all blockers, as published, and leaks at contacts.";
+        /// Number of peeled layers of casters to search; needs `attach_contacts`, and one with a host's map.
         layers: u32 = 3, in 1..=4,
-            more "Light leaks less under stacked occluders; each is one more pass over the casters and one more map.";
-        /// What a mean depth is taken of; with `attach_contacts`.
+            more "Less light leaks below stacked occluders; each layer is one more pass over the casters and one more map.";
+        /// Blockers that share a mean depth; needs `attach_contacts`.
         means: PcssMeans = PcssMeans::Layers,
-            more "ranges gives a near and a far occluder widths of their own, and reads every layer for each.";
-        /// Shift a rectangle's taps by a random offset at each pixel; turn those of other shapes by a random angle.
+            more "ranges gives a near and a far occluder separate widths, and reads every layer for each.";
+        /// Random offset of a rectangle's samples at each pixel, random rotation of other shapes'.
         rotate: bool = true,
-            more "true shows noise where false shows bands.";
+            more "true shows noise, false shows bands.";
         shared seed;
         shared sub;
         shared bias_scale;

@@ -18,21 +18,21 @@ params! {
     /// Parameters of [`PcssAnisotropic`](super::PcssAnisotropic).
     pub struct PcssAnisotropicParams {
         shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// Taps of the filter.
+        /// Number of samples of the filter.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae and distances; time grows in proportion.";
-        /// Taps of the blocker search.
+        /// Number of samples of the blocker search.
         search_samples: u32 = 64, in 1..=4096, scale Log,
             more "Fewer thin occluders missed; time grows in proportion.";
         /// The shape that is sampled.
         kernel: AnisotropicKernel = AnisotropicKernel::Light,
-            more "parallelogram is the paper's; light is truer for disks, ellipse softer at a rectangle's corners.";
-        /// How the taps are spread.
+            more "parallelogram is as published; light is more exact for disks, ellipse softer at a rectangle's corners.";
+        /// Distribution of the samples.
         sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge alike; poisson is more even to the eye and slower to converge.";
-        /// Shift the taps by a random offset at each pixel.
+            more "stratified, r2 and sobol converge equally fast; poisson looks more even and converges more slowly.";
+        /// Random offset of the samples at each pixel.
         rotate: bool = true,
-            more "true shows noise where false shows bands.";
+            more "true shows noise, false shows bands.";
         shared seed;
         shared sub;
         shared bias_scale;

@@ -36,7 +36,7 @@
 //!   two planes' own, which makes V a weighted mean of lit texels. Where weights would differ by more than e^±0.7 the map is
 //!   read. On ground that fills a tile they do not differ, however wide the part and however low the light: planes, and a
 //!   search whose narrow windows have fewer parts, are what keeps a pixel's reads within 21 % over eight times the light,
-//!   once kernels are 15 texels wide (`docs/limits.md`). Narrower kernels have fewer parts and take less.
+//!   once kernels are 15 texels wide (`docs/measurements.md`). Narrower kernels have fewer parts and take less.
 //! - Kernels whose parts would be up to `direct_texels` wide are read from the map: comparisons about a texel apart, eight a
 //!   side at the most, keep contacts. Those that the pixel's footprint alone has widened take fewer.
 //! - A row of a sheared parallelogram is a rectangle: there are so many rows that its ends lie within a fifth of its width.
