@@ -1,6 +1,7 @@
-//! What is made of declarations: tables of techniques, of their worst cases, and their names; of built-in scenes.
+//! What is made of declarations: tables of techniques, of their worst cases, of their departures from papers, and their names; of
+//! built-in scenes.
 
-use antumbra::TechniqueKind;
+use antumbra::{Quality, TechniqueKind};
 use antumbra_scene::builtin;
 
 /// Before what the text is made of.
@@ -29,11 +30,15 @@ fn part(what: &str) -> Result<String, String> {
             let kinds: Result<Vec<_>, _> = names.split(' ').map(kind).collect();
             Ok(techniques(&kinds?))
         }
+        Some(("departures", names)) => {
+            let kinds: Result<Vec<_>, _> = names.split(' ').map(kind).collect();
+            departures(&kinds?)
+        }
         _ if what == "worst cases" => Ok(worst_cases()),
         _ if what == "names" => Ok(names()),
         _ if what == "scenes" => Ok(scenes()),
         _ => Err(format!(
-            "nothing is made of `{what}`: there are `techniques NAME...`, `worst cases`, `names` and `scenes`"
+            "nothing is made of `{what}`: there are `techniques NAME...`, `departures NAME...`, `worst cases`, `names` and `scenes`"
         )),
     }
 }
@@ -68,6 +73,24 @@ fn worst_cases() -> String {
         )
     });
     format!("\n{}", sections.collect::<String>())
+}
+
+/// Each departure of techniques from their papers, with the switch that the preset `paper` sets; those without a switch last.
+fn departures(kinds: &[TechniqueKind]) -> Result<String, String> {
+    let mut text = "| technique | ours | switch of `:paper` |\n|---|---|---|\n".to_owned();
+    for kind in kinds {
+        let printed = kind.printed().ok_or_else(|| format!("`{kind}` has no preset `paper`"))?;
+        let set = kind.quality_settings(Quality::Paper);
+        for departure in printed.departures {
+            let value = set.iter().find(|(key, _)| *key == departure.key).map(|(_, value)| value.to_string());
+            let value = value.ok_or_else(|| format!("`{kind}:paper` leaves `{}` as it is", departure.key))?;
+            text += &format!("| `{kind}` | {} | `{}={value}` |\n", departure.ours, departure.key);
+        }
+        for kept in printed.kept {
+            text += &format!("| `{kind}` | {kept} | none: it stays |\n");
+        }
+    }
+    Ok(text)
 }
 
 /// The built-in scenes, with what their names may be followed by.

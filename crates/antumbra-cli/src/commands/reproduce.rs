@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use antumbra_lab::progress::Progress;
 use antumbra_lab::report::{AdapterInfo, ReproductionInfo, utc_now, write_reproduction};
 use antumbra_lab::reproduce::{
-    Exhibit, ExhibitResult, Measure, PAPERS, Paper, REPRODUCED_NAME, Readiness, Reported, RunOptions, SCENES_VARIABLE,
-    Session, VerdictCount, exhibits,
+    Exhibit, ExhibitResult, Form, Judged, Measure, PAPERS, Paper, REPRODUCED_NAME, Readiness, Reported, Ruling,
+    RunOptions, SCENES_HINT, SCENES_VARIABLE, Session, VerdictCount, exhibits,
 };
 use serde_json::{Value, json};
 
@@ -54,12 +54,12 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
         date: utc_now(),
         arguments: arguments(args, dir.as_deref()),
     };
-    let all: usize = chosen.iter().map(|(.., exhibit)| exhibit.rows.len()).sum();
+    let all: usize = chosen.iter().map(|(_, paper, exhibit)| exhibit.run_count(paper)).sum();
     let mut begun = 0;
     let mut results = Vec::new();
     for (_, paper, exhibit) in chosen {
         let result = session.run(paper, exhibit, bars, (begun, all))?;
-        begun += exhibit.rows.len();
+        begun += exhibit.run_count(paper);
         print(&result);
         if let Some(dir) = &dir {
             write_reproduction(dir, &session.results(), &info)?;
@@ -106,18 +106,28 @@ fn print(result: &ExhibitResult) {
     let mut lines = vec![["ROW", "TECHNIQUE", "PAPER", "HERE"].map(str::to_owned).to_vec()];
     lines.extend(rows.iter().map(|one| {
         let measure = &one.row.measure;
-        vec![one.row.what.into(), one.row.technique.into(), measure.paper_text(), one.outcome.text(measure)]
+        let name = format!("{}{}", one.row.technique, if one.form == Form::Ours { ", ours" } else { "" });
+        vec![one.row.what.into(), name, measure.paper_text(), one.outcome.text(measure)]
     }));
     table::print(&lines);
     for one in judged {
-        say!("\n  {}: {}\n  {}", one.verdict.name(), one.claim.says, one.sentence());
-        one.found.iter().for_each(|line| say!("    - {line}"));
+        let size = if one.sizes.is_empty() { String::new() } else { format!(" (at {})", one.sizes) };
+        say!("\n  {}{size}", one.claim.says);
+        for (form, ruling) in rulings(one) {
+            say!("  {form}: {}. {}", ruling.verdict.name(), ruling.sentence());
+            ruling.found.iter().for_each(|line| say!("    - {line}"));
+        }
     }
 }
 
+/// A claim over each of its forms.
+fn rulings(judged: &Judged) -> impl Iterator<Item = (Form, &Ruling)> {
+    std::iter::once((Form::Published, &judged.published)).chain(judged.ours.as_ref().map(|ours| (Form::Ours, ours)))
+}
+
 fn sum_up(results: &[ExhibitResult], ran: usize, all: usize, dir: Option<&Path>) {
-    let count = VerdictCount::of(results);
-    say!("\n{ran} of {all} rows run now: {count}");
+    let [published, ours] = [Form::Published, Form::Ours].map(|form| VerdictCount::of(results, form));
+    say!("\n{ran} of {all} rows run now\nas published: {published}\nours: {ours}");
     if let Some(dir) = dir {
         say!("{}", dir.join("index.html").display());
     }
@@ -142,7 +152,9 @@ fn list() {
         table::print(&rows);
         say!("");
     }
-    say!("`antumbra reproduce ID...` runs what can be run; scenes that are files lie where {SCENES_VARIABLE} says.");
+    say!(
+        "`antumbra reproduce ID...` runs what can be run; scenes that are files lie where {SCENES_VARIABLE} says: {SCENES_HINT}."
+    );
 }
 
 fn choose(args: &ReproduceArgs) -> Result<Vec<Named>, Failure> {
@@ -175,14 +187,20 @@ fn as_json(result: &ExhibitResult) -> Value {
     let rows = result.rows.iter().map(|one| {
         let row = one.row;
         json!({
-            "what": row.what, "scene": row.scene, "view": row.view, "technique": row.technique,
-            "settings": row.settings, "size": [row.size_px.0, row.size_px.1],
+            "what": row.what, "scene": row.scene, "view": row.view, "technique": row.technique, "form": one.form.name(),
+            "settings": row.settings_of(one.form).collect::<Vec<_>>(), "size": [row.size_px.0, row.size_px.1],
             "light_scale": row.light_scale, "frames_added_up": row.frames,
             "paper": reported(&row.measure), "here": one.outcome,
         })
     });
     let claims = result.judged.iter().map(|one| {
-        json!({ "says": one.claim.says, "verdict": one.verdict.name(), "sentence": one.sentence(), "by": one.found })
+        let ruled = |ruling: &Ruling| {
+            json!({ "verdict": ruling.verdict.name(), "sentence": ruling.sentence(), "by": ruling.found })
+        };
+        json!({
+            "says": one.claim.says, "sizes": one.sizes,
+            "as_published": ruled(&one.published), "ours": one.ours.as_ref().map(ruled),
+        })
     });
     json!({
         "id": result.name,

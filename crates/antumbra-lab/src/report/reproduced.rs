@@ -8,7 +8,8 @@ use super::page::{ICON, STYLE, software_notice};
 use crate::adapter_info::AdapterInfo;
 use crate::output_files::{FileError, write_atomically};
 use crate::reproduce::{
-    ExhibitResult, Judged, Measured, Outcome, Paper, RowResult, SCENES_VARIABLE, Verdict, VerdictCount,
+    ExhibitResult, Form, Judged, Measure, Measured, Outcome, Paper, RowResult, Ruling, SCENES_HINT, SCENES_VARIABLE,
+    Verdict, VerdictCount,
 };
 
 /// How it was reproduced.
@@ -68,34 +69,46 @@ fn foot(info: &ReproductionInfo) -> String {
 
 fn index_page(results: &Results<'_>, info: &ReproductionInfo) -> String {
     let mut html = head("The papers, held against this library", info);
-    html += "<p class=\"note\">Each paper's tables and figures beside ours, and for each of its claims a verdict \
-             by the rule that stands beside it.</p><ul>";
+    let _ = write!(
+        html,
+        "<p class=\"note\">Each paper's tables and figures beside ours, and for each of its claims a verdict by the rule that \
+         stands beside it: on the technique as published, and beside it what this library's own form gives. Scenes that are files \
+         lie where {SCENES_VARIABLE} says: {}.</p><ul>",
+        escape(SCENES_HINT)
+    );
     for (paper, exhibits) in results {
         let _ = write!(
             html,
             "<li><a href=\"{}.html\">{}</a><br>{}.</li>",
             paper.id,
             escape(paper.citation),
-            VerdictCount::of(exhibits)
+            counts(exhibits)
         );
     }
     html += "</ul><h2>Verdicts</h2><div class=\"scroll\"><table class=\"numbers \
-             verdicts\"><thead><tr><th>Exhibit</th><th>The paper says</th><th>Verdict</th></tr></thead><tbody>";
+             verdicts\"><thead><tr><th>Exhibit</th><th>The paper says</th><th>As published</th><th>Ours</th></tr></thead><tbody>";
     for exhibit in results.iter().flat_map(|(_, exhibits)| exhibits) {
         for judged in &exhibit.judged {
             let _ = write!(
                 html,
-                "<tr><th scope=\"row\"><a href=\"{}.html#{}\">{}</a></th><td>{}</td><td>{}</td></tr>",
+                "<tr><th scope=\"row\"><a href=\"{}.html#{}\">{}</a></th><td>{}</td><td>{}</td><td>{}</td></tr>",
                 exhibit.paper.id,
                 exhibit.exhibit.id,
                 escape(&exhibit.name),
                 escape(judged.claim.says),
-                badge(&judged.verdict)
+                badge(&judged.published.verdict),
+                judged.ours.as_ref().map_or_else(|| "–".to_owned(), |ours| badge(&ours.verdict))
             );
         }
     }
     html += "</tbody></table></div>";
     html + &foot(info)
+}
+
+/// `As published 3 claims hold, …; ours …`.
+fn counts(exhibits: &[ExhibitResult]) -> String {
+    let [published, ours] = [Form::Published, Form::Ours].map(|form| VerdictCount::of(exhibits, form));
+    format!("As published {published}; ours {ours}")
 }
 
 fn badge(verdict: &Verdict) -> String {
@@ -114,7 +127,7 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
         "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p><p class=\"note\">The paper's \
          pictures are in the paper and not copied here; ours stand beside what they are held against.</p>",
         escape(paper.citation),
-        VerdictCount::of(exhibits),
+        counts(exhibits),
         escape(&bandwidths(paper, info))
     );
     for exhibit in exhibits {
@@ -166,16 +179,38 @@ fn section(result: &ExhibitResult, info: &ReproductionInfo) -> String {
 fn claims(judged: &[Judged]) -> String {
     let mut html = String::new();
     for one in judged {
-        let found: String = one.found.iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
-        let _ = write!(
-            html,
-            "<div class=\"claim\"><p>{} The paper: {}<br>{}</p><ul class=\"notes\">{found}</ul></div>",
-            badge(&one.verdict),
-            escape(one.claim.says),
-            escape(&one.sentence())
-        );
+        let _ =
+            write!(html, "<div class=\"claim\"><p>The paper: {}{}</p>", escape(one.claim.says), escape(&at_size(one)));
+        for (form, ruling) in rulings(one) {
+            let found: String = ruling.found.iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
+            let _ = write!(
+                html,
+                "<p>{} {}: {}</p><ul class=\"notes\">{found}</ul>",
+                badge(&ruling.verdict),
+                capitalised(form),
+                escape(&ruling.sentence())
+            );
+        }
+        html += "</div>";
     }
     html
+}
+
+/// The claim over each of its forms.
+fn rulings(judged: &Judged) -> impl Iterator<Item = (Form, &Ruling)> {
+    std::iter::once((Form::Published, &judged.published)).chain(judged.ours.as_ref().map(|ours| (Form::Ours, ours)))
+}
+
+fn capitalised(form: Form) -> &'static str {
+    match form {
+        Form::Published => "As published",
+        Form::Ours => "Ours",
+    }
+}
+
+/// ` (at 256 × 144)`.
+fn at_size(judged: &Judged) -> String {
+    if judged.sizes.is_empty() { String::new() } else { format!(" (at {})", judged.sizes) }
 }
 
 fn table(result: &ExhibitResult, info: &ReproductionInfo) -> String {
@@ -183,12 +218,14 @@ fn table(result: &ExhibitResult, info: &ReproductionInfo) -> String {
         "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th>Row</th><th>Technique</th><th>Scene</th>\
                     <th>Picture</th><th>Paper</th><th>Here</th><th>Times the paper's time</th></tr></thead><tbody>"
             .to_owned();
-    for RowResult { row, outcome, .. } in &result.rows {
-        let settings: Vec<String> = row.settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
+    for RowResult { row, form, outcome, .. } in &result.rows {
+        let settings: Vec<String> = row.settings_of(*form).map(|(key, value)| format!("{key}={value}")).collect();
         let technique = if row.technique.is_empty() { "–" } else { row.technique };
+        let of_form =
+            if row.forms(result.paper).len() > 1 { format!("<br><small>{form}</small>") } else { String::new() };
         let _ = write!(
             html,
-            "<tr><th scope=\"row\">{}</th><td title=\"{}\">{}</td>",
+            "<tr><th scope=\"row\">{}</th><td title=\"{}\">{}{of_form}</td>",
             escape(row.what),
             escape(&settings.join(" ")),
             escape(technique)
@@ -235,6 +272,10 @@ fn here(measured: &Measured, row: &crate::reproduce::Row) -> String {
 /// Ours over the paper's, and the same with both bandwidths taken out.
 fn ratio(paper: &Paper, row: &crate::reproduce::Row, measured: &Measured, info: &ReproductionInfo) -> String {
     let (Some(there), Some(here)) = (row.measure.paper_ms(), measured.ms) else { return "–".to_owned() };
+    // A paper's seconds are of its graphics card: those of a processor say nothing beside them.
+    if info.adapter.is_software || matches!(row.measure, Measure::SceneMs { .. }) {
+        return "–".to_owned();
+    }
     let ratio = here / there;
     let with_bandwidths = info
         .bandwidth_gb_s
@@ -244,7 +285,7 @@ fn ratio(paper: &Paper, row: &crate::reproduce::Row, measured: &Measured, info: 
 
 fn pictures(rows: &[RowResult]) -> String {
     let mut html = String::new();
-    for RowResult { row, pictures, .. } in rows {
+    for RowResult { row, form, pictures, .. } in rows {
         let Some(files) = pictures else { continue };
         let shown = [
             files.reference.as_deref().map(|file| (file, "what it is held against")),
@@ -253,7 +294,7 @@ fn pictures(rows: &[RowResult]) -> String {
         ];
         html += "<div class=\"shots\">";
         for (file, what) in shown.into_iter().flatten() {
-            let (file, text) = (escape(file), escape(&format!("{}: {what}", row.what)));
+            let (file, text) = (escape(file), escape(&format!("{}, {form}: {what}", row.what)));
             let _ = write!(
                 html,
                 "<a class=\"shot\" href=\"{file}\"><img src=\"{file}\" alt=\"{text}\" \
@@ -268,19 +309,22 @@ fn pictures(rows: &[RowResult]) -> String {
 fn verdicts_markdown(results: &Results<'_>, info: &ReproductionInfo) -> String {
     let cell = |text: &str| text.replace('|', "\\|");
     let mut text = format!(
-        "On {}, at {}. Scenes that are files lie where `{SCENES_VARIABLE}` says.\n\n| exhibit | the paper says | \
-         verdict | by |\n|---|---|---|---|\n",
+        "On {}, at {}. Scenes that are files lie where `{SCENES_VARIABLE}` says: {SCENES_HINT}.\n\n| exhibit | the paper says | \
+         size | as published | by | ours | by |\n|---|---|---|---|---|---|---|\n",
         info.adapter.name, info.commit
     );
     for exhibit in results.iter().flat_map(|(_, exhibits)| exhibits) {
         for judged in &exhibit.judged {
             let _ = writeln!(
                 text,
-                "| {} | {} | {} | {} |",
+                "| {} | {} | {} | {} | {} | {} | {} |",
                 cell(&exhibit.name),
                 cell(judged.claim.says),
-                cell(&judged.sentence()),
-                cell(&judged.found.join("; "))
+                judged.sizes,
+                cell(&judged.published.sentence()),
+                cell(&judged.published.found.join("; ")),
+                cell(&judged.ours.as_ref().map_or_else(|| "–".to_owned(), Ruling::sentence)),
+                cell(&judged.ours.as_ref().map_or_else(String::new, |ours| ours.found.join("; ")))
             );
         }
     }
@@ -290,7 +334,9 @@ fn verdicts_markdown(results: &Results<'_>, info: &ReproductionInfo) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reproduce::{Claim, Exhibit, Figure, Measure, PictureFiles, Reported, Row, Rule, Settings, judge};
+    use crate::reproduce::{
+        Claim, Exhibit, Figure, Measure, Outcomes, PictureFiles, Reported, Row, Rule, Settings, judge,
+    };
 
     const NONE: Settings = &[("key", "<value>")];
     static ROWS: [Row; 2] = [
@@ -300,6 +346,8 @@ mod tests {
             view: None,
             technique: "pcss",
             settings: NONE,
+            ours: &[],
+            is_published_alone: false,
             size_px: (1280, 720),
             light_scale: 1.0,
             frames: 1,
@@ -312,6 +360,8 @@ mod tests {
             view: None,
             technique: "pcss",
             settings: NONE,
+            ours: &[],
+            is_published_alone: false,
             size_px: (64, 36),
             light_scale: 1.0,
             frames: 1,
@@ -328,36 +378,52 @@ mod tests {
             rules: &[Rule::AtMost(Figure::Ms, "<b>first</b>", 30.0)],
             on_any_adapter: false,
             because: "",
+            because_ours: "",
+            needs: "",
         }],
         note: "",
     };
-    static PAPER: Paper =
-        Paper { id: "nobody-1999", citation: "A & B", hardware: "card", bandwidth_gb_s: 100.0, exhibits: &[] };
+    static PAPER: Paper = Paper {
+        id: "nobody-1999",
+        citation: "A & B",
+        hardware: "card",
+        bandwidth_gb_s: 100.0,
+        own: &["pcss"],
+        exhibits: &[],
+    };
 
-    fn page(bandwidth_gb_s: Option<f64>) -> String {
+    fn page(bandwidth_gb_s: Option<f64>, is_software: bool) -> String {
         let first = Outcome::Measured(Measured { ms: Some(20.0), size_px: [64, 36], ..Measured::default() });
+        let second = Outcome::Measured(Measured { ms: Some(40.0), size_px: [64, 36], ..Measured::default() });
         let outcomes = [first, Outcome::NotReady("no-such.glb".into())];
+        let ours = [Some(second), None];
         let pictures = PictureFiles { picture: "images/\"x\".png".into(), reference: None, error: None };
         let rows = vec![
-            RowResult { row: &ROWS[0], outcome: outcomes[0].clone(), pictures: Some(pictures) },
-            RowResult { row: &ROWS[1], outcome: outcomes[1].clone(), pictures: None },
+            RowResult { row: &ROWS[0], form: Form::Published, outcome: outcomes[0].clone(), pictures: Some(pictures) },
+            RowResult { row: &ROWS[1], form: Form::Published, outcome: outcomes[1].clone(), pictures: None },
         ];
-        let judged = judge(&EXHIBIT, &outcomes, false);
+        let judged = judge(&EXHIBIT, Outcomes { published: &outcomes, ours: &ours }, is_software);
         let result =
             ExhibitResult { name: "nobody-1999/figure1".into(), paper: &PAPER, exhibit: &EXHIBIT, rows, judged };
-        let adapter = AdapterInfo { name: "<card>".into(), ..AdapterInfo::default() };
+        let adapter = AdapterInfo { name: "<card>".into(), is_software, ..AdapterInfo::default() };
         let arguments = " -o 'a<b'".to_owned();
         let info =
             ReproductionInfo { adapter, bandwidth_gb_s, commit: "c0ffee".into(), date: "today".into(), arguments };
         let results = [(&PAPER, vec![result])];
-        assert!(verdicts_markdown(&results, &info).contains("a < b \\| c | The claim holds here."));
-        assert!(index_page(&results, &info).contains("1 claims hold, 0 are contradicted, 0 are not shown here"));
+        if !is_software {
+            let text = verdicts_markdown(&results, &info);
+            assert!(text.contains("a < b \\| c | 64 × 36 | The claim holds here."), "{text}");
+            let index = index_page(&results, &info);
+            for count in ["As published 1 claims hold, 0 are contradicted", "ours 0 claims hold, 1 are contradicted"] {
+                assert!(index.contains(count), "{count}\n{index}");
+            }
+        }
         paper_page(&PAPER, &results[0].1, &info)
     }
 
     #[test]
     fn the_page_says_all_and_escapes_names() {
-        let html = page(Some(50.0));
+        let html = page(Some(50.0), false);
         for part in [
             "&lt;b&gt;first&lt;/b&gt;",
             "a&amp;b.glb",
@@ -371,6 +437,9 @@ mod tests {
             "64 × 36<br><small>on a GPU: 1280 × 720</small>",
             "50.00 fps of shadows alone",
             "2.00<br><small>1.00 with bandwidths</small>",
+            "As published: The claim holds here.",
+            "Ours: The claim is contradicted here.",
+            "(at 64 × 36)",
             "at most 30: here 20.000 ms",
             "not ready: set ANTUMBRA_SCENES to a folder that holds no-such.glb",
         ] {
@@ -379,6 +448,8 @@ mod tests {
         for raw in ["<b>first", "<i>what", "=<value", "<card>"] {
             assert!(!html.contains(raw), "{raw}");
         }
-        assert!(page(None).contains("--bandwidth") && !page(None).contains("with bandwidths"));
+        assert!(page(None, false).contains("--bandwidth") && !page(None, false).contains("with bandwidths"));
+        // A processor's milliseconds stand beside no graphics card's.
+        assert!(!page(Some(50.0), true).contains("with bandwidths"));
     }
 }

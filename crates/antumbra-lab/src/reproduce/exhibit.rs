@@ -14,6 +14,8 @@ pub struct Paper {
     pub hardware: &'static str,
     /// That hardware's memory bandwidth, GB/s: what shadow maps mostly wait for, so that times compare by it.
     pub bandwidth_gb_s: f64,
+    /// Its own techniques: rows of them are run as published and as ours.
+    pub own: &'static [&'static str],
     /// Its tables and figures, in the paper's order.
     pub exhibits: &'static [Exhibit],
 }
@@ -45,8 +47,12 @@ pub struct Row {
     pub view: Option<&'static str>,
     /// The technique, by the name that it has or will have; empty where none is measured.
     pub technique: &'static str,
-    /// Its parameters, as the paper set them.
+    /// Its parameters in both forms, as the paper set them for this row.
     pub settings: Settings,
+    /// Parameters of our form alone.
+    pub ours: Settings,
+    /// Whether there is no form of ours: what the row measures is of the published algorithm alone.
+    pub is_published_alone: bool,
     /// Width and height of the picture, pixels.
     pub size_px: (u32, u32),
     /// The light's size over its own.
@@ -82,13 +88,6 @@ pub enum Measure {
         /// As printed.
         paper: Reported,
     },
-    /// Milliseconds for rays to so many points of the light, on the processor.
-    Rays {
-        /// Light points a pixel.
-        samples: u32,
-        /// As printed, on a GPU.
-        paper: Reported,
-    },
     /// Errors against the truth: `rmse`, `umbra_leak` and `lit_loss`. The papers show pictures for these.
     Error,
     /// The same against exact filtering by the technique's own kernel of fixed width.
@@ -121,7 +120,7 @@ impl Measure {
             Reported::Drawn => "drawn".to_owned(),
         };
         match self {
-            Self::Ms { paper, .. } | Self::SceneMs { paper } | Self::Rays { paper, .. } => text(paper, "ms"),
+            Self::Ms { paper, .. } | Self::SceneMs { paper } => text(paper, "ms"),
             Self::Fps { paper } => text(paper, "fps"),
             Self::Error | Self::FilteredError | Self::Difference { .. } | Self::Colors => "a picture".to_owned(),
         }
@@ -130,9 +129,7 @@ impl Measure {
     /// The paper's own figure as milliseconds a frame.
     pub fn paper_ms(&self) -> Option<f64> {
         match self {
-            Self::Ms { paper: Reported::Number(ms), .. }
-            | Self::SceneMs { paper: Reported::Number(ms) }
-            | Self::Rays { paper: Reported::Number(ms), .. } => Some(*ms),
+            Self::Ms { paper: Reported::Number(ms), .. } | Self::SceneMs { paper: Reported::Number(ms) } => Some(*ms),
             Self::Fps { paper: Reported::Number(fps) } => Some(1e3 / fps),
             _ => None,
         }
@@ -175,6 +172,16 @@ impl Row {
         Self { settings, ..self }
     }
 
+    /// With parameters of our form alone.
+    pub(super) const fn ours(self, ours: Settings) -> Self {
+        Self { ours, ..self }
+    }
+
+    /// Run as published alone.
+    pub(super) const fn alone(self) -> Self {
+        Self { is_published_alone: true, ..self }
+    }
+
     /// Too dear for a software renderer, unless it is asked for.
     pub(super) const fn dear(self) -> Self {
         self.dear_where(true)
@@ -193,6 +200,8 @@ const fn row(what: &'static str, scene: &'static str, technique: &'static str, m
         view: None,
         technique,
         settings: &[],
+        ours: &[],
+        is_published_alone: false,
         size_px: (1280, 720),
         light_scale: 1.0,
         frames: 1,
@@ -247,9 +256,11 @@ pub(super) const fn scene_ms(what: &'static str, scene: &'static str, paper: f64
     row(what, scene, "", Measure::SceneMs { paper: Reported::Number(paper) })
 }
 
-/// A row that compares milliseconds for ray tracing.
-pub(super) const fn rays(what: &'static str, scene: &'static str, samples: u32, paper_ms: f64) -> Row {
-    row(what, scene, "", Measure::Rays { samples, paper: Reported::Number(paper_ms) })
+impl Exhibit {
+    /// How many runs its rows are: one for each form of each.
+    pub fn run_count(&self, paper: &Paper) -> usize {
+        self.rows.iter().map(|row| row.forms(paper).len()).sum()
+    }
 }
 
 /// An exhibit without anything to run.

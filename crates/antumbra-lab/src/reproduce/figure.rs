@@ -13,16 +13,23 @@ pub enum Figure {
     UmbraLeak,
     /// Mean of what is missing where the reference is lit.
     LitLoss,
+    /// Rms of the error's detail where the reference is smooth: noise, bands, texels, seams.
+    Noise,
     /// Memory, MiB.
     MemoryMib,
 }
 
 impl Figure {
+    /// Whether images are compared for it.
+    pub fn is_of_images(self) -> bool {
+        matches!(self, Self::Rmse | Self::UmbraLeak | Self::LitLoss | Self::Noise)
+    }
+
     /// A value for readers.
     pub fn text(self, value: f64) -> String {
         match self {
             Self::Ms => format!("{value:.3} ms"),
-            Self::Rmse | Self::UmbraLeak | Self::LitLoss => format!("{value:.4}"),
+            Self::Rmse | Self::UmbraLeak | Self::LitLoss | Self::Noise => format!("{value:.4}"),
             Self::MemoryMib => format!("{value:.1} MiB"),
         }
     }
@@ -35,6 +42,7 @@ impl fmt::Display for Figure {
             Self::Rmse => "rmse",
             Self::UmbraLeak => "umbra leak",
             Self::LitLoss => "lit loss",
+            Self::Noise => "noise",
             Self::MemoryMib => "memory",
         })
     }

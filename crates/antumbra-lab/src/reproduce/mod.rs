@@ -8,6 +8,7 @@
 mod claim;
 mod exhibit;
 mod figure;
+mod form;
 mod outcome;
 mod papers;
 mod preset;
@@ -19,16 +20,21 @@ mod views;
 pub use claim::{Claim, Rule};
 pub use exhibit::{Exhibit, Measure, Paper, Reported, Row, Settings};
 pub use figure::Figure;
+pub use form::Form;
 pub use outcome::{Measured, Outcome};
 pub use papers::PAPERS;
 pub use preset::{PRESETS, Preset};
 pub use run::{Bench, Pictures, Ran, RunOptions};
 pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Session, VerdictCount};
-pub use verdict::{Judged, Verdict, judge};
+pub use verdict::{Judged, Outcomes, Ruling, Verdict, judge};
 pub use views::VIEWS;
 
 /// The environment variable that names the folder with scenes that are files.
 pub const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
+
+/// Where from the scenes that are files are to be had.
+pub const SCENES_HINT: &str = "sponza.glb is the sample model Sponza of Khronos (github.com/KhronosGroup/glTF-Sample-Assets, \
+                               Models/Sponza) as one binary glTF file; all else is built in";
 
 /// `marrs-2014/figure3`.
 fn exhibit_name(paper: &Paper, exhibit: &Exhibit) -> String {
@@ -103,8 +109,7 @@ mod tests {
         let mut held = 0;
         for (name, _, exhibit) in exhibits() {
             for row in exhibit.rows.iter().filter(|row| matches!(row.measure, Measure::FilteredError)) {
-                let kind = antumbra::TechniqueKind::from_name(row.technique).unwrap();
-                let choice = crate::technique_run::TechniqueChoice::default_of(kind);
+                let choice = row.choice(Form::Published).unwrap();
                 assert!(choice.filtered_truth().is_some(), "{name}: {}", row.what);
                 held += 1;
             }
@@ -133,12 +138,12 @@ mod tests {
                 assert!(exhibit.rows[..i].iter().all(|other| other.what != row.what), "{name}: {} twice", row.what);
             }
             for claim in exhibit.claims {
-                assert!(!claim.says.is_empty() && !claim.rules.is_empty(), "{name}");
+                assert!(!claim.says.is_empty() && claim.rules.is_empty() != claim.needs.is_empty(), "{name}");
                 for rule in claim.rules {
                     for what in rule.rows() {
                         let row = exhibit.rows.iter().find(|row| row.what == what);
                         let row = row.unwrap_or_else(|| panic!("{name}: a rule speaks of {what}"));
-                        let is_error = matches!(rule.figure(), Figure::Rmse | Figure::UmbraLeak | Figure::LitLoss);
+                        let is_error = rule.figure().is_of_images();
                         let is_time = rule.figure() == Figure::Ms;
                         let is_measured =
                             if is_error { row.measure.is_error() } else { !is_time || !row.measure.is_error() };
@@ -161,7 +166,12 @@ mod tests {
                     Measure::Difference { from, settings } => Some((name.clone(), from, settings)),
                     _ => None,
                 };
-                std::iter::once((name.clone(), row.technique, row.settings)).chain(other)
+                let of_row = [row.settings, row.ours];
+                of_row
+                    .into_iter()
+                    .map(|settings| (name.clone(), row.technique, settings))
+                    .chain(other)
+                    .collect::<Vec<_>>()
             })
         })
     }

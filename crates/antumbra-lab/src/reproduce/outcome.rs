@@ -4,9 +4,9 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::SCENES_VARIABLE;
 use super::exhibit::Measure;
 use super::figure::Figure;
+use super::{SCENES_HINT, SCENES_VARIABLE};
 use crate::stopwatch::FrameCount;
 
 /// What came of a row.
@@ -32,9 +32,9 @@ pub enum Outcome {
 /// The figures of a row; which there are hangs on what it measures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Milliseconds, of the passes that the row names; of rays where it is about rays. None where it is about errors.
+    /// Milliseconds, of the passes that the row names. None where it is about errors.
     pub ms: Option<f64>,
-    /// Of how many frames that is the median, and after how many; rays are traced once.
+    /// Of how many frames that is the median, and after how many.
     pub count: Option<FrameCount>,
     /// Milliseconds for drawing what the camera sees, beside it.
     pub scene_ms: Option<f64>,
@@ -46,6 +46,12 @@ pub struct Measured {
     pub umbra_leak: Option<f64>,
     /// Mean of what is missing where the reference is lit.
     pub lit_loss: Option<f64>,
+    /// Rms of the error's detail where the reference is smooth.
+    #[serde(default)]
+    pub noise: Option<f64>,
+    /// Light points a pixel of the reference, where it was traced.
+    #[serde(default)]
+    pub truth_samples: Option<u32>,
     /// Root of the mean squared error of a mask that has the reference's mean everywhere: what a picture without any shadow in
     /// it would err. Large beside it, errors are small.
     pub flat_rmse: Option<f64>,
@@ -65,6 +71,7 @@ impl Measured {
             Figure::Rmse => self.rmse,
             Figure::UmbraLeak => self.umbra_leak,
             Figure::LitLoss => self.lit_loss,
+            Figure::Noise => self.noise,
             Figure::MemoryMib => self.memory_bytes.map(|bytes| bytes as f64 / (1 << 20) as f64),
         }
     }
@@ -76,8 +83,8 @@ impl Measured {
         match (measure, self.ms) {
             (Measure::Colors, _) => "a picture".to_owned(),
             (measure, _) if measure.is_error() => {
-                let [rmse, leak, loss] = [self.rmse, self.umbra_leak, self.lit_loss].map(number);
-                format!("rmse {rmse}, umbra leak {leak}, lit loss {loss}")
+                let [rmse, leak, loss, noise] = [self.rmse, self.umbra_leak, self.lit_loss, self.noise].map(number);
+                format!("rmse {rmse}, umbra leak {leak}, lit loss {loss}, noise {noise}")
             }
             (_, None) => "–".to_owned(),
             (Measure::Fps { .. }, Some(ms)) => {
@@ -87,7 +94,6 @@ impl Measured {
                 });
                 format!("{:.2} fps of shadows alone{}{}", fps(ms), counted(self.count), whole.unwrap_or_default())
             }
-            (Measure::Rays { .. }, Some(ms)) => format!("{ms:.3} ms (traced once)"),
             (_, Some(ms)) => format!("{ms:.3} ms{}", counted(self.count)),
         }
     }
@@ -106,7 +112,7 @@ impl fmt::Display for Outcome {
             Self::NotRun => write!(f, "not run"),
             Self::NotYet(technique) => write!(f, "not there yet: it needs {technique}"),
             Self::NotReady(scene) => {
-                write!(f, "not ready: set {SCENES_VARIABLE} to a folder that holds {scene}")
+                write!(f, "not ready: set {SCENES_VARIABLE} to a folder that holds {scene} ({SCENES_HINT})")
             }
             Self::TooDear => write!(f, "too dear for a software renderer unless asked for by --dear"),
             Self::Skipped(reason) => write!(f, "not possible on this device: {reason}"),

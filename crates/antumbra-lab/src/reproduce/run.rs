@@ -14,7 +14,8 @@ use glam::UVec2;
 use image::RgbImage;
 
 use super::SCENES_VARIABLE;
-use super::exhibit::{Measure, Row, Settings};
+use super::exhibit::{Measure, Row};
+use super::form::{Form, choice_with};
 use super::outcome::{Measured, Outcome};
 use super::views::view_named;
 use crate::color_maps::signed_error_map;
@@ -144,11 +145,11 @@ impl<'a> Bench<'a> {
         Self { lab, options, scenes: Vec::new(), truths: HashMap::new() }
     }
 
-    /// Runs a row.
+    /// Runs a row in one form.
     ///
     /// # Errors
     /// Where the scene cannot be loaded or traced, or the device fails. What is not there or not possible is an outcome.
-    pub fn run(&mut self, row: &Row, with_pictures: bool) -> Result<Ran, LabError> {
+    pub fn run(&mut self, row: &Row, form: Form, with_pictures: bool) -> Result<Ran, LabError> {
         if let Some(outcome) = self.why_not(row) {
             return Ok(Ran::without(outcome));
         }
@@ -160,17 +161,13 @@ impl<'a> Bench<'a> {
             triangles: loaded.uploaded.triangle_count as u64,
             ..Measured::default()
         };
-        if let Measure::Rays { samples, .. } = row.measure {
-            let truth = loaded.trace(&setup, size_px, samples)?;
-            return Ok(Ran::without(Outcome::Measured(Measured { ms: Some(truth.seconds * 1e3), ..about })));
-        }
         let view = View::of_uploaded(self.lab, &loaded.uploaded, &setup, size_px)?;
         if let Measure::SceneMs { .. } = row.measure {
             let (ms, count) = view.scene_ms(&self.options.timing())?;
             let (ms, count) = (Some(ms), Some(count));
             return Ok(Ran::without(Outcome::Measured(Measured { ms, count, ..about })));
         }
-        let site = Site { bench: self, row, loaded: &loaded, setup: &setup, view: &view };
+        let site = Site { bench: self, row, form, loaded: &loaded, setup: &setup, view: &view };
         match site.run(about, with_pictures) {
             Err(LabError::Technique(error @ antumbra::Error::Unsupported { .. })) => {
                 Ok(Ran::without(Outcome::Skipped(error.to_string())))
@@ -224,6 +221,7 @@ impl Loaded {
 struct Site<'a, 'b> {
     bench: &'a mut Bench<'b>,
     row: &'a Row,
+    form: Form,
     loaded: &'a Loaded,
     setup: &'a Setup,
     view: &'a View<'a>,
@@ -232,7 +230,7 @@ struct Site<'a, 'b> {
 impl Site<'_, '_> {
     fn run(mut self, about: Measured, with_pictures: bool) -> Result<Ran, LabError> {
         let (row, view) = (self.row, self.view);
-        let choice = choice_of(row.technique, row.settings)?;
+        let choice = row.choice(self.form)?;
         let (drawn, mut measured) = if row.measure.is_timed() {
             let TechniqueRun { visibility, timings, memory_bytes } = self.time(&choice)?;
             let Some(ms) = time_of(&timings, row.measure)? else {
@@ -261,6 +259,8 @@ impl Site<'_, '_> {
         let metrics = compare_visibility(&reference, &visibility, &judged)?;
         measured.flat_rmse = compare_visibility(&reference, &flat(&reference, &judged), &judged)?.rmse;
         (measured.rmse, measured.umbra_leak, measured.lit_loss) = (metrics.rmse, metrics.umbra_leak, metrics.lit_loss);
+        measured.noise = metrics.roughness;
+        measured.truth_samples = (row.measure == Measure::Error).then_some(self.bench.options.samples);
         let pictures = match picture {
             None => None,
             Some(picture) => {
@@ -288,7 +288,7 @@ impl Site<'_, '_> {
                     || LabError::Request(format!("`{}` has no exact filtering to be held against", choice.name()));
                 Some(choice.filtered_truth().ok_or_else(why)?)
             }
-            Measure::Difference { from, settings } => Some(choice_of(from, settings)?),
+            Measure::Difference { from, settings } => Some(choice_with(from, self.form, settings)?),
             _ => None,
         };
         let Some(other) = other else {
@@ -314,13 +314,6 @@ impl Site<'_, '_> {
         self.bench.truths.insert(key, Rc::clone(&truth));
         Ok(truth)
     }
-}
-
-fn choice_of(technique: &str, settings: Settings) -> Result<TechniqueChoice, LabError> {
-    let kind = TechniqueKind::from_name(technique)
-        .ok_or_else(|| LabError::Request(format!("there is no technique `{technique}`")))?;
-    let settings = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    Ok(TechniqueChoice::with_settings(kind, settings))
 }
 
 /// Milliseconds of what a row names; `None` where single passes are not timed.
@@ -387,7 +380,7 @@ fn scene_spec(scene: &str, folder: Option<&OsStr>) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::exhibit::{error, rays};
+    use super::super::exhibit::{error, scene_ms};
     use super::*;
 
     #[test]
@@ -402,7 +395,7 @@ mod tests {
         assert!(!error("", "no-such-hall.glb", "pcss").is_ready());
         let row = error("", "builtin:overlap", "no-such-technique");
         assert_eq!(row.missing_technique(), Some("no-such-technique"));
-        assert_eq!(rays("", "builtin:overlap", 1, 1.0).missing_technique(), None);
+        assert_eq!(scene_ms("", "builtin:overlap", 1.0).missing_technique(), None);
     }
 
     #[test]

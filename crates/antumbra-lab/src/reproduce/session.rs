@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::exhibit::{Exhibit, Measure, Paper, Row};
+use super::form::Form;
 use super::outcome::Outcome;
 use super::run::{Bench, Pictures, Ran, RunOptions};
-use super::verdict::{Judged, Verdict, judge};
+use super::verdict::{Judged, Outcomes, Ruling, Verdict, judge};
 use super::{PAPERS, exhibit_name, views};
 use crate::device::LabDevice;
 use crate::error::LabError;
@@ -22,7 +23,7 @@ use crate::store::{Kind, Store};
 /// The file with all measurements in a folder of reproductions.
 pub const REPRODUCED_NAME: &str = "reproduced.json";
 
-const KIND: Kind = Kind { format: "antumbra-reproduced", version: 2 };
+const KIND: Kind = Kind { format: "antumbra-reproduced", version: 3 };
 
 /// Pictures of a row, as paths relative to the folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,11 +45,13 @@ struct Kept {
     pictures: Option<PictureFiles>,
 }
 
-/// A row, and what came of it.
+/// A row in one form, and what came of it.
 #[derive(Clone, Debug)]
 pub struct RowResult {
     /// The row.
     pub row: &'static Row,
+    /// As published, or ours.
+    pub form: Form,
     /// What came of it.
     pub outcome: Outcome,
     /// Its pictures, where there are.
@@ -64,7 +67,7 @@ pub struct ExhibitResult {
     pub paper: &'static Paper,
     /// The exhibit.
     pub exhibit: &'static Exhibit,
-    /// Its rows, in their order.
+    /// Its rows, in their order, each as published and then, where it has one, in our form.
     pub rows: Vec<RowResult>,
     /// Its claims, decided.
     pub judged: Vec<Judged>,
@@ -82,11 +85,19 @@ pub struct VerdictCount {
 }
 
 impl VerdictCount {
-    /// Of all claims of these exhibits.
-    pub fn of(exhibits: &[ExhibitResult]) -> Self {
+    /// Of all claims of these exhibits: as published, and by our form of those that have one.
+    pub fn of<'a>(exhibits: impl IntoIterator<Item = &'a ExhibitResult>, form: Form) -> Self {
+        let of_form = |judged: &'a Judged| match form {
+            Form::Published => Some(&judged.published),
+            Form::Ours => judged.ours.as_ref(),
+        };
+        Self::of_rulings(exhibits.into_iter().flat_map(|exhibit| &exhibit.judged).filter_map(of_form))
+    }
+
+    fn of_rulings<'a>(rulings: impl Iterator<Item = &'a Ruling>) -> Self {
         let mut count = Self::default();
-        for judged in exhibits.iter().flat_map(|exhibit| &exhibit.judged) {
-            match judged.verdict {
+        for ruling in rulings {
+            match ruling.verdict {
                 Verdict::Holds => count.holds += 1,
                 Verdict::Contradicted => count.contradicted += 1,
                 Verdict::Undecided(_) => count.undecided += 1,
@@ -99,7 +110,7 @@ impl VerdictCount {
 impl fmt::Display for VerdictCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { holds, contradicted, undecided } = self;
-        write!(f, "{holds} claims hold, {contradicted} are contradicted, {undecided} are not shown here")
+        write!(f, "{holds} claims hold, {contradicted} are contradicted, {undecided} cannot be shown here")
     }
 }
 
@@ -153,24 +164,29 @@ impl<'a> Session<'a> {
     ) -> Result<ExhibitResult, LabError> {
         let name = exhibit_name(paper, exhibit);
         progress.begin(&name, all as u64);
-        for (i, row) in exhibit.rows.iter().enumerate() {
-            progress.reach((begun + i) as u64);
-            if self.kept(&name, row).is_some() {
+        let runs = exhibit
+            .rows
+            .iter()
+            .enumerate()
+            .flat_map(|(i, row)| row.forms(paper).iter().map(move |form| (i, row, *form)));
+        for (done, (i, row, form)) in runs.enumerate() {
+            progress.reach((begun + done) as u64);
+            if self.kept(&name, row, form).is_some() {
                 continue;
             }
             let with_pictures = self.dir.is_some() && shows_picture(exhibit, i);
-            let ran = match self.bench.run(row, with_pictures) {
+            let ran = match self.bench.run(row, form, with_pictures) {
                 // Nothing can be run any more.
                 Err(error @ LabError::Device(_)) => return Err(error),
                 Err(error) => Ran { outcome: Outcome::Failed(error.to_string()), pictures: None },
                 Ok(ran) => ran,
             };
             let pictures = match (&self.dir, ran.pictures) {
-                (Some(dir), Some(pictures)) => Some(write(dir, &pictures, &name, i, row)?),
+                (Some(dir), Some(pictures)) => Some(write(dir, &pictures, &file_name(&name, i, form), row)?),
                 _ => None,
             };
-            let kept = Kept { row: described(row, &self.options), outcome: ran.outcome, pictures };
-            self.store.insert(key(&name, row), kept)?;
+            let kept = Kept { row: described(row, form, &self.options), outcome: ran.outcome, pictures };
+            self.store.insert(key(&name, row, form), kept)?;
         }
         self.store.write()?;
         progress.end();
@@ -180,15 +196,25 @@ impl<'a> Session<'a> {
     /// All that this and earlier runs know of an exhibit.
     pub fn result(&self, paper: &'static Paper, exhibit: &'static Exhibit) -> ExhibitResult {
         let name = exhibit_name(paper, exhibit);
-        let result = |row: &'static Row| match self.store.get(&key(&name, row)) {
-            Some(kept) if kept.row == described(row, &self.options) => {
-                RowResult { row, outcome: kept.outcome.clone(), pictures: kept.pictures.clone() }
+        let result = |row: &'static Row, form: Form| match self.store.get(&key(&name, row, form)) {
+            Some(kept) if kept.row == described(row, form, &self.options) => {
+                RowResult { row, form, outcome: kept.outcome.clone(), pictures: kept.pictures.clone() }
             }
-            _ => RowResult { row, outcome: Outcome::NotRun, pictures: None },
+            _ => RowResult { row, form, outcome: Outcome::NotRun, pictures: None },
         };
-        let rows: Vec<RowResult> = exhibit.rows.iter().map(result).collect();
-        let outcomes: Vec<Outcome> = rows.iter().map(|row| row.outcome.clone()).collect();
-        let judged = judge(exhibit, &outcomes, self.is_software);
+        let rows: Vec<RowResult> = exhibit
+            .rows
+            .iter()
+            .flat_map(|row| row.forms(paper).iter().map(move |form| (row, *form)))
+            .map(|(row, form)| result(row, form))
+            .collect();
+        let of = |form: Form, row: &Row| {
+            rows.iter().find(|one| one.form == form && one.row.what == row.what).map(|one| one.outcome.clone())
+        };
+        let published: Vec<Outcome> =
+            exhibit.rows.iter().map(|row| of(Form::Published, row).unwrap_or(Outcome::NotRun)).collect();
+        let ours: Vec<Option<Outcome>> = exhibit.rows.iter().map(|row| of(Form::Ours, row)).collect();
+        let judged = judge(exhibit, Outcomes { published: &published, ours: &ours }, self.is_software);
         ExhibitResult { name, paper, exhibit, rows, judged }
     }
 
@@ -204,22 +230,27 @@ impl<'a> Session<'a> {
     }
 
     /// What a row has from before, where that still says all: what was not there then may be there now.
-    fn kept(&self, name: &str, row: &Row) -> Option<&Kept> {
-        let kept = self.store.get(&key(name, row))?;
+    fn kept(&self, name: &str, row: &Row, form: Form) -> Option<&Kept> {
+        let kept = self.store.get(&key(name, row, form))?;
         let is_final = matches!(kept.outcome, Outcome::Measured(_) | Outcome::Skipped(_));
-        (is_final && kept.row == described(row, &self.options)).then_some(kept)
+        (is_final && kept.row == described(row, form, &self.options)).then_some(kept)
     }
 }
 
-/// Writes a row's pictures into the folder `dir`.
-fn write(dir: &Path, pictures: &Pictures, name: &str, i: usize, row: &Row) -> Result<PictureFiles, LabError> {
-    let own = format!("{}-{}", name.replace('/', "-"), i + 1);
+/// What a row's pictures are called: `marrs-2014-figure4-1`, `marrs-2014-figure4-1-ours`.
+fn file_name(name: &str, i: usize, form: Form) -> String {
+    let end = if form == Form::Ours { "-ours" } else { "" };
+    format!("{}-{}{end}", name.replace('/', "-"), i + 1)
+}
+
+/// Writes a row's pictures into the folder `dir`, under this name.
+fn write(dir: &Path, pictures: &Pictures, own: &str, row: &Row) -> Result<PictureFiles, LabError> {
     let put = |file: String, picture| -> Result<String, LabError> {
         let path = format!("images/{file}.png");
         write_png(&dir.join(&path), picture)?;
         Ok(path)
     };
-    let picture = put(own.clone(), &pictures.picture)?;
+    let picture = put(own.to_owned(), &pictures.picture)?;
     let Some([reference, error]) = &pictures.beside else {
         return Ok(PictureFiles { picture, reference: None, error: None });
     };
@@ -233,18 +264,19 @@ fn make(dir: &Path) -> Result<(), LabError> {
     Ok(fs::create_dir_all(dir).map_err(|error| FileError::from_write(dir, &error))?)
 }
 
-fn key(name: &str, row: &Row) -> String {
-    format!("{name}: {}", row.what)
+fn key(name: &str, row: &Row, form: Form) -> String {
+    format!("{name}: {}, {form}", row.what)
 }
 
 /// All that a row's result hangs on.
-fn described(row: &Row, options: &RunOptions) -> Value {
-    let Row { scene, view, technique, settings, light_scale, frames, measure, .. } = row;
-    let settings: Vec<String> = settings.iter().map(|(key, value)| format!("{key}={value}")).collect();
+fn described(row: &Row, form: Form, options: &RunOptions) -> Value {
+    let Row { scene, view, technique, light_scale, frames, measure, .. } = row;
+    let settings: Vec<String> = row.settings_of(form).map(|(key, value)| format!("{key}={value}")).collect();
     json!({
         "scene": scene,
         "view": view,
         "technique": technique,
+        "form": form.name(),
         "settings": settings,
         "size": options.size_of(row).to_array(),
         "light_scale": light_scale.to_string(),
@@ -288,7 +320,7 @@ mod tests {
         note: "",
     };
     static PAPER: Paper =
-        Paper { id: "nobody-1999", citation: "", hardware: "", bandwidth_gb_s: 1.0, exhibits: &[EXHIBIT] };
+        Paper { id: "nobody-1999", citation: "", hardware: "", bandwidth_gb_s: 1.0, own: &[], exhibits: &[EXHIBIT] };
 
     #[test]
     fn pictures_are_of_what_is_compared_and_once_of_each_scene() {
@@ -303,13 +335,12 @@ mod tests {
     /// Whatever a row measures, it runs without a folder, and its pictures are kept where there is one.
     #[test]
     fn every_kind_of_row_runs_with_and_without_a_folder() {
-        use super::super::exhibit::{colors, difference, filtered_error, fps, rays, scene_ms};
+        use super::super::exhibit::{colors, difference, filtered_error, fps, scene_ms};
         const SMALL: super::super::exhibit::Settings = &[("map_size", "64")];
         const ROWS: &[Row] = &[
             ms("time", "builtin:overlap", "hard", "", Reported::Drawn).with(SMALL),
             fps("frames a second", "builtin:overlap", "hard", 1.0).with(SMALL),
             scene_ms("the scene", "builtin:overlap", 1.0),
-            rays("rays", "builtin:overlap", 1, 1.0),
             error("error", "builtin:overlap", "hard").with(SMALL),
             filtered_error("filtered error", "builtin:overlap", "vsm").with(SMALL),
             difference("difference", "builtin:overlap", "hard", ("pcf", SMALL)).with(SMALL),
@@ -317,22 +348,21 @@ mod tests {
         ];
         const KINDS: Exhibit = Exhibit { rows: ROWS, ..EXHIBIT };
         static PAPER: Paper =
-            Paper { id: "nobody-1998", citation: "", hardware: "", bandwidth_gb_s: 1.0, exhibits: &[KINDS] };
+            Paper { id: "nobody-1998", citation: "", hardware: "", bandwidth_gb_s: 1.0, own: &[], exhibits: &[KINDS] };
         let Some(lab) = lab_or_skip() else { return };
         let dir = tempfile::tempdir().unwrap();
         let options = RunOptions { size_px: Some(UVec2::new(32, 18)), samples: 4, ..RunOptions::for_device(lab, 1) };
         for dir in [None, Some(dir.path())] {
             let mut session = Session::open(lab, options, dir, "abc").unwrap();
             let result = session.run(&PAPER, &PAPER.exhibits[0], &Silent, (0, ROWS.len())).unwrap();
-            for RowResult { row, outcome, pictures } in &result.rows {
+            for RowResult { row, outcome, pictures, .. } in &result.rows {
                 let Outcome::Measured(measured) = outcome else { panic!("{}: {outcome:?}", row.what) };
-                let is_counted = row.measure.is_timed() || matches!(row.measure, Measure::SceneMs { .. });
-                let is_timed = is_counted || matches!(row.measure, Measure::Rays { .. });
-                assert_eq!((measured.ms.is_some(), measured.count.is_some()), (is_timed, is_counted), "{}", row.what);
+                let is_timed = row.measure.is_timed() || matches!(row.measure, Measure::SceneMs { .. });
+                assert_eq!((measured.ms.is_some(), measured.count.is_some()), (is_timed, is_timed), "{}", row.what);
                 // The very first frame never counts.
                 assert!(measured.count.is_none_or(|count| count.frames >= 1 && count.warm_up >= 1), "{measured:?}");
                 let text = outcome.text(&row.measure);
-                assert_eq!(text.contains(" after ") || text.contains("once"), is_timed, "{text}");
+                assert_eq!(text.contains(" after "), is_timed, "{text}");
                 assert_eq!(
                     pictures.is_some(),
                     dir.is_some() && !row.technique.is_empty() && row.measure != ROWS[1].measure

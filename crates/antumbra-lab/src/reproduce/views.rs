@@ -6,6 +6,7 @@ pub const VIEWS: &[(&str, &str)] = &[
     ("sponza-atrium", include_str!("views/sponza-atrium.toml")),
     ("tree-near", include_str!("views/tree-near.toml")),
     ("fence-close", include_str!("views/fence-close.toml")),
+    ("all-penumbra", include_str!("views/all-penumbra.toml")),
     ("fence-distant", include_str!("views/fence-distant.toml")),
 ];
 

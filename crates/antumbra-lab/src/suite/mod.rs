@@ -29,7 +29,7 @@ use crate::motion::{MotionOptions, MotionTruth, MovingScene};
 use crate::output_files::{FileError, write_atomically};
 use crate::progress::Progress;
 use crate::report::utc_now;
-use crate::reproduce::{Bench as Rows, RunOptions};
+use crate::reproduce::{Bench as Rows, Form, RunOptions};
 use crate::technique_run::{TechniqueChoice, Timing, create};
 use crate::truth::{LightTruth, trace};
 use crate::view::View;
@@ -207,8 +207,8 @@ pub fn run_slice(
             continue;
         }
         progress.begin(&paper.id(), 0);
-        let here = rows.run(paper.row, false)?.outcome;
-        results.insert(paper.id(), json!({ "here": here.text(&paper.row.measure) }));
+        let here = rows.run(paper.row, Form::Published, false)?.outcome;
+        results.insert(paper.id(), paper.kept(&here.text(&paper.row.measure)));
         results.write(path)?;
         progress.end();
     }

@@ -2,6 +2,7 @@
 
 use antumbra::TechniqueKind;
 use glam::UVec2;
+use serde_json::{Value, json};
 
 use crate::motion::Motion;
 use crate::reproduce::{Row, exhibits};
@@ -306,9 +307,21 @@ pub struct PaperRow {
 }
 
 impl PaperRow {
-    /// The row's name in the results: `papers/marrs-2014/figure3/0`.
+    /// The row's name in the results: `papers/marrs-2014/figure4/reprojection`.
     pub fn id(&self) -> String {
-        format!("{}/{}/{}", Part::Papers.name(), self.exhibit, self.number)
+        format!("{}/{}/{}", Part::Papers.name(), self.exhibit, self.row.what)
+    }
+
+    /// What is kept of it: with what it was, since rows of later commits may be others by the same name.
+    pub fn kept(&self, here: &str) -> Value {
+        json!({
+            "exhibit": self.exhibit,
+            "number": self.number,
+            "row": self.row.what,
+            "technique": self.row.technique,
+            "paper": self.row.measure.paper_text(),
+            "here": here,
+        })
     }
 }
 

@@ -217,21 +217,17 @@ fn views(results: &Results) -> String {
     head("Many views", &columns) + &rows
 }
 
-/// The papers' own figures beside these.
+/// The papers' own figures beside these: of the rows that were run, as they were then.
 fn papers(results: &Results, plan: &Plan) -> String {
+    let place =
+        |row: &Value| plan.papers.iter().position(|paper| Some(paper.exhibit.as_str()) == row["exhibit"].as_str());
+    let mut kept: Vec<&Value> = results.rows().filter(|row| row["exhibit"].is_string()).collect();
+    kept.sort_by_key(|row| (place(row), row["number"].as_u64()));
     let mut rows = String::new();
-    for paper in &plan.papers {
-        if let Some(here) = results.row(&paper.id()).and_then(|row| row["here"].as_str()) {
-            let row = paper.row;
-            let _ = writeln!(
-                rows,
-                "| {} | {} | `{}` | {} | {here} |",
-                paper.exhibit,
-                row.what,
-                row.technique,
-                row.measure.paper_text()
-            );
-        }
+    for row in kept {
+        let text = |key: &str| row[key].as_str().unwrap_or_default();
+        let [exhibit, what, technique, paper, here] = ["exhibit", "row", "technique", "paper", "here"].map(text);
+        let _ = writeln!(rows, "| {exhibit} | {what} | `{technique}` | {paper} | {here} |");
     }
     if rows.is_empty() {
         return rows;
@@ -261,7 +257,7 @@ mod tests {
             ("claims/shanty/0-ours".to_owned(), json!({ "timings": { "total_ms": 2.0 } })),
             ("claims/shanty/0-against".to_owned(), still),
             ("motion/lantern-wall/light/pcss".to_owned(), moving),
-            (paper.id(), json!({ "here": "1.250 ms" })),
+            (paper.id(), paper.kept("1.250 ms")),
         ]
         .into_iter()
         .chain(

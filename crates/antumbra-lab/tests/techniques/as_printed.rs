@@ -68,7 +68,7 @@ fn the_consistent_exponent_of_essm_holds() {
     assert!(contradictory > 0.5, "R = 80 holds after all: {contradictory}; say so in the documentation");
     assert!(consistent <= 0.0524, "{consistent}");
     assert!(more_bits <= 0.0454, "{more_bits}");
-    assert!(with_contacts <= 0.019, "{with_contacts}");
+    assert!(with_contacts <= 0.0197, "{with_contacts}");
     assert!(pair_alone <= 0.0145, "{pair_alone}");
 }
 
@@ -92,7 +92,10 @@ fn each_switch_of_essm_is_what_it_says() {
         let squares = error(&[("kernel", "ellipse"), ("cuts", "squares"), ("level", level)]);
         assert!((squares - ellipse).abs() < 0.004, "level {level}: {squares}, in columns {ellipse}");
     }
-    assert!(run(&[("cuts", "squares")]) != run(&[]), "the switch does nothing");
+    let as_is = run(&[]);
+    for switch in [("cuts", "squares"), ("blocker_mean", "depth"), ("footprint_ends", "false"), ("horizon", "false")] {
+        assert!(run(&[switch]) != as_is, "{switch:?} does nothing");
+    }
 }
 
 /// Selgrad et al.: figure 10, figure 15 and figure 14, then each of our departures taken back by itself.
@@ -108,9 +111,9 @@ fn each_switch_of_multi_layer_is_what_it_says() {
     assert!(error(&plank, &bilinear) > 1.8 * paper[0] && error(&overlap, &bilinear) > 1.3 * paper[1]);
     // Figure 6: a MIP-map's texels show in wide penumbrae.
     assert!(error(&overlap, &[("hierarchy", "mip_map")]) > 3.0 * paper[1]);
-    // Figure 14: multiplication breaks an occluder that spans levels.
+    // Figure 14: multiplication breaks an occluder that spans levels, by up to 1/16 of the light for each two fragments.
     let multiply = [("level_accumulation", "multiply"), ("list_accumulation", "multiply")];
-    assert!(error(&plank, &multiply) > 4.0 * paper[0]);
+    assert!(error(&plank, &multiply) > 3.5 * paper[0]);
     // Figure 15: addition darkens what stands one behind the other.
     let stacked = judged("builtin:stacked-panels");
     assert!(error(&stacked, &[]) > error(&stacked, &multiply));
@@ -182,6 +185,10 @@ fn lvsm_as_printed_bleeds_more_than_ours_and_less_than_one_layer() {
         (&wide, ("relax_over", "map_as_printed")),
         (&wide, ("transition", "mixed")),
         (&few, ("teleport", "weight")),
+        (&few, ("relax_background", "true")),
+        (&few, ("relax_from", "0.1")),
+        (&few, ("relax_up_to", "0.05")),
+        (&few, ("least_variance", "global")),
     ] {
         let [with, without] = [[usual, &[switch]].concat(), usual.to_vec()]
             .map(|settings| judged.run(lab, TechniqueKind::Lvsm, &settings));

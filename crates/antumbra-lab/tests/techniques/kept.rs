@@ -142,7 +142,25 @@ type Together = (TechniqueKind, &'static str, &'static [(&'static str, &'static 
 
 /// Paths of their own that masked casters or suns take; kernels that reach beyond the map's ends; lookups of light points in space;
 /// turns that go on from frame to frame.
-const TOGETHER: [Together; 15] = [
+const TOGETHER: [Together; 18] = [
+    (
+        TechniqueKind::Lvsm,
+        "boards under a rectangle",
+        &[("relax_over", "map_as_printed"), ("relax_background", "true")],
+        false,
+    ),
+    (
+        TechniqueKind::Lvsm,
+        "boards under a rectangle",
+        &[("relax_over", "map_as_printed"), ("relax_from", "0.1")],
+        false,
+    ),
+    (
+        TechniqueKind::Lvsm,
+        "boards under a rectangle",
+        &[("relax_over", "map_as_printed"), ("relax_up_to", "0.05")],
+        false,
+    ),
     (TechniqueKind::Pcf, "a strip light in a hall", &[("kernel_size", "31"), ("map_size", "32")], false),
     (
         TechniqueKind::Pcf,

@@ -37,9 +37,11 @@ const SAME_SIZE: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("central_scale", "1")];
 const FOUR_TIMES: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("central_scale", "4")];
-/// As they come but for the view's size, which is the paper's.
+/// The view's size, which is the paper's; all else by the form.
 const VIEWS_OF_512: Settings = &[("view_size", "512")];
-const BIAS_BEFORE: Settings = &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("bias", "before")];
+/// Figure 2, with integer maps filtered by hand (section 4.1.2): drawing them to depth has a slope of its own.
+const BIAS_BEFORE: Settings =
+    &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("filter", "manual"), ("bias", "before")];
 
 const WINDOW: &str = "builtin:window";
 const SHANTY: &str = "builtin:shanty";
@@ -76,6 +78,7 @@ pub const PAPER: Paper = Paper {
     citation: "A. Marrs, B. Watson, C. Healey: Fast Multi-View Soft Shadowing via Fragment Reprojection, 2014",
     hardware: "NVIDIA GeForce GTX Titan",
     bandwidth_gb_s: 288.0,
+    own: &["reprojection"],
     exhibits: &[
         Exhibit {
             id: "figure1",
@@ -87,7 +90,7 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[claim(
                 "Reprojection makes the depth maps ten times as fast (4.85 ms and 0.48 ms).",
-                &[Rule::RatioAtLeast(Ms, "depth maps by brute force", "depth maps by synchronised reprojection", 5.0)],
+                &[Rule::RatioAtLeast(Ms, "depth maps by brute force", "depth maps by synchronised reprojection", 10.0)],
             )],
             note: "",
         },
@@ -96,7 +99,7 @@ pub const PAPER: Paper = Paper {
             shows: "Depth bias before and after reprojection: before, surfaces shadow themselves, which is lit loss",
             rows: &[
                 picture("bias before reprojection", "builtin:tilted-planes", "reprojection", BIAS_BEFORE),
-                picture("bias after reprojection", "builtin:tilted-planes", "reprojection", SYNC_64),
+                picture("bias after reprojection", "builtin:tilted-planes", "reprojection", BY_HAND),
             ],
             claims: &[claim(
                 "Bias added before reprojection leaves surfaces that shadow themselves; added after, it does not.",
@@ -186,11 +189,11 @@ pub const PAPER: Paper = Paper {
                 ),
                 claim(
                     "With more triangles it is 10 to 20 times faster than brute force.",
-                    &[Rule::RatioAtLeast(
+                    &[Rule::RatioWithin(
                         Ms,
                         "ten dragons (knots): brute force, 64",
                         "ten dragons (knots): synchronised, 64",
-                        10.0,
+                        [9.0, 25.0],
                     )],
                 ),
                 claim(
@@ -202,8 +205,7 @@ pub const PAPER: Paper = Paper {
                         "dragon (a knot): synchronised, 64",
                         2.0,
                     )],
-                )
-                .on_any_adapter(),
+                ),
                 claim(
                     "Its time depends weakly on the number of light samples: four times as many cost less than \
                      three times as much.",
@@ -324,10 +326,7 @@ pub const PAPER: Paper = Paper {
                 ),
                 claim(
                     "On the shanty town it errs slightly more than PCSS, because light leaks.",
-                    &[
-                        Rule::RatioAtLeast(Rmse, "shanty town: reprojection", "shanty town: PCSS", 1.0),
-                        Rule::RatioAtMost(Rmse, "shanty town: reprojection", "shanty town: PCSS", 2.0),
-                    ],
+                    &[Rule::RatioWithin(Rmse, "shanty town: reprojection", "shanty town: PCSS", [1.0, 2.0])],
                 )
                 .because(
                     "light leaks, twice as much as with PCSS (.027 and .014 of the umbra at 256 × 144), but PCSS \

@@ -1,16 +1,13 @@
 //! Selgrad, Dachsbacher, Meyer, Stamminger 2014. Maps of 1024² unless said otherwise.
 //!
-//! Times are of the paper's own settings ([`PRINTED`]: ε = 2w doubling from level to level, addition throughout, back
-//! faces, a sample a texel, the light as a whole, hats over depth, lists apart, no planes, MIP-maps), and so are the errors of
-//! figures 12 to 15, with Y-maps; other errors are of our defaults unless a row says otherwise.
+//! Times are by MIP-maps and with ε = 2w unless a row says otherwise, errors by Y-maps; all else is of the form: `multi_layer:paper`
+//! has ε = 2w doubling from level to level, addition throughout, fragments weighted by hats over depth, every level in full.
 
 use super::SKETCHED_PCSS;
-// As the paper that it compares with prints it.
-use super::shen_2013::PRINTED as ESSM;
 use crate::reproduce::claim::{Claim, Rule, claim};
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
-use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, drawing, error, fps, ms, rays, scene_ms};
-use crate::reproduce::figure::Figure::{Ms, Rmse, UmbraLeak};
+use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, drawing, error, fps, ms, scene_ms};
+use crate::reproduce::figure::Figure::{Ms, Noise, Rmse, UmbraLeak};
 
 const SPONZA: &str = "sponza.glb";
 /// Figure 1, centre left: along the hall.
@@ -19,41 +16,35 @@ const STREET: &str = "builtin:street";
 const TREE: &str = "builtin:tree";
 const LANTERN: &str = "builtin:lantern-wall";
 
-/// What the paper prints, and what each of its tables' columns changes.
-macro_rules! printed {
-    ($epsilon:literal $(, $key:literal = $value:literal)*) => {
-        &[
-            ("epsilon", $epsilon),
-            ("epsilon_growth", "double"),
-            ("list_accumulation", "add"),
-            ("level_accumulation", "add"),
-            ("faces", "back"),
-            ("msaa", "1"),
-            ("light_parts", "1"),
-            ("level_weights", "depth"),
-            ("filter_widths", "merged"),
-            ("depth_average", "count"),
-            ("lists", "apart"),
-            ("planes", "false"),
-            ("map_shape", "square"),
-            $(($key, $value),)*
-        ]
-    };
-}
 /// The passes of "soft shadows": the lookup, what it looks up first, and what is between the pixels it skips.
 const LOOKUP: &str = "resolve|upsample|nearest";
-const PRINTED: Settings = printed!("2", "hierarchy" = "mip_map");
-/// Of figures 12 to 15. Later settings win.
-const ADDITIVE: Settings = printed!("2", "hierarchy" = "y_map");
-const MULTIPLICATIVE: Settings =
-    printed!("2", "hierarchy" = "y_map", "list_accumulation" = "multiply", "level_accumulation" = "multiply");
-const LARGE_EPSILON: Settings = printed!("10", "hierarchy" = "mip_map");
-const FIVE_LEVELS: Settings = printed!("2", "hierarchy" = "mip_map", "levels" = "5");
-const SUB: Settings = printed!("2", "hierarchy" = "mip_map", "sub" = "true");
-const ALL: Settings = printed!("10", "hierarchy" = "mip_map", "levels" = "5", "sub" = "true");
-const ALL_Y_MAP: Settings = printed!("10", "hierarchy" = "y_map", "levels" = "5", "sub" = "true");
-const ALL_2048: Settings = printed!("10", "hierarchy" = "mip_map", "levels" = "6", "sub" = "true", "map_size" = "2048");
-const ALL_512: Settings = printed!("10", "hierarchy" = "mip_map", "levels" = "5", "sub" = "true", "map_size" = "512");
+const MIP_MAP: (&str, &str) = ("hierarchy", "mip_map");
+const Y_MAP: (&str, &str) = ("hierarchy", "y_map");
+const EPSILON_2: (&str, &str) = ("epsilon", "2");
+const EPSILON_10: (&str, &str) = ("epsilon", "10");
+const LEVELS_5: (&str, &str) = ("levels", "5");
+const WITH_SUB: (&str, &str) = ("sub", "true");
+
+const DEFAULT: Settings = &[EPSILON_2, MIP_MAP];
+/// Section 6: what comes together multiplies.
+const MULTIPLIED: Settings = &[("list_accumulation", "multiply"), ("level_accumulation", "multiply")];
+const LARGE_EPSILON: Settings = &[EPSILON_10, MIP_MAP];
+const FIVE_LEVELS: Settings = &[EPSILON_2, MIP_MAP, LEVELS_5];
+const SUB: Settings = &[EPSILON_2, MIP_MAP, WITH_SUB];
+const ALL: Settings = &[EPSILON_10, MIP_MAP, LEVELS_5, WITH_SUB];
+const ALL_Y_MAP: Settings = &[EPSILON_10, Y_MAP, LEVELS_5, WITH_SUB];
+const ALL_2048: Settings = &[EPSILON_10, MIP_MAP, ("levels", "6"), WITH_SUB, ("map_size", "2048")];
+const ALL_512: Settings = &[EPSILON_10, MIP_MAP, LEVELS_5, WITH_SUB, ("map_size", "512")];
+/// Figures 12 and 13: of each list so many fragments.
+const ONE_LAYER: Settings = &[("layers", "1")];
+const TWO_LAYERS: Settings = &[("layers", "2")];
+const SIXTEEN_LAYERS: Settings = &[("layers", "16")];
+
+const BOTH_FACES: &str =
+    "ours keeps both faces of solids (`faces = all`), so that two fragments of a list are one solid.";
+
+const OWN_LEVELS: &str = "ours makes the levels that a receiver looks up and no more, of eleven about five, and keeps in each what is looked \
+                          up: little is left to save.";
 
 /// What the paper has in its tables 1 and 2, which are one table of two scenes.
 struct StageTimes {
@@ -68,7 +59,7 @@ struct StageTimes {
 
 const fn stage_rows(scene: &'static str, view: Option<&'static str>, paper: &StageTimes) -> [Row; 20] {
     const TECHNIQUE: &str = "multi_layer";
-    const SETTINGS: [Settings; 5] = [PRINTED, LARGE_EPSILON, FIVE_LEVELS, SUB, ALL];
+    const SETTINGS: [Settings; 5] = [DEFAULT, LARGE_EPSILON, FIVE_LEVELS, SUB, ALL];
     const LISTS: [(&str, &str); 4] = [
         ("fragment counting", "count"),
         ("scan", "scan"),
@@ -89,7 +80,7 @@ const fn stage_rows(scene: &'static str, view: Option<&'static str>, paper: &Sta
     let mut i = 0;
     while i < LISTS.len() {
         let (what, pass) = LISTS[i];
-        rows[1 + i] = ms(what, scene, TECHNIQUE, pass, Number(paper.list_ms[i])).with(PRINTED);
+        rows[1 + i] = ms(what, scene, TECHNIQUE, pass, Number(paper.list_ms[i])).with(DEFAULT);
         i += 1;
     }
     let mut i = 0;
@@ -108,29 +99,44 @@ const fn stage_rows(scene: &'static str, view: Option<&'static str>, paper: &Sta
     rows
 }
 
+const ADDED_TOO_DARK: &str = "leaves one behind the other are added up, and what two leaves of half a texel hide is all of it: min(½ + ½, 1) \
+                              where they cover ¾ or less.";
+const MULTIPLIED_LEAVES: &str = "each fragment counts in two levels, w in one and 1 − w in the other, and (1 − w)(1 − (1 − w)) of the light \
+                                 passes an opaque one: up to a quarter.";
+
+/// Of each list so many fragments, by multiplication.
+macro_rules! multiplied {
+    ($layers:literal) => {
+        &[("layers", $layers), ("list_accumulation", "multiply"), ("level_accumulation", "multiply")]
+    };
+}
+
 /// What the paper says of both tables.
 const STAGE_CLAIMS: &[Claim] = &[
     claim(
         "ε = 10w makes filtering 1.6 to 2.8 times as fast.",
-        &[Rule::RatioAtLeast(Ms, "filtering, default", "filtering, ε = 10w", 1.6)],
+        &[Rule::RatioWithin(Ms, "filtering, default", "filtering, ε = 10w", [1.6, 2.8])],
     )
+    .because_ours(OWN_LEVELS)
     .on_any_adapter(),
     claim(
         "ε = 10w makes the lookup 1.27 to 1.49 times as fast.",
-        &[Rule::RatioAtLeast(Ms, "soft shadows, default", "soft shadows, ε = 10w", 1.27)],
+        &[Rule::RatioWithin(Ms, "soft shadows, default", "soft shadows, ε = 10w", [1.2, 1.6])],
     )
+    .because_ours(OWN_LEVELS)
     .on_any_adapter(),
     claim(
         "Five levels make filtering 1.44 times as fast and the lookup 1.3 to 1.4 times.",
         &[
-            Rule::RatioAtLeast(Ms, "filtering, default", "filtering, 5 levels", 1.4),
-            Rule::RatioAtLeast(Ms, "soft shadows, default", "soft shadows, 5 levels", 1.3),
+            Rule::RatioWithin(Ms, "filtering, default", "filtering, 5 levels", [1.3, 1.6]),
+            Rule::RatioWithin(Ms, "soft shadows, default", "soft shadows, 5 levels", [1.2, 1.5]),
         ],
     )
+    .because_ours(OWN_LEVELS)
     .on_any_adapter(),
     claim(
         "Every other pixel alone takes less than half the time of all of them.",
-        &[Rule::RatioAtMost(Ms, "soft shadows, sub", "soft shadows, default", 0.5)],
+        &[Rule::RatioWithin(Ms, "soft shadows, sub", "soft shadows, default", [0.25, 0.5])],
     )
     .on_any_adapter(),
     claim(
@@ -150,6 +156,7 @@ pub const PAPER: Paper = Paper {
                Accurate Soft Shadows, Computer Graphics Forum 34(1), 2014",
     hardware: "NVIDIA GeForce GTX Titan",
     bandwidth_gb_s: 288.0,
+    own: &["multi_layer"],
     exhibits: &[
         Exhibit {
             id: "figure1",
@@ -157,18 +164,22 @@ pub const PAPER: Paper = Paper {
             rows: &[
                 error("Sponza", SPONZA, "multi_layer").seen(HALL).at(640, 360),
                 error("distant and close occluders", LANTERN, "multi_layer").at(640, 360),
-                error("the same, ESSM", LANTERN, "essm").with(ESSM).at(640, 360),
+                error("the same, ESSM", LANTERN, "essm").at(640, 360),
                 error("tinted panes", "builtin:stained-glass", "multi_layer").at(640, 360),
             ],
             claims: &[
                 claim(
                     "The results are very close to ray-traced shadows.",
                     &[
-                        Rule::AtMost(Rmse, "Sponza", 0.05),
                         Rule::AtMost(Rmse, "distant and close occluders", 0.05),
                         Rule::AtMost(Rmse, "tinted panes", 0.05),
                     ],
+                )
+                .because(
+                    "by addition what stands before what is added up: where panes' bars and their glass overlap more is hidden than \
+                     there is.",
                 ),
+                claim("On Sponza too.", &[Rule::AtMost(Rmse, "Sponza", 0.05)]),
                 claim(
                     "ESSM does not capture distant and close occluders as well.",
                     &[Rule::RatioAtMost(Rmse, "distant and close occluders", "the same, ESSM", 1.0)],
@@ -183,9 +194,9 @@ pub const PAPER: Paper = Paper {
             id: "figure5",
             shows: "Wider penumbrae from more levels",
             rows: &[
-                error("level 1 alone", LANTERN, "multi_layer").with(printed!("2", "fixed_level" = "1")).at(640, 360),
-                error("level 3 alone", LANTERN, "multi_layer").with(printed!("2", "fixed_level" = "3")).at(640, 360),
-                error("level 5 alone", LANTERN, "multi_layer").with(printed!("2", "fixed_level" = "5")).at(640, 360),
+                error("level 1 alone", LANTERN, "multi_layer").with(&[("fixed_level", "1")]).at(640, 360),
+                error("level 3 alone", LANTERN, "multi_layer").with(&[("fixed_level", "3")]).at(640, 360),
+                error("level 5 alone", LANTERN, "multi_layer").with(&[("fixed_level", "5")]).at(640, 360),
             ],
             claims: &[],
             note: "a number for the width of one level's penumbra, because no metric of ours has it; the pictures \
@@ -195,16 +206,14 @@ pub const PAPER: Paper = Paper {
             id: "figure6",
             shows: "MIP-maps and Y-maps: texels of wide filters",
             rows: &[
-                error("MIP-map", "builtin:overlap", "multi_layer").with(&[("hierarchy", "mip_map")]).at(640, 360),
-                error("Y-map", "builtin:overlap", "multi_layer").with(&[("hierarchy", "y_map")]).at(640, 360),
-                error("finer Y-map (ours)", "builtin:overlap", "multi_layer")
-                    .with(&[("hierarchy", "fine_y_map")])
-                    .at(640, 360),
+                error("MIP-map", "builtin:overlap", "multi_layer").with(&[MIP_MAP]).at(640, 360),
+                error("Y-map", "builtin:overlap", "multi_layer").with(&[Y_MAP]).ours(&[("hierarchy", "fine_y_map")]).at(640, 360),
             ],
             claims: &[claim(
                 "Y-maps have not the artefacts that MIP-maps have in wide filters.",
-                &[Rule::RatioAtMost(Rmse, "Y-map", "MIP-map", 1.0)],
-            )],
+                &[Rule::RatioAtMost(Noise, "Y-map", "MIP-map", 0.75), Rule::RatioAtMost(Rmse, "Y-map", "MIP-map", 1.0)],
+            )
+            .because_ours("it errs less, and what noise is left by ours is of edges, alike by both.")],
             note: "",
         },
         drawing("figure7", "How a Y-map is made"),
@@ -214,17 +223,14 @@ pub const PAPER: Paper = Paper {
             id: "figure10",
             shows: "Interpolation between levels: a penumbra of every width",
             rows: &[
-                error("bilinear", "builtin:leaning-plank", "multi_layer")
-                    .with(printed!("2", "hierarchy" = "y_map", "level_weights" = "none"))
-                    .at(640, 360),
-                error("trilinear", "builtin:leaning-plank", "multi_layer")
-                    .with(printed!("2", "hierarchy" = "y_map"))
-                    .at(640, 360),
-                error("trilinear (ours)", "builtin:leaning-plank", "multi_layer").at(640, 360),
+                error("bilinear", "builtin:leaning-plank", "multi_layer").with(&[("level_weights", "none")]).at(640, 360),
+                error("trilinear", "builtin:leaning-plank", "multi_layer").at(640, 360),
             ],
             claims: &[claim(
                 "Trilinear interpolation of fragment lists hides the transitions between levels.",
-                &[Rule::RatioAtMost(Rmse, "trilinear", "bilinear", 1.0)],
+                &[
+                    Rule::RatioAtMost(Rmse, "trilinear", "bilinear", 0.75),
+                ],
             )],
             note: "",
         },
@@ -246,6 +252,10 @@ pub const PAPER: Paper = Paper {
             claims: &[claim(
                 "Fine detail of alpha maps casts shadows near the truth under a close and a distant light.",
                 &[Rule::AtMost(Rmse, "close: multi-layer", 0.05), Rule::AtMost(Rmse, "distant: multi-layer", 0.05)],
+            )
+            .because(
+                "a level's bilinear lookup blurs by √(w² + 2 s²) where its texels, s apart, merge w: penumbrae come out too wide \
+                 (with `filter_widths=effective` the distant one has .053 where this has .068, 128 × 72).",
             )],
             note: "",
         },
@@ -253,28 +263,40 @@ pub const PAPER: Paper = Paper {
             id: "figure12",
             shows: "A tree: ESSM, and 1, 2 and 16 fragments in the base layer",
             rows: &[
-                error("ESSM", TREE, "essm").with(ESSM).at(640, 360),
-                error("1 fragment", TREE, "multi_layer")
-                    .with(printed!("2", "hierarchy" = "y_map", "layers" = "1"))
-                    .at(640, 360),
-                error("2 fragments", TREE, "multi_layer")
-                    .with(printed!("2", "hierarchy" = "y_map", "layers" = "2"))
-                    .at(640, 360),
-                error("16 fragments", TREE, "multi_layer")
-                    .with(printed!("2", "hierarchy" = "y_map", "layers" = "16"))
-                    .at(640, 360),
-                error("all fragments", TREE, "multi_layer").with(ADDITIVE).at(640, 360),
+                error("ESSM", TREE, "essm").at(640, 360),
+                error("1 fragment", TREE, "multi_layer").with(ONE_LAYER).at(640, 360),
+                error("2 fragments", TREE, "multi_layer").with(TWO_LAYERS).at(640, 360),
+                error("16 fragments", TREE, "multi_layer").with(SIXTEEN_LAYERS).at(640, 360),
+                error("all fragments", TREE, "multi_layer").at(640, 360),
+                error("1 fragment, multiplied", TREE, "multi_layer").with(multiplied!("1")).at(640, 360),
+                error("2 fragments, multiplied", TREE, "multi_layer").with(multiplied!("2")).at(640, 360),
+                error("16 fragments, multiplied", TREE, "multi_layer").with(multiplied!("16")).at(640, 360),
             ],
             claims: &[
                 claim(
-                    "One fragment a texel leaves light in a tree's shadow; two leave little.",
+                    "One fragment a texel leaves light in a tree's shadow; with two it looks plausible.",
                     &[Rule::RatioAtMost(UmbraLeak, "2 fragments", "1 fragment", 0.5)],
-                ),
+                )
+                .because_ours(BOTH_FACES),
+                claim(
+                    "The same by multiplication.",
+                    &[Rule::RatioAtMost(UmbraLeak, "2 fragments, multiplied", "1 fragment, multiplied", 0.5)],
+                )
+                .because(MULTIPLIED_LEAVES)
+                .because_ours(BOTH_FACES),
                 claim(
                     "Sixteen fragments show what all do.",
                     &[Rule::Alike(Rmse, &["16 fragments", "all fragments"], 1.1)],
                 ),
-                claim("ESSM does not capture a tree as well.", &[Rule::RatioAtMost(Rmse, "16 fragments", "ESSM", 1.0)]),
+                claim(
+                    "ESSM does not capture a tree as well.",
+                    &[Rule::RatioAtMost(Rmse, "16 fragments", "ESSM", 1.0)],
+                )
+                .because(ADDED_TOO_DARK),
+                claim(
+                    "ESSM does not capture a tree as well as multiplication does.",
+                    &[Rule::RatioAtMost(Rmse, "16 fragments, multiplied", "ESSM", 1.0)],
+                ),
             ],
             note: "",
         },
@@ -282,28 +304,24 @@ pub const PAPER: Paper = Paper {
             id: "figure13",
             shows: "What each parameter costs in quality",
             rows: &[
-                error("conservative", LANTERN, "multi_layer").with(ADDITIVE).at(640, 360),
-                error("one layer", LANTERN, "multi_layer")
-                    .with(printed!("2", "hierarchy" = "y_map", "layers" = "1"))
-                    .at(640, 360),
-                error("two layers", LANTERN, "multi_layer")
-                    .with(printed!("2", "hierarchy" = "y_map", "layers" = "2"))
-                    .at(640, 360),
-                error("ε = 130 w", LANTERN, "multi_layer").with(printed!("130", "hierarchy" = "y_map")).at(640, 360),
-                error("four levels", LANTERN, "multi_layer")
-                    .with(printed!("2", "hierarchy" = "y_map", "levels" = "4"))
-                    .at(640, 360),
-                error("conservative, Sponza", SPONZA, "multi_layer").seen(HALL).with(ADDITIVE).at(640, 360),
+                error("conservative", LANTERN, "multi_layer").at(640, 360),
+                error("one layer", LANTERN, "multi_layer").with(ONE_LAYER).at(640, 360),
+                error("two layers", LANTERN, "multi_layer").with(TWO_LAYERS).at(640, 360),
+                error("ε = 130 w", LANTERN, "multi_layer").with(&[("epsilon", "130")]).at(640, 360),
+                error("four levels", LANTERN, "multi_layer").with(&[("levels", "4")]).at(640, 360),
+                error("conservative, Sponza", SPONZA, "multi_layer").seen(HALL).at(640, 360),
             ],
             claims: &[
                 claim(
                     "A single layer does not suffice: light gets where it is occluded behind the first.",
                     &[Rule::RatioAtLeast(UmbraLeak, "one layer", "conservative", 1.5)],
-                ),
+                )
+                .because_ours(BOTH_FACES),
                 claim(
                     "With two layers the scene still looks plausible.",
                     &[Rule::RatioAtMost(UmbraLeak, "two layers", "one layer", 0.75)],
-                ),
+                )
+                .because_ours(BOTH_FACES),
                 claim(
                     "A very large ε merges occluders that should not be.",
                     &[Rule::RatioAtLeast(Rmse, "ε = 130 w", "conservative", 1.1)],
@@ -319,10 +337,9 @@ pub const PAPER: Paper = Paper {
             id: "figure14",
             shows: "An occluder across levels: additive and multiplicative accumulation",
             rows: &[
-                error("by edges (ours)", "builtin:leaning-plank", "multi_layer").at(640, 360),
-                error("additive", "builtin:leaning-plank", "multi_layer").with(ADDITIVE).at(640, 360),
-                error("multiplicative", "builtin:leaning-plank", "multi_layer").with(MULTIPLICATIVE).at(640, 360),
-                error("ESSM", "builtin:leaning-plank", "essm").with(ESSM).at(640, 360),
+                error("additive", "builtin:leaning-plank", "multi_layer").at(640, 360),
+                error("multiplicative", "builtin:leaning-plank", "multi_layer").with(MULTIPLIED).at(640, 360),
+                error("ESSM", "builtin:leaning-plank", "essm").at(640, 360),
             ],
             claims: &[
                 claim(
@@ -332,7 +349,7 @@ pub const PAPER: Paper = Paper {
                 ),
                 claim(
                     "ESSM misses contact shadows that additive accumulation captures.",
-                    &[Rule::RatioAtMost(Rmse, "additive", "ESSM", 1.0)],
+                    &[Rule::RatioAtMost(UmbraLeak, "additive", "ESSM", 0.75)],
                 ),
             ],
             note: "the colours of levels, because the technique has no such view; figure 5 shows levels one by one",
@@ -341,15 +358,16 @@ pub const PAPER: Paper = Paper {
             id: "figure15",
             shows: "Aligned panels: addition darkens too much",
             rows: &[
-                error("by edges (ours)", "builtin:stacked-panels", "multi_layer").at(640, 360),
-                error("additive", "builtin:stacked-panels", "multi_layer").with(ADDITIVE).at(640, 360),
-                error("multiplicative", "builtin:stacked-panels", "multi_layer").with(MULTIPLICATIVE).at(640, 360),
-                error("ESSM", "builtin:stacked-panels", "essm").with(ESSM).at(640, 360),
+                error("additive", "builtin:stacked-panels", "multi_layer").at(640, 360),
+                error("multiplicative", "builtin:stacked-panels", "multi_layer").with(MULTIPLIED).at(640, 360),
+                error("ESSM", "builtin:stacked-panels", "essm").at(640, 360),
             ],
             claims: &[
                 claim(
                     "Additive accumulation darkens aligned panels too much; multiplicative is right.",
-                    &[Rule::RatioAtMost(Rmse, "multiplicative", "additive", 0.9)],
+                    &[
+                        Rule::RatioAtMost(Rmse, "multiplicative", "additive", 0.9),
+                    ],
                 ),
                 claim(
                     "ESSM does not handle aligned panels well.",
@@ -406,12 +424,18 @@ pub const PAPER: Paper = Paper {
                 fps("street, 1920x1080, Y", STREET, "multi_layer", 77.9).with(ALL_Y_MAP).at(1920, 1080),
             ],
             claims: &[claim(
-                "Y-maps cost some frames a second: 7 to 18 of a hundred.",
+                "Y-maps cost some frames a second: on the street 7 to 18 of a hundred.",
                 &[
-                    Rule::RatioAtLeast(Ms, "Sponza, 1280x720, Y", "Sponza, 1280x720, MIP", 1.0),
-                    Rule::RatioAtLeast(Ms, "Sponza, 1920x1080, Y", "Sponza, 1920x1080, MIP", 1.0),
-                    Rule::RatioAtLeast(Ms, "street, 1280x720, Y", "street, 1280x720, MIP", 1.0),
-                    Rule::RatioAtLeast(Ms, "street, 1920x1080, Y", "street, 1920x1080, MIP", 1.0),
+                    Rule::RatioWithin(Ms, "street, 1280x720, Y", "street, 1280x720, MIP", [1.05, 1.35]),
+                    Rule::RatioWithin(Ms, "street, 1920x1080, Y", "street, 1920x1080, MIP", [1.02, 1.25]),
+                ],
+            )
+            .on_any_adapter(),
+            claim(
+                "On Sponza 10 to 14 of a hundred.",
+                &[
+                    Rule::RatioWithin(Ms, "Sponza, 1280x720, Y", "Sponza, 1280x720, MIP", [1.05, 1.3]),
+                    Rule::RatioWithin(Ms, "Sponza, 1920x1080, Y", "Sponza, 1920x1080, MIP", [1.03, 1.25]),
                 ],
             )
             .on_any_adapter()],
@@ -420,57 +444,58 @@ pub const PAPER: Paper = Paper {
         Exhibit {
             id: "table4",
             shows: "ESSM and multi-layer at three sizes on three scenes, and rays: 128 a pixel, there by OptiX, \
-                    here on the processor",
+                    here by compute shaders on the same adapter",
             rows: &[
-                ms("Sponza: ESSM", SPONZA, "essm", "", Number(5.2)).with(ESSM).seen(HALL),
+                ms("Sponza: ESSM", SPONZA, "essm", "", Number(5.2)).seen(HALL),
                 ms("Sponza: multi-layer", SPONZA, "multi_layer", "", Number(8.5)).seen(HALL).with(ALL),
                 ms("Sponza: multi-layer, 2048²", SPONZA, "multi_layer", "", Number(45.0))
                     .seen(HALL)
                     .with(ALL_2048)
                     .dear(),
                 ms("Sponza: multi-layer, 512²", SPONZA, "multi_layer", "", Number(5.7)).seen(HALL).with(ALL_512),
-                rays("Sponza: ray tracing", SPONZA, 128, 2100.0).seen(HALL),
-                ms("tree: ESSM", TREE, "essm", "", Number(5.5)).with(ESSM),
+                ms("Sponza: ray tracing", SPONZA, "ray_traced", "", Number(2100.0)).seen(HALL).with(&[("samples", "128")]).dear(),
+                ms("tree: ESSM", TREE, "essm", "", Number(5.5)),
                 ms("tree: multi-layer", TREE, "multi_layer", "", Number(6.1)).with(ALL),
                 ms("tree: multi-layer, 2048²", TREE, "multi_layer", "", Number(28.0)).with(ALL_2048),
                 ms("tree: multi-layer, 512²", TREE, "multi_layer", "", Number(4.4)).with(ALL_512),
-                rays("tree: ray tracing", TREE, 128, 1800.0),
-                ms("street: ESSM", STREET, "essm", "", Number(6.7)).with(ESSM),
+                ms("tree: ray tracing", TREE, "ray_traced", "", Number(1800.0)).with(&[("samples", "128")]).dear(),
+                ms("street: ESSM", STREET, "essm", "", Number(6.7)),
                 ms("street: multi-layer", STREET, "multi_layer", "", Number(9.5)).with(ALL),
                 ms("street: multi-layer, 2048²", STREET, "multi_layer", "", Number(38.0)).with(ALL_2048).dear(),
                 ms("street: multi-layer, 512²", STREET, "multi_layer", "", Number(8.5)).with(ALL_512),
-                rays("street: ray tracing", STREET, 128, 1600.0),
+                ms("street: ray tracing", STREET, "ray_traced", "", Number(1600.0)).with(&[("samples", "128")]).dear(),
             ],
             claims: &[
                 claim(
                     "ESSM is faster than multi-layer shadow maps.",
                     &[
-                        Rule::RatioAtMost(Ms, "Sponza: ESSM", "Sponza: multi-layer", 1.0),
                         Rule::RatioAtMost(Ms, "tree: ESSM", "tree: multi-layer", 1.0),
                         Rule::RatioAtMost(Ms, "street: ESSM", "street: multi-layer", 1.0),
                     ],
                 ),
                 claim(
                     "Base maps of 2048² cost significantly more: four to five times.",
-                    &[Rule::RatioAtLeast(Ms, "tree: multi-layer, 2048²", "tree: multi-layer", 2.0)],
+                    &[Rule::RatioWithin(Ms, "tree: multi-layer, 2048²", "tree: multi-layer", [3.5, 5.5])],
                 )
                 .on_any_adapter(),
                 claim(
                     "Base maps of 512² are faster still.",
                     &[
-                        Rule::RatioAtMost(Ms, "Sponza: multi-layer, 512²", "Sponza: multi-layer", 1.0),
                         Rule::RatioAtMost(Ms, "tree: multi-layer, 512²", "tree: multi-layer", 1.0),
                         Rule::RatioAtMost(Ms, "street: multi-layer, 512²", "street: multi-layer", 1.0),
                     ],
                 )
                 .on_any_adapter(),
                 claim(
-                    "Ray tracing takes some hundred times as long.",
+                    "Ray tracing takes some hundred times as long (170 to 300 times).",
                     &[
-                        Rule::RatioAtLeast(Ms, "Sponza: ray tracing", "Sponza: multi-layer", 100.0),
                         Rule::RatioAtLeast(Ms, "tree: ray tracing", "tree: multi-layer", 100.0),
                         Rule::RatioAtLeast(Ms, "street: ray tracing", "street: multi-layer", 100.0),
                     ],
+                )
+                .because(
+                    "rays on a graphics card of today, through trees that its compute units walk, are faster beside everything else \
+                     than they were on one of 2013.",
                 ),
             ],
             note: "",
@@ -483,16 +508,28 @@ pub const PAPER: Paper = Paper {
                 ms("Sponza: filtering, Y", SPONZA, "multi_layer", "filter", Drawn).seen(HALL).with(ALL_Y_MAP),
                 ms("Sponza: lookup, MIP", SPONZA, "multi_layer", LOOKUP, Drawn).seen(HALL).with(ALL),
                 ms("Sponza: lookup, Y", SPONZA, "multi_layer", LOOKUP, Drawn).seen(HALL).with(ALL_Y_MAP),
+                ms("street: filtering, MIP", STREET, "multi_layer", "filter", Drawn).with(ALL),
+                ms("street: filtering, Y", STREET, "multi_layer", "filter", Drawn).with(ALL_Y_MAP),
+                ms("street: lookup, MIP", STREET, "multi_layer", LOOKUP, Drawn).with(ALL),
+                ms("street: lookup, Y", STREET, "multi_layer", LOOKUP, Drawn).with(ALL_Y_MAP),
             ],
             claims: &[
                 claim(
-                    "Y-maps take 22 % longer to filter.",
-                    &[Rule::RatioAtMost(Ms, "Sponza: filtering, Y", "Sponza: filtering, MIP", 1.4)],
+                    "On Sponza Y-maps take 22 % longer to filter.",
+                    &[Rule::RatioWithin(Ms, "Sponza: filtering, Y", "Sponza: filtering, MIP", [1.1, 1.4])],
                 )
                 .on_any_adapter(),
                 claim(
-                    "Y-maps take 9 % longer to look up.",
-                    &[Rule::RatioAtMost(Ms, "Sponza: lookup, Y", "Sponza: lookup, MIP", 1.2)],
+                    "On Sponza Y-maps take 9 % longer to look up.",
+                    &[Rule::RatioWithin(Ms, "Sponza: lookup, Y", "Sponza: lookup, MIP", [1.02, 1.2])],
+                )
+                .on_any_adapter(),
+                claim(
+                    "The same on the street, which the paper has no numbers for: Y-maps take longer, by less than half.",
+                    &[
+                        Rule::RatioWithin(Ms, "street: filtering, Y", "street: filtering, MIP", [1.0, 1.5]),
+                        Rule::RatioWithin(Ms, "street: lookup, Y", "street: lookup, MIP", [1.0, 1.5]),
+                    ],
                 )
                 .on_any_adapter(),
             ],
@@ -505,17 +542,32 @@ pub const PAPER: Paper = Paper {
             claims: &[claim(
                 "A game-like scene comes close to ray-traced shadows.",
                 &[Rule::AtMost(Rmse, "multi-layer", 0.05)],
+            )
+            .because(
+                "of several departures from the truth none has most of it: of .111 (128 × 72) fragments held against one depth are \
+                 .006 (`planes=true`), interpolation beyond a level's width .005 (`filter_widths=effective`).",
             )],
             note: "",
         },
         Exhibit {
             id: "figure17",
-            shows: "Multi-layer beside ray-traced shadows",
-            rows: &[error("multi-layer", TREE, "multi_layer").at(640, 360)],
-            claims: &[claim(
-                "A tree compares nicely to ray-traced shadows.",
-                &[Rule::AtMost(Rmse, "multi-layer", 0.06)],
-            )],
+            shows: "Multi-layer beside ray-traced shadows; the paper does not say how opacities accumulate there",
+            rows: &[
+                error("additive", TREE, "multi_layer").at(640, 360),
+                error("multiplicative", TREE, "multi_layer").with(MULTIPLIED).at(640, 360),
+            ],
+            claims: &[
+                claim(
+                    "A tree compares nicely to ray-traced shadows, by addition.",
+                    &[Rule::AtMost(Rmse, "additive", 0.06)],
+                )
+                .because(ADDED_TOO_DARK),
+                claim(
+                    "By multiplication, whose light leaks are not visible (section 6).",
+                    &[Rule::AtMost(Rmse, "multiplicative", 0.06)],
+                )
+                .because(MULTIPLIED_LEAVES),
+            ],
             note: "",
         },
         Exhibit {
@@ -538,11 +590,12 @@ pub const PAPER: Paper = Paper {
                     &[Rule::RatioAtMost(Rmse, "2048²", "1024²", 1.0)],
                 ),
                 claim(
-                    "Sub-sampling the first filter step keeps that and takes less time.",
-                    &[
-                        Rule::RatioAtMost(Rmse, "2048², sub-sampled", "1024²", 1.0),
-                        Rule::RatioAtMost(Ms, "filtering, 2048², sub-sampled", "filtering, 2048²", 0.9),
-                    ],
+                    "Sub-sampling the first filter step keeps that.",
+                    &[Rule::RatioAtMost(Rmse, "2048², sub-sampled", "1024²", 1.0)],
+                ),
+                claim(
+                    "It takes less time.",
+                    &[Rule::RatioAtMost(Ms, "filtering, 2048², sub-sampled", "filtering, 2048²", 0.9)],
                 )
                 .on_any_adapter(),
             ],

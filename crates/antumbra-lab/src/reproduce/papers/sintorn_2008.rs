@@ -1,10 +1,10 @@
 //! Sintorn, Eisemann, Assarsson 2008. Frames a second of whole frames at 512 × 512.
 
 use super::SKETCHED_PCSS;
-use crate::reproduce::claim::{Rule, claim};
+use crate::reproduce::claim::{Rule, claim, not_here};
 use crate::reproduce::exhibit::Reported::Drawn;
-use crate::reproduce::exhibit::{Exhibit, Paper, Settings, drawing, error, fps, ms, rays};
-use crate::reproduce::figure::Figure::{Ms, Rmse};
+use crate::reproduce::exhibit::{Exhibit, Paper, Settings, drawing, error, fps, ms};
+use crate::reproduce::figure::Figure::{Ms, Noise, Rmse};
 
 const SAMPLES_128: Settings = &[("samples", "128")];
 const SAMPLES_256: Settings = &[("samples", "256")];
@@ -27,6 +27,7 @@ pub const PAPER: Paper = Paper {
                Shadow Maps, EGSR 2008",
     hardware: "NVIDIA GeForce 8800 GTS 512",
     bandwidth_gb_s: 62.0,
+    own: &["alias_free", "sample_based"],
     exhibits: &[
         Exhibit {
             id: "figure1",
@@ -64,7 +65,10 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[claim(
                 "Other light samples in each frame add up to a smooth shadow.",
-                &[Rule::RatioAtMost(Rmse, "jittering, 32 frames", "no jittering", 0.75)],
+                &[
+                    Rule::RatioAtMost(Noise, "jittering, 32 frames", "no jittering", 0.75),
+                    Rule::RatioAtMost(Rmse, "jittering, 32 frames", "no jittering", 0.75),
+                ],
             )],
             note: "",
         },
@@ -83,7 +87,7 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[claim(
                 "Sample-based visibility is about an order of magnitude faster than as many shadow maps.",
-                &[Rule::RatioAtLeast(Ms, "shadow maps, 256", "sample-based, 256", 5.0)],
+                &[Rule::RatioAtLeast(Ms, "shadow maps, 256", "sample-based, 256", 10.0)],
             )],
             note: "",
         },
@@ -121,11 +125,10 @@ pub const PAPER: Paper = Paper {
             claims: &[claim(
                 "Time is mostly linear in the number of triangles.",
                 &[
-                    Rule::RatioAtLeast(Ms, "300 000 triangles", "100 000 triangles", 1.5),
-                    Rule::RatioAtMost(Ms, "300 000 triangles", "100 000 triangles", 4.5),
+                    Rule::RatioWithin(Ms, "300 000 triangles", "100 000 triangles", [2.0, 4.0]),
+                    Rule::RatioWithin(Ms, "1 000 000 triangles", "100 000 triangles", [5.0, 14.0]),
                 ],
-            )
-            .on_any_adapter()],
+            )],
             note: "",
         },
         Exhibit {
@@ -150,14 +153,16 @@ pub const PAPER: Paper = Paper {
                     .at(512, 512),
             ],
             claims: &[claim(
-                "Time is linear in the light's radius: half the radius costs half.",
+                "Time is linear in the light's radius: half the radius costs half, twice it costs twice as much.",
                 &[
-                    Rule::Rising(
-                        Ms,
-                        &["half the radius", "the scene's radius", "twice the radius", "four times the radius"],
-                    ),
-                    Rule::RatioAtMost(Ms, "four times the radius", "half the radius", 12.0),
+                    Rule::RatioWithin(Ms, "half the radius", "the scene's radius", [0.4, 0.65]),
+                    Rule::RatioWithin(Ms, "twice the radius", "the scene's radius", [1.55, 2.5]),
+                    Rule::RatioWithin(Ms, "four times the radius", "twice the radius", [1.55, 2.5]),
                 ],
+            )
+            .because(
+                "a part of the time does not depend on the radius: lists are made, and regions of influence are at least a \
+                 triangle's own.",
             )
             .on_any_adapter()],
             note: "",
@@ -185,14 +190,13 @@ pub const PAPER: Paper = Paper {
             claims: &[
                 claim(
                     "Eight times as many light samples, 128 to 1024, cost about twice as much.",
-                    &[Rule::RatioAtMost(Ms, "sample-based, 1024", "sample-based, 128", 2.5)],
-                )
-                .on_any_adapter(),
+                    &[Rule::RatioWithin(Ms, "sample-based, 1024", "sample-based, 128", [1.5, 2.7])],
+                ),
                 claim(
                     "Sample-based visibility is about an order of magnitude faster than as many shadow maps.",
                     &[
-                        Rule::RatioAtLeast(Ms, "shadow maps, 256", "sample-based, 256", 5.0),
-                        Rule::RatioAtLeast(Ms, "shadow maps, 1024", "sample-based, 1024", 5.0),
+                        Rule::RatioAtLeast(Ms, "shadow maps, 256", "sample-based, 256", 10.0),
+                        Rule::RatioAtLeast(Ms, "shadow maps, 1024", "sample-based, 1024", 10.0),
                     ],
                 ),
             ],
@@ -219,7 +223,10 @@ pub const PAPER: Paper = Paper {
                         Rule::RatioAtMost(Rmse, "alias-free: errors", "shadow map: errors", 0.25),
                     ],
                 ),
-                claim("Soft shadows of a hairball are accurate.", &[Rule::AtMost(Rmse, "sample-based, 256", 0.02)]),
+                claim("Soft shadows of a hairball are accurate.", &[Rule::AtMost(Rmse, "sample-based, 256", 0.02)]).because(
+                    "the bits are the ray tracer's for the same light points; what is left is sampling: a hair hides single ones, \
+                     of the technique's 256 and of the reference's (64 at the smallest sizes).",
+                ),
             ],
             note: "",
         },
@@ -248,7 +255,7 @@ pub const PAPER: Paper = Paper {
             claims: &[
                 claim(
                     "The zoomed view costs more than the whole one (4.5 frames a second against 7).",
-                    &[Rule::RatioAtLeast(Ms, "tree, zoomed", "tree, 85 000 (the paper's: 90 000)", 1.0)],
+                    &[Rule::RatioWithin(Ms, "tree, zoomed", "tree, 85 000 (the paper's: 90 000)", [1.1, 2.2])],
                 ),
                 claim(
                     "The ring costs most (0.65 frames a second).",
@@ -274,49 +281,27 @@ pub const PAPER: Paper = Paper {
                     .with(&[("map_size", "8192")])
                     .light_scaled(POINT)
                     .at(512, 512),
-                rays("Sponza: rays, 256, here on the processor", "sponza.glb", 256, 9000.0).seen(ATRIUM).at(512, 512),
-                fps("Sponza: sample-based, 256", "sponza.glb", "sample_based", 2.6)
-                    .with(SAMPLES_256)
-                    .seen(ATRIUM)
-                    .at(512, 512)
-                    .dear(),
-                rays("ring in grass: rays, 256, here on the processor", "builtin:ring-in-grass", 256, 75000.0)
-                    .at(512, 512)
-                    .dear(),
-                fps("ring in grass: sample-based, 256", "builtin:ring-in-grass", "sample_based", 0.65)
-                    .with(SAMPLES_256)
-                    .at(512, 512)
-                    .dear(),
             ],
             claims: &[
                 claim(
                     "Alias-free shadows take three times as long as a map of 8192².",
                     &[
-                        Rule::RatioAtMost(Ms, "alias-free hard shadows", "shadow map of 8192²", 4.0),
+                        Rule::RatioWithin(Ms, "alias-free hard shadows", "shadow map of 8192²", [2.0, 4.5]),
                         Rule::RatioAtMost(Rmse, "alias-free: errors", "shadow map of 8192²: errors", 1.0),
                     ],
                 ),
-                claim(
-                    "On Sponza it is 23 times as fast as Overbeck's ray-traced beams (9 s), here as rays.",
-                    &[Rule::RatioAtLeast(
-                        Ms,
-                        "Sponza: rays, 256, here on the processor",
-                        "Sponza: sample-based, 256",
-                        10.0,
-                    )],
+                not_here(
+                    "On Sponza it is 23 times as fast as Overbeck's ray-traced beams (9 s).",
+                    "that system is not in this repository; both on one machine would show it, and a graphics card's seconds of \
+                     2008 beside a processor's of today would not",
                 ),
-                claim(
-                    "On the ring it is 49 times as fast as soft shadow volumes (75 s), here as rays.",
-                    &[Rule::RatioAtLeast(
-                        Ms,
-                        "ring in grass: rays, 256, here on the processor",
-                        "ring in grass: sample-based, 256",
-                        10.0,
-                    )],
+                not_here(
+                    "On the ring it is 49 times as fast as soft shadow volumes (75 s).",
+                    "that system is not in this repository; both on one machine would show it, and a processor's seconds of 2005 \
+                     beside a graphics card's of today would not",
                 ),
             ],
-            note: "Overbeck's and Laine's systems themselves, which are not here: the paper's seconds stand \
-                   beside those of rays.",
+            note: "Overbeck's and Laine's systems, which are not here.",
         },
     ],
 };

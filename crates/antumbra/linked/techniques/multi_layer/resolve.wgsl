@@ -54,6 +54,8 @@ override LIGHT_PARTS: u32 = 1u;
 
 override LEVEL_WEIGHTS: u32 = 0u;
 
+override WEIGHTS_FRAGMENTS: bool = false;
+
 override LISTS_APART: u32 = 0u;
 
 override HAS_PLANES: bool = true;
@@ -71,6 +73,8 @@ const PAIRS = 1u;
 const ADD = 2u;
 
 const MULTIPLY = 3u;
+
+const MAX = 4u;
 
 const BY_VARIANCE = 0u;
 
@@ -162,7 +166,7 @@ fn combined(a: Occluder, b: Occluder) -> Occluder {
 }
 
 fn combined_in_level(a: Occluder, b: Occluder) -> Occluder {
-    if LEVEL_ACCUMULATION == CORRELATED {
+    if LEVEL_ACCUMULATION == CORRELATED && !WEIGHTS_FRAGMENTS {
         return combined(a, b);
     }
     return Occluder(fragments_accumulate(LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
@@ -171,6 +175,28 @@ fn combined_in_level(a: Occluder, b: Occluder) -> Occluder {
 fn add_surface(share: Share, surface: Occluder, place: f32) -> Share {
     let strength = largest(surface.opacity);
     return Share(combined_in_level(share.occluder, surface), share.place_sum + strength * place, share.strength + strength);
+}
+
+fn add_to_level(shares: LevelShares, lookup: Lookup, rung: MultiLayerRung, z_peak: f32, z_m: f32, surface: Occluder) -> LevelShares {
+    var sum = shares;
+    if WEIGHTS_FRAGMENTS {
+        let weight = own_weight(lookup, rung, z_peak, z_m);
+        sum.finer = add_surface(shares.finer, Occluder(weight * surface.opacity, weight * surface.edge), 0.0);
+    }
+    else if z_m < z_peak {
+        sum.coarser = add_surface(shares.coarser, surface, place_towards_coarser(lookup, rung, z_m));
+    }
+    else {
+        sum.finer = add_surface(shares.finer, surface, place_towards_finer(lookup, rung, z_m));
+    }
+    return sum;
+}
+
+fn own_weight(lookup: Lookup, rung: MultiLayerRung, z_peak: f32, z_m: f32) -> f32 {
+    if z_m < z_peak {
+        return 1.0 - place_towards_coarser(lookup, rung, z_m);
+    }
+    return place_towards_finer(lookup, rung, z_m);
 }
 
 const NONE = 3e38;
@@ -412,12 +438,7 @@ fn level_shares(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLayerRung
         surface.opacity = min(surface.opacity / seen, vec3f(1.0));
         surface.edge /= seen;
         let z_mean = select(nearest, depths.z / max(depths.weight, 1e-20), depths.weight > 1e-6);
-        if z_mean < hat.z_peak {
-            shares.coarser = add_surface(shares.coarser, surface, place_towards_coarser(lookup, rung, z_mean));
-        }
-        else {
-            shares.finer = add_surface(shares.finer, surface, place_towards_finer(lookup, rung, z_mean));
-        }
+        shares = add_to_level(shares, lookup, rung, hat.z_peak, z_mean, surface);
         nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
         continuing {
             surfaces++;
@@ -468,12 +489,7 @@ fn level_shares_apart(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLay
                 break;
             }
             let surface = Occluder(fragments_unpack_opacity(fragment.y, COLORED), vec2f());
-            if z_m < hat.z_peak {
-                list.coarser = add_surface(list.coarser, surface, place_towards_coarser(lookup, rung, z_m));
-            }
-            else {
-                list.finer = add_surface(list.finer, surface, place_towards_finer(lookup, rung, z_m));
-            }
+            list = add_to_level(list, lookup, rung, hat.z_peak, z_m, surface);
         }
         let change = vec2f(change_x[k], change_y[k]);
         shares.coarser = of_list(shares.coarser, list.coarser, weight[k], change);
@@ -515,6 +531,20 @@ fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
         }
         case default {
             return Occluder(max(so_far.opacity, pair.opacity), vec2f());
+        }
+    }
+}
+
+fn between_levels() -> u32 {
+    switch LEVEL_ACCUMULATION {
+        case ADD {
+            return fragments_ACCUMULATE_ADD;
+        }
+        case MAX {
+            return fragments_ACCUMULATE_MAX;
+        }
+        case default {
+            return fragments_ACCUMULATE_MULTIPLY;
         }
     }
 }
@@ -584,8 +614,13 @@ fn occluded_share(lookup: Lookup, plane: space_ReceiverPlane) -> vec3f {
             so_far = accumulated(so_far, finer, NO_SHARE);
             finer = NO_SHARE;
         }
-        so_far = accumulated(so_far, finer, shares.finer);
-        finer = shares.coarser;
+        if WEIGHTS_FRAGMENTS {
+            so_far.opacity = fragments_accumulate(between_levels(), so_far.opacity, shares.finer.occluder.opacity);
+        }
+        else {
+            so_far = accumulated(so_far, finer, shares.finer);
+            finer = shares.coarser;
+        }
         before = rung;
         let is_umbra = all(so_far.opacity >= vec3f(OPAQUE));
         let rest = select(left_of_part & (left_of_part - 1u), 0u, is_umbra);
@@ -1047,6 +1082,8 @@ fn fragments_unpack_opacity(bits: u32, colored: u32) -> vec3f {
 const fragments_ACCUMULATE_ADD = 0u;
 
 const fragments_ACCUMULATE_MULTIPLY = 1u;
+
+const fragments_ACCUMULATE_MAX = 2u;
 
 fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
     switch mode {

@@ -10,6 +10,12 @@ override IS_ONE_WINDOW: bool = false;
 
 override HAS_SECOND_LOOK: bool = false;
 
+override AVERAGES_DEPTH: bool = false;
+
+override HAS_HORIZON: bool = true;
+
+override FOOTPRINT_ENDS: bool = true;
+
 fn plane_about(compared: compared_Compared, place: vec2f) -> space_ReceiverPlane {
     var about = compared.plane;
     about.farthest_depth = compared.own_depth * compared_inverse_divisor_at(compared, place);
@@ -37,6 +43,21 @@ fn texel_blocks(compared: compared_Compared, about: About, place: vec2f) -> vec2
     let held = saturate(sign * max(sign * in_plane, sign * about.farthest));
     let g = sign * (stored / about.inverse_divisor - compared.own_depth) / abs(map_light_view.depth_scale);
     return select(vec2f(), vec2f(1.0, g), sign * (stored - held) > 0.0 && about.is_in_map);
+}
+
+fn averaged(compared: compared_Compared, g: f32) -> f32 {
+    if AVERAGES_DEPTH {
+        return compared_z_of_g(compared, g);
+    }
+    return g;
+}
+
+fn g_of_mean(compared: compared_Compared, sum: f32, count: f32) -> f32 {
+    let mean = sum / max(count, 1e-12);
+    if AVERAGES_DEPTH {
+        return select(0.0, max(compared_g_of_z(compared, mean), 0.0), count > 0.0);
+    }
+    return mean;
 }
 
 fn map_answer(compared: compared_Compared, piece: sums_Piece) -> answer_Answer {
@@ -121,12 +142,12 @@ fn window_half(search: Search, k: u32) -> vec2f {
 fn counted(search: Search, compared: compared_Compared, piece: sums_Piece, answer: answer_Answer) -> vec2f {
     let g = clamp(answer.blocker_g, 0.0, search.g);
     if IS_ONE_WINDOW {
-        return (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, g);
+        return (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, averaged(compared, g));
     }
     let offset_uv = (sums_middle(piece) - search.center) / map_light_view.map_size;
     let place = space_plane_step_of_uv(map_light_view, compared.plane.uv, offset_uv);
     let counts = g > 0.0 && blocker_range_gauge(place, max(blocker_range_RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
-    return select(vec2f(), (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, g), counts);
+    return select(vec2f(), (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, averaged(compared, g)), counts);
 }
 
 fn search_tables(search: Search, compared: compared_Compared) -> vec2f {
@@ -208,7 +229,7 @@ fn search_blockers(compared: compared_Compared, extent: vec2f) -> vec2f {
         else {
             sum = search_tables(search, compared);
         }
-        mean_g = sum.y / max(sum.x, 1e-12);
+        mean_g = g_of_mean(compared, sum.y, sum.x);
         if !HAS_SECOND_LOOK || !(sum.x > 0.0) || !(mean_g < MUCH_NEARER * search.g) {
             break;
         }
@@ -456,9 +477,12 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached {
         return 0.0;
     }
-    let above = horizon_horizon_share(receiver);
+    var above = horizon_horizon_share(receiver);
     if above <= 0.0 {
         return 0.0;
+    }
+    if !HAS_HORIZON {
+        above = 1.0;
     }
     sums_tile_shift = uniform_soft.tile_log2;
     if sums_tile_shift == 0u {
@@ -476,7 +500,12 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let on_plane = uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
     var covariance = soft_kernel_light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
     if uniform_soft.with_footprint == 1u {
-        covariance += soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel);
+        if FOOTPRINT_ENDS {
+            covariance += soft_kernel_ending_footprint_covariance(receiver, compared.plane.uv, pixel);
+        }
+        else {
+            covariance += soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel, vec2f(1.0));
+        }
     }
     else if blockers.y <= 0.0 {
         return above;
@@ -948,15 +977,24 @@ fn soft_kernel_square_covariance(x: vec2f, y: vec2f) -> vec3f {
     return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
 }
 
-fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
+fn soft_kernel_ending_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
     if inputs_are_points() {
-        let sides = inputs_point_sides_m(receiver, pixel);
-        return soft_kernel_square_covariance(soft_kernel_texels_of_step(receiver, uv, sides[0]), soft_kernel_texels_of_step(receiver, uv, sides[1]));
+        return soft_kernel_footprint_covariance(receiver, uv, pixel, vec2f(1.0));
     }
     let width = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(-1, 0)) + soft_kernel_share_towards(receiver, pixel, vec2i(1, 0)));
     let height = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(0, -1)) + soft_kernel_share_towards(receiver, pixel, vec2i(0, 1)));
-    let x = 2.0 * width * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
-    let y = 2.0 * height * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
+    return soft_kernel_footprint_covariance(receiver, uv, pixel, vec2f(width, height));
+}
+
+fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u, size_px: vec2f) -> vec3f {
+    if inputs_are_points() {
+        let sides = inputs_point_sides_m(receiver, pixel);
+        let x = size_px.x * soft_kernel_texels_of_step(receiver, uv, sides[0]);
+        let y = size_px.y * soft_kernel_texels_of_step(receiver, uv, sides[1]);
+        return soft_kernel_square_covariance(x, y);
+    }
+    let x = 2.0 * size_px.x * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
+    let y = 2.0 * size_px.y * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
     return soft_kernel_square_covariance(x, y);
 }
 
@@ -1570,6 +1608,10 @@ fn compared_bare_plane_at(compared: compared_Compared, place: vec2f) -> compared
     let divisor = 1.0 / compared_inverse_divisor_at(compared, place);
     let depth = in_map * divisor;
     return compared_BarePlane(depth, (compared.bare_step - depth * compared.inverse_divisor_step) * divisor);
+}
+
+fn compared_z_of_g(compared: compared_Compared, g: f32) -> f32 {
+    return select(compared.z_m - g, 1.0 / (g + 1.0 / compared.z_m), map_light_view.perspective == 1u);
 }
 
 fn compared_g_of_z(compared: compared_Compared, z: f32) -> f32 {

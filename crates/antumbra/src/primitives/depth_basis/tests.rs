@@ -56,6 +56,23 @@ fn variance_bleeds_by_equation_4() {
     assert_close("one layer", one.visibility, cpu::variance(&depths, c, 1e-5).visibility, 1e-12);
 }
 
+/// Whether a layer by Chebyshev's bound is "at least as good" as one map (section 3.2): in umbrae, where all depths lie before the
+/// receiver, it is. Where a quarter lies behind it, at n = .1, the bound 1 − (a m − (1 − a) n)² / (a m² + (1 − a) n²) rises as the layer
+/// holds what lies m = .4 before the receiver to m = .1.
+#[test]
+fn a_layer_is_as_good_as_one_map_in_umbrae_and_not_where_depths_lie_behind() {
+    let bounds = |depths: &[(f64, f64)]| {
+        [[0.0, 1.0].as_slice(), &[0.0, 0.6, 1.0]].map(|splits| cpu::layered_as_printed(depths, 0.7, splits, 0.0, 0.0))
+    };
+    let [one_map, layer] = bounds(&[(0.3, 0.75), (0.8, 0.25)]);
+    assert_close("one map", one_map, 1.0 - 0.275f64.powi(2) / 0.1225, 1e-9);
+    assert_close("a layer", layer, 0.75, 1e-9);
+    for share in [0.1, 0.5, 0.9] {
+        let [one_map, layer] = bounds(&[(0.1, share), (0.65, 1.0 - share)]);
+        assert!(layer < one_map, "umbra, {share}: {layer} and {one_map}");
+    }
+}
+
 #[test]
 fn a_layer_knows_that_no_depth_lies_before_it() {
     // What is nearer than the layer is black, whatever the least variance: Markov's bound of mean 0.

@@ -32,6 +32,11 @@
 //!   other and the larger opacity counts; where they point opposite ways the surfaces adjoin and opacities add; where
 //!   they are unrelated transmittances multiply. With `level_accumulation=pairs`, which mixes and multiplies, and with
 //!   `correlated`: `stacked-panels` .049 and .015, `leaning-plank` .025 and .013, `stained-glass` .057 and .037.
+//! - **What the hat weights** (section 5.2: fragments are "weighted depending on their z-value by a hat-function" and
+//!   gathered). With `hat=fragments`, as published, each fragment of opacity α counts w α in a level and (1 − w) α in the
+//!   next, and all of these are accumulated. Two opaque surfaces at w = ½ are four fragments of ½: multiplied they hide
+//!   1 − (1 − ½)⁴ = .94, added min(4 · ½, 1) = 1. We accumulate a level first, here 1 in both, and weight what it hides:
+//!   multiplied that is 1 − (1 − ½)² = .75, mixed it is ½ · 1 + ½ · 1 = 1, which is the truth.
 //! - **All faces** of closed meshes cast, where the paper keeps the back ones: a solid's two faces have the same edges,
 //!   so they do not darken twice, and grooves and contacts finer than a texel no longer leak. `street` .094 and .079,
 //!   `stained-glass` .037 and .020. `faces=back` has half the fragments.
@@ -73,7 +78,7 @@
 //!
 //! A level keeps what receivers look up in it, and no more: filters as wide as its own are asked for by what lies far
 //! enough before the farthest receiver, so its lists end there, and levels that nothing lies far enough before are not
-//! made: nine of seventeen on `overlap`.
+//! made: nine of seventeen on `overlap`. `prune=false` makes all of them in full, as the paper does.
 //!
 //! A lookup first tells which levels have anything for it: by four reads of `nearest` for each, those about which anything
 //! lies near enough to the light, and of these the ones whose lists have it at the level's depths. Then it walks the lists
@@ -129,7 +134,7 @@ use levels::{Level, list_count};
 use nearest::{NearestSquares, PreparedNearest, all_squares};
 pub use params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
-    MultiLayerHierarchy, MultiLayerLevelAccumulation, MultiLayerLevelWeights, MultiLayerLightParts,
+    MultiLayerHat, MultiLayerHierarchy, MultiLayerLevelAccumulation, MultiLayerLevelWeights, MultiLayerLightParts,
     MultiLayerListAccumulation, MultiLayerLists, MultiLayerMapShape, MultiLayerParams, MultiLayerSamples,
 };
 use plan::FramePlan;
@@ -200,19 +205,21 @@ struct LookupDesign {
     level_accumulation: MultiLayerLevelAccumulation,
     light_parts: MultiLayerLightParts,
     level_weights: MultiLayerLevelWeights,
+    hat: MultiLayerHat,
     lists: MultiLayerLists,
     planes: bool,
 }
 
 impl LookupDesign {
     /// By their names.
-    fn constants(self) -> [(&'static str, f64); 7] {
+    fn constants(self) -> [(&'static str, f64); 8] {
         [
             ("COLORED", f64::from(u8::from(self.colored))),
             ("LIST_ACCUMULATION", f64::from(self.list_accumulation as u32)),
             ("LEVEL_ACCUMULATION", f64::from(self.level_accumulation as u32)),
             ("LIGHT_PARTS", f64::from(self.light_parts.count())),
             ("LEVEL_WEIGHTS", f64::from(self.level_weights as u32)),
+            ("WEIGHTS_FRAGMENTS", f64::from(u8::from(self.hat == MultiLayerHat::Fragments))),
             ("LISTS_APART", f64::from(self.lists as u32)),
             ("HAS_PLANES", f64::from(u8::from(self.planes))),
         ]

@@ -135,6 +135,16 @@ param_choice! {
 }
 
 param_choice! {
+    /// What [`MultiLayer`](super::MultiLayer) weights where two levels share a depth.
+    pub enum MultiLayerHat {
+        /// What each level has accumulated.
+        Levels = "levels",
+        /// Every fragment, before it is accumulated: the paper's.
+        Fragments = "fragments",
+    }
+}
+
+param_choice! {
     /// What width a level of [`MultiLayer`](super::MultiLayer) is looked up for.
     pub enum MultiLayerFilterWidths {
         /// That of the box that blurs as much as the level's lookup does.
@@ -212,6 +222,10 @@ params! {
         /// How a depth is shared between the two levels whose filters it lies between.
         level_weights: MultiLayerLevelWeights = MultiLayerLevelWeights::Variance,
             more "depth is the paper's, a little too sharp between levels; none shows where levels meet.";
+        /// What is weighted where two levels share a depth.
+        hat: MultiLayerHat = MultiLayerHat::Levels,
+            more "fragments is the paper's: two opaque surfaces half-way between two levels hide 1 − (½)⁴ by multiplication, where levels \
+                  hides 1 − (½)². Levels that mix (correlated, pairs) multiply then.";
         /// The width that a level is looked up for.
         filter_widths: MultiLayerFilterWidths = MultiLayerFilterWidths::Effective,
             more "merged is the paper's: penumbrae come out too wide, by as much as interpolation blurs.";
@@ -225,6 +239,9 @@ params! {
         /// How the four lists about a receiver are looked up.
         lists: MultiLayerLists = MultiLayerLists::Together,
             more "apart is the paper's: what two lists hold is not compared, so a surface that lies in both counts as two.";
+        /// Leave out of every level what no receiver looks up in it.
+        prune: bool = true,
+            more "false is the paper's: the same shadow, in the time and memory that epsilon and levels ask for.";
         /// Whether fragments are compared with the receiver's plane, and the light's part below it counts as hidden.
         planes: bool = true,
             more "false is the paper's: fragments are compared with the receiver's depth, and tilted receivers shade themselves.";
@@ -253,13 +270,14 @@ params! {
         list_accumulation: MultiLayerListAccumulation::Add, ours "Transmittances of one list multiply.";
         level_accumulation: MultiLayerLevelAccumulation::Add, ours "Neighbouring levels mix; surfaces come together by how their edges lie.";
         level_weights: MultiLayerLevelWeights::Depth, ours "Levels mix linearly in the square of the filter's width.";
+        hat: MultiLayerHat::Fragments, ours "A level's fragments are accumulated first, and what they hide is weighted.";
         filter_widths: MultiLayerFilterWidths::Merged, ours "A level's width counts what its interpolation blurs.";
         depth_average: MultiLayerDepthAverage::Count, ours "Depths are averaged by opacity.";
         lists: MultiLayerLists::Apart, ours "The four lists of a lookup are merged as they are walked.";
+        prune: false, ours "A level keeps what receivers look up in it, and no more: the same shadow in less time.";
         planes: false, ours "Fragments are held against the receiver's plane, and the light below it is hidden.";
         light_parts: MultiLayerLightParts::One, ours "The light's quarters are looked up one by one.";
     } kept {
-        "A level keeps what receivers look up in it, and no more: the shadow is the same.",
         "Open meshes have a bias of two thirds of a texel; the paper names none.",
     }
 }

@@ -121,7 +121,7 @@ impl<'a> FramePlan<'a> {
         // A quarter is half as wide as the light.
         let filter_per_g = filter_per_g(&view, extent, map_size) * if is_in_parts(params) { 0.5 } else { 1.0 };
         // What a pixel's footprint adds to filters is known in the shader alone.
-        if params.footprint == 0.0 && params.fixed_level == 0 {
+        if params.prune && params.footprint == 0.0 && params.fixed_level == 0 {
             let reach =
                 DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
             keep_what_is_looked_up(&mut levels, &reach, |level| tolerances.epsilon(level.octave));
@@ -209,6 +209,7 @@ impl<'a> FramePlan<'a> {
             level_accumulation: self.params.level_accumulation,
             light_parts: self.params.light_parts,
             level_weights: self.params.level_weights,
+            hat: self.params.hat,
             lists: self.params.lists,
             planes: self.params.planes,
         }

@@ -6,7 +6,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
 use super::nearest::{all_squares, squares_for};
 use super::plan::light_extent;
-use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerParams, PreparedMultiLayer, cpu};
+use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerHierarchy, MultiLayerParams, PreparedMultiLayer, cpu};
 use crate::TechniqueKind;
 use crate::contract::{Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -15,7 +15,7 @@ use crate::light_map::texel_lists::tests::{TestMesh, agree, scenes, unpack};
 use crate::shadow::Casters;
 use crate::techniques::Technique;
 use crate::testing::{
-    Case, Mesh, RECTANGLE, empty_depth, gpu, half_plane_visibility, read_storage, test_ground, test_receivers,
+    Case, Mesh, RECTANGLE, View, empty_depth, gpu, half_plane_visibility, read_storage, test_ground, test_receivers,
 };
 
 mod seen_from_the_side;
@@ -109,12 +109,90 @@ fn what_levels_leave_out_is_not_missed() {
     for parts in ["1", "4"] {
         let mask =
             |footprint| case.run(gpu, TechniqueKind::MultiLayer, &[("light_parts", parts), ("footprint", footprint)]);
-        // With a footprint, here a negligible one, every level is whole.
-        let (kept, whole) = (mask("0"), mask("1e-6"));
+        // With a footprint, here a negligible one, every level is whole, and where it is asked for.
+        let kept = mask("0");
+        let unpruned = case.run(gpu, TechniqueKind::MultiLayer, &[("light_parts", parts), ("prune", "false")]);
         assert!(kept.iter().any(|v| *v > 0.1 && *v < 0.9), "there is a penumbra");
-        let differing = kept.iter().zip(&whole).filter(|(a, b)| (*a - *b).abs() > 1e-4).count();
-        assert_eq!(differing, 0, "of {} pixels, {parts} parts", kept.len());
+        for whole in [mask("1e-6"), unpruned] {
+            let differing = kept.iter().zip(&whole).filter(|(a, b)| (*a - *b).abs() > 1e-4).count();
+            assert_eq!(differing, 0, "of {} pixels, {parts} parts", kept.len());
+        }
     }
+}
+
+/// Without pruning there are as many levels as are asked for, and their lists hold what lies behind all receivers.
+#[test]
+fn unpruned_levels_are_those_that_are_asked_for() {
+    let Some(gpu) = gpu() else { return };
+    let (_, light, meshes) = &scenes()[0];
+    let found = |prune, levels| {
+        let mut technique = MultiLayer::new(gpu).expect("default limits");
+        (technique.capacity, technique.map_size) = (1 << 20, 128);
+        let params = MultiLayerParams {
+            map_size: 128,
+            hierarchy: MultiLayerHierarchy::MipMap,
+            prune,
+            levels,
+            ..MultiLayerParams::default()
+        };
+        let prepared = record(gpu, &mut technique, light, meshes, &params);
+        let counters: Vec<u32> = read_storage(gpu, &prepared.lists.counters);
+        (prepared.levels.len(), counters[1])
+    };
+    let (pruned, whole, five) = (found(true, 8), found(false, 8), found(false, 5));
+    println!("levels, fragments of all: pruned {pruned:?}, whole {whole:?}, five levels {five:?}");
+    assert_eq!((whole.0, five.0), (8, 5));
+    assert!(pruned.1 < whole.1 && five.1 < whole.1, "{pruned:?}, {whole:?}, {five:?}");
+}
+
+/// Section 5.2. Two opaque sheets, one just above the other, before all of the light, between two levels: each level holds two
+/// fragments of opacity 1, with weights w and 1 − w. By multiplication what is left of the light is
+///
+/// - as published (1 − w)² w²: each of the four fragments is weighted, then accumulated. At most 1/16, at w = ½, where
+///   1 − (½)⁴ = .94 is hidden;
+/// - with levels weighted (1 − w) w: at most ¼, where .75 is hidden.
+///
+/// Addition leaves nothing of it either way.
+#[test]
+fn hats_weight_fragments_before_they_accumulate() {
+    let Some(gpu) = gpu() else { return };
+    let light = Light::new(RECTANGLE, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
+    let largest = |hat: &str, accumulation: &str| {
+        let settings = [
+            ("map_size", "128"),
+            ("epsilon", "0"),
+            ("hierarchy", "mip_map"),
+            ("list_accumulation", accumulation),
+            ("level_accumulation", accumulation),
+            ("level_weights", "depth"),
+            ("filter_widths", "merged"),
+            ("hat", hat),
+            ("lists", "apart"),
+            ("planes", "false"),
+            ("light_parts", "1"),
+            ("msaa", "1"),
+        ];
+        // As the sheets rise w passes ½ between each two levels: so does the light that is left its greatest.
+        let left = (0..24).map(|i| {
+            let height = 0.8 + 0.05 * i as f32;
+            let sheet = |height| Mesh::horizontal(gpu, Vec2::splat(-2.5), Vec2::splat(2.5), height);
+            let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
+            let view = View::new(Vec3::new(1.0, 0.5, 1.0), Vec3::ZERO);
+            let case = Case::new(gpu, light.clone(), view, vec![ground, sheet(height), sheet(height + 0.002)]);
+            let mask = case.run(gpu, TechniqueKind::MultiLayer, &settings);
+            let seen = case.ground_pixels(|p| p.x.abs() < 0.2 && p.z.abs() < 0.2);
+            assert!(!seen.is_empty());
+            seen.iter().map(|(i, _)| mask[*i]).fold(0.0, f32::max)
+        });
+        left.fold(0.0, f32::max)
+    };
+    let (fragments, levels) = (largest("fragments", "multiply"), largest("levels", "multiply"));
+    println!("light left: fragments weighted {fragments}, levels weighted {levels}");
+    assert!((0.058..=0.0635).contains(&fragments), "1 − .94 = .0625, not {fragments}");
+    assert!((0.235..=0.2515).contains(&levels), "1 − .75 = .25, not {levels}");
+    assert!(largest("fragments", "add") < 0.01 && largest("levels", "add") < 0.01);
+    // The largest of four weighted fragments is ½ where w is.
+    assert!((0.48..=0.51).contains(&largest("fragments", "max")));
 }
 
 /// Records a frame on a technique whose parameters are at hand.

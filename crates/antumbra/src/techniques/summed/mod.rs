@@ -151,6 +151,12 @@ pub(crate) struct SoftSettings {
     /// `None`: as the light's shape is.
     pub(crate) is_ellipse: Option<bool>,
     pub(crate) with_footprint: bool,
+    /// Whether the footprint ends where a neighbouring pixel shows another surface.
+    pub(crate) footprint_ends: bool,
+    /// Whether the mean of blockers is of their depth, not of g.
+    pub(crate) averages_depth: bool,
+    /// Whether the light's part below the receiver's plane is hidden.
+    pub(crate) horizon: bool,
     /// Parts up to this many texels wide are read from the map.
     pub(crate) direct_texels: f32,
     pub(crate) bleeding_reduction: f32,
@@ -181,6 +187,9 @@ impl Default for SoftSettings {
             refinements: 0,
             is_ellipse: Some(false),
             with_footprint: false,
+            footprint_ends: true,
+            averages_depth: false,
+            horizon: true,
             // A part that is hardly a texel wide is one comparison.
             direct_texels: 1.5,
             bleeding_reduction: 0.0,
@@ -199,6 +208,9 @@ struct Specialisation {
     second_look: bool,
     one_window: bool,
     cuts_squares: bool,
+    footprint_ends: bool,
+    averages_depth: bool,
+    horizon: bool,
 }
 
 impl Specialisation {
@@ -211,6 +223,9 @@ impl Specialisation {
             second_look: settings.second_look,
             one_window: settings.one_window,
             cuts_squares: settings.cuts_squares,
+            footprint_ends: settings.footprint_ends,
+            averages_depth: settings.averages_depth,
+            horizon: settings.horizon,
         }
     }
 }

@@ -43,7 +43,7 @@ pub(crate) use shared_settings;
 /// Declares the parameters of a technique that is one table of a basis, and what they ask of the passes.
 macro_rules! table_params {
     ($(#[$outer:meta])* pub struct $name:ident: $technique:literal of $basis:ident, subdivisions = $subdivisions:literal, search_scales = $search_scales:literal,
-     second_look = $second_look:literal) => {
+     second_look = $second_look:literal $(; $($paper:tt)+ )?) => {
         $crate::contract::params! {
             $(#[$outer])*
             pub struct $name {
@@ -69,6 +69,7 @@ macro_rules! table_params {
             Fast { map_size: 512, search_scales: 2, }
             High { map_size: 2048, subdivisions: 5, search_scales: 5, }
             Best { map_size: 4096, subdivisions: 8, search_scales: 8, }
+            $( $($paper)+ )?
         }
 
         impl $crate::techniques::summed::SoftParams for $name {

@@ -160,6 +160,9 @@ impl SoftFilter {
             ("IS_ONE_WINDOW", f64::from(u8::from(specialisation.one_window))),
             ("CUTS_SQUARES", f64::from(u8::from(specialisation.cuts_squares))),
             ("HAS_SECOND_LOOK", f64::from(u8::from(specialisation.second_look))),
+            ("FOOTPRINT_ENDS", f64::from(u8::from(specialisation.footprint_ends))),
+            ("AVERAGES_DEPTH", f64::from(u8::from(specialisation.averages_depth))),
+            ("HAS_HORIZON", f64::from(u8::from(specialisation.horizon))),
         ];
         if design.filter == Filter::Mips {
             constants.push(("IS_MIPS", 1.0));

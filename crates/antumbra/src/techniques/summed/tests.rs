@@ -372,6 +372,8 @@ struct Twin<'a> {
     size: u32,
     extent: Vec2,
     scales: u32,
+    /// Whether means are of depths, not of g.
+    averages_depth: bool,
 }
 
 fn columns_of(m: [f32; 4]) -> [Vec2; 2] {
@@ -415,12 +417,15 @@ impl Twin<'_> {
                     if inverse_z > receiver.max(1.0 / z / (1.0 - bias)) && g > 0.0 && gauge <= RIM * g {
                         let share = f64::from(width * height) / area;
                         share_sum += share;
-                        g_sum += share * f64::from(g);
+                        let averaged = if self.averages_depth { 1.0 / inverse_z } else { g };
+                        g_sum += share * f64::from(averaged);
                     }
                 }
             }
         }
-        ((g_sum / share_sum.max(1e-12)) as f32, share_sum as f32)
+        let mean = (g_sum / share_sum.max(1e-12)) as f32;
+        let mean_g = if self.averages_depth { 1.0 / mean - 1.0 / z } else { mean };
+        (mean_g, share_sum as f32)
     }
 }
 
@@ -429,15 +434,18 @@ impl Twin<'_> {
 fn mean_blocker_depths_are_those_of_every_texel() {
     let Some(gpu) = gpu() else { return };
     const MAP: u32 = 1024;
-    let params = params(&[("map_size", "1024")]);
     let mut filter = filter_of::<EssmParams>(gpu, Some(shaders::SOFT_RESOLVE_BLOCKERS));
-    for (spec, bound) in [
-        ("builtin:leaning-plank", 0.03),
-        ("builtin:overlap", 0.03),
-        ("builtin:columns", 0.03),
-        ("builtin:stacked-panels", 0.03),
-        ("builtin:window", 0.10),
+    for (spec, blocker_mean, bound) in [
+        ("builtin:leaning-plank", "width", 0.03),
+        ("builtin:overlap", "width", 0.03),
+        ("builtin:columns", "width", 0.03),
+        ("builtin:stacked-panels", "width", 0.03),
+        ("builtin:window", "width", 0.10),
+        // As published.
+        ("builtin:leaning-plank", "depth", 0.03),
+        ("builtin:overlap", "depth", 0.03),
     ] {
+        let params = params(&[("map_size", "1024"), ("blocker_mean", blocker_mean)]);
         let staged = Staged::new(gpu, spec);
         let light = &staged.setup.lights[0];
         let caster = staged.mesh.caster();
@@ -459,6 +467,7 @@ fn mean_blocker_depths_are_those_of_every_texel() {
             size: MAP,
             extent: crate::light_map::light_spread::LightSpread::of(light).extent,
             scales: params.search_scales,
+            averages_depth: blocker_mean == "depth",
         };
         let camera = &staged.setup.camera;
         let world_from_clip = (camera.clip_from_view(SIZE) * camera.view_from_world()).inverse();

@@ -417,7 +417,11 @@ struct histogram_LvsmHistogramUniform {
     stride: u32,
     overlap: f32,
     kernel_size: f32,
-    padding: u32
+    least_weight: f32,
+    most_weight: f32,
+    padding_x: u32,
+    padding_y: u32,
+    padding_z: u32
 }
 
 const histogram_BIN_COUNT = 4096.0;

@@ -4,10 +4,16 @@ struct LvsmHistogramUniform {
     stride: u32,
     overlap: f32,
     kernel_size: f32,
-    padding: u32
+    least_weight: f32,
+    most_weight: f32,
+    padding_x: u32,
+    padding_y: u32,
+    padding_z: u32
 }
 
 override AS_PRINTED: bool = false;
+
+override COUNTS_BACKGROUND: bool = false;
 
 const BIN_COUNT = 4096.0;
 
@@ -37,13 +43,14 @@ fn gather_at(first: vec2u, scale: f32) {
     }
     let t = vec4f(source_sample_t(first, 0u), source_sample_t(first + vec2u(1, 0), 0u), source_sample_t(first + vec2u(0, 1), 0u), source_sample_t(first + vec2u(1, 1), 0u));
     let deepest = max(max(t.x, t.y), max(t.z, t.w));
-    if !AS_PRINTED && deepest >= 1.0 {
+    if !COUNTS_BACKGROUND && deepest >= 1.0 {
         return;
     }
     let mean = dot(t, vec4f(0.25));
     let off = t - mean;
     let variance = dot(off, off) * 0.25;
-    let weight = u32(variance * scale + 0.5);
+    let counted = select(min(variance, neighbourhoods.most_weight), 0.0, variance < neighbourhoods.least_weight);
+    let weight = u32(counted * scale + 0.5);
     if weight > 0u {
         let second = min(mean + sqrt(variance), select(deepest, 1.0, AS_PRINTED));
         atomicAdd(&histogram[min(u32(second * BIN_COUNT), u32(BIN_COUNT) - 1u)], weight);

@@ -33,7 +33,8 @@ fn visibility_in_layer(found: lookup_MapReceiver, index: u32) -> f32 {
     let layer = layered_layer_between(split_before(index), split_after(index), lvsm.overlap);
     let t = found.t_close - 2.0 * lvsm.layer_step * (layer.far - layer.near);
     let filtered = lookup_filtered_2(found.footprint, index);
-    let least_variance = variance_minimum_variance(found.t_per_texel, 0.0);
+    let of_receiver = variance_minimum_variance(found.t_per_texel, 0.0);
+    let least_variance = select(of_receiver, lvsm.least_variance, lvsm.least_variance > 0.0);
     if IS_CHEBYSHEV {
         return layered_layered_visibility_as_printed(filtered, layer, t, least_variance, lvsm.layer_step);
     }
@@ -722,7 +723,7 @@ struct encode_LvsmUniform {
     layer_step: f32,
     blends: u32,
     shows_layers: u32,
-    padding_x: u32,
+    least_variance: f32,
     padding_y: u32,
     padding_z: u32
 }

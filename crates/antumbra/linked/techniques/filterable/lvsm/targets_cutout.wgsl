@@ -220,7 +220,7 @@ struct encode_LvsmUniform {
     layer_step: f32,
     blends: u32,
     shows_layers: u32,
-    padding_x: u32,
+    least_variance: f32,
     padding_y: u32,
     padding_z: u32
 }

@@ -19,7 +19,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let mean_g = resolve_blockers_of(resolve_search(window, light_taps_light_plane(receiver, receiver_in_light, shift)), window).g.x;
     let grown = extent / max(resolve_pcss.light_extent, vec2f(1e-20));
     let on_plane = resolve_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
-    let covariance = soft_kernel_light_covariance_texels(on_plane, plane.uv, mean_g) + soft_kernel_footprint_covariance(receiver, plane.uv, pixel);
+    let covariance = soft_kernel_light_covariance_texels(on_plane, plane.uv, mean_g) + soft_kernel_ending_footprint_covariance(receiver, plane.uv, pixel);
     let center = (plane.uv + space_uv_step_of_plane(map_light_view, resolve_pcss.light_mean * mean_g)) * map_light_view.map_size;
     let kernel = soft_kernel_kernel_of_covariance(center, covariance, resolve_pcss.is_ellipse == 1u);
     var lit = 0.0;
@@ -507,15 +507,24 @@ fn soft_kernel_square_covariance(x: vec2f, y: vec2f) -> vec3f {
     return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
 }
 
-fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
+fn soft_kernel_ending_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
     if inputs_are_points() {
-        let sides = inputs_point_sides_m(receiver, pixel);
-        return soft_kernel_square_covariance(soft_kernel_texels_of_step(receiver, uv, sides[0]), soft_kernel_texels_of_step(receiver, uv, sides[1]));
+        return soft_kernel_footprint_covariance(receiver, uv, pixel, vec2f(1.0));
     }
     let width = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(-1, 0)) + soft_kernel_share_towards(receiver, pixel, vec2i(1, 0)));
     let height = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(0, -1)) + soft_kernel_share_towards(receiver, pixel, vec2i(0, 1)));
-    let x = 2.0 * width * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
-    let y = 2.0 * height * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
+    return soft_kernel_footprint_covariance(receiver, uv, pixel, vec2f(width, height));
+}
+
+fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u, size_px: vec2f) -> vec3f {
+    if inputs_are_points() {
+        let sides = inputs_point_sides_m(receiver, pixel);
+        let x = size_px.x * soft_kernel_texels_of_step(receiver, uv, sides[0]);
+        let y = size_px.y * soft_kernel_texels_of_step(receiver, uv, sides[1]);
+        return soft_kernel_square_covariance(x, y);
+    }
+    let x = 2.0 * size_px.x * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
+    let y = 2.0 * size_px.y * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
     return soft_kernel_square_covariance(x, y);
 }
 

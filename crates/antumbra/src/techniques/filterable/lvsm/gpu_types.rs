@@ -8,7 +8,7 @@ gpu_structs! {
         layer_step: f32,
         blends: u32,
         shows_layers: u32,
-        padding_x: u32,
+        least_variance: f32,
         padding_y: u32,
         padding_z: u32,
     }
@@ -26,6 +26,10 @@ gpu_structs! {
         stride: u32,
         overlap: f32,
         kernel_size: f32,
-        padding: u32,
+        least_weight: f32,
+        most_weight: f32,
+        padding_x: u32,
+        padding_y: u32,
+        padding_z: u32,
     }
 }

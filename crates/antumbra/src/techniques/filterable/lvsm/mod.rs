@@ -28,9 +28,12 @@
 //!   of the map under its kernel tell what bleeds, and that a split behind the last occluder ends it. On `overlap` with
 //!   four layers and a kernel of 9 of 384 texels `umbra_leak` is .0007, of which all is the exact truth's own; `vsm` has
 //!   .052. The bound and the world's axis of depth have as much part in it (.0012 without either).
-//! - Over the map, printed as it is, the relaxation places means *on* second occluders; the split must lie behind one to
-//!   clamp it. Splits are shifted by 1.5 δ, and background is left out of the histogram (`relax_over = map_as_printed`
-//!   does neither).
+//! - The least variance is that of each receiver's own plane (eq. 7 scales it to the layer); the paper has one σ²min for all
+//!   (`least_variance = global`).
+//! - Over the map, as published, the relaxation places means *on* second occluders; the split must lie behind one to
+//!   clamp it. Splits are shifted by 1.5 δ (`relax_over = map_as_printed` does not). The paper does not say whether background
+//!   is an occluder: it is left out (`relax_background` counts it), and so is the optional clamp of weights (`relax_from`,
+//!   `relax_up_to`).
 //! - Splits keep gaps of 3 δ, and clusters teleport by inertia rather than for want of any weight (see `primitives/lloyd`;
 //!   `teleport = weight`).
 //!
@@ -57,7 +60,8 @@ mod relaxation;
 mod tests;
 
 pub use params::{
-    LayerPlacement, LvsmBound, LvsmLayersBy, LvsmParams, LvsmShow, LvsmTeleport, LvsmTransition, RelaxOver,
+    LayerPlacement, LvsmBound, LvsmLayersBy, LvsmLeastVariance, LvsmParams, LvsmShow, LvsmTeleport, LvsmTransition,
+    RelaxOver,
 };
 use relaxation::{LayerRelaxation, PreparedRelaxation};
 use targets::{LayerTargets, PreparedLayers};
@@ -118,6 +122,10 @@ impl Technique for Lvsm {
             // Without overlap there is nothing to blend over.
             blends: (params.blend && overlap > 0.0).into(),
             shows_layers: (params.show == LvsmShow::Layers).into(),
+            least_variance: match params.least_variance {
+                LvsmLeastVariance::Receiver => 0.0,
+                LvsmLeastVariance::Global => variance_at_45_degrees(&map),
+            },
             ..LvsmUniform::default()
         };
         let constants = [
@@ -194,12 +202,22 @@ impl Lvsm {
 /// δ of section 3.4, in t: the depth that a plane at 45° to the light spans under the kernel, in the middle of the range;
 /// no more than leaves every layer of an even split its own middle half.
 fn automatic_overlap(map: &FrameMap, params: &LvsmParams) -> f32 {
+    let reach_texels = 0.5 * params.kernel_size + 1.0;
+    (params.overlap * reach_texels * texel_of_range(map)).min(0.25 / params.layers as f32)
+}
+
+/// A texel's width in the middle of the range, in t.
+fn texel_of_range(map: &FrameMap) -> f32 {
     let view = &map.view;
     let range_m = map.range.far_m - map.range.near_m;
     let middle_m = 0.5 * (view.near_m + view.far_m);
-    let texel_m = view.texel_in_plane * if view.perspective == 1 { middle_m } else { 1.0 };
-    let reach_texels = 0.5 * params.kernel_size + 1.0;
-    (params.overlap * reach_texels * texel_m / range_m).min(0.25 / params.layers as f32)
+    view.texel_in_plane * if view.perspective == 1 { middle_m } else { 1.0 } / range_m
+}
+
+/// The global σ²min of eq. 7, in t: of a plane at 45° to the light in the middle of the range, half of its step from texel to texel
+/// squared, as `minimum_variance` has it for every plane.
+fn variance_at_45_degrees(map: &FrameMap) -> f32 {
+    (0.5 * texel_of_range(map)).powi(2)
 }
 
 /// Splits in t that do not wait for the GPU; none for those that are relaxed.

@@ -20,7 +20,7 @@ param_choice! {
         View = "view",
         /// The light map's discontinuities, wherever the camera looks.
         Map = "map",
-        /// The same as printed: background counts as an occluder, and splits lie on second occluders.
+        /// The same as published: splits lie on second occluders, and μ + σ may lie beyond them.
         MapAsPrinted = "map_as_printed",
     }
 }
@@ -52,6 +52,16 @@ param_choice! {
         Bounded = "bounded",
         /// Chebyshev's: the paper's.
         Chebyshev = "chebyshev",
+    }
+}
+
+param_choice! {
+    /// The least variance that depths in a layer of [`Lvsm`](super::Lvsm) are taken to have.
+    pub enum LvsmLeastVariance {
+        /// That of the receiver's own plane over a texel.
+        Receiver = "receiver",
+        /// That of a plane at 45° to the light over a texel, everywhere: one σ²min, by equation 7 in every layer, the paper's.
+        Global = "global",
     }
 }
 
@@ -100,13 +110,25 @@ filterable_params! {
         /// What bounds the visibility in a layer.
         bound: LvsmBound = LvsmBound::Bounded,
             more "chebyshev is the paper's: layers let in a little light where occluders fill them.";
+        /// The least variance that depths are taken to have.
+        least_variance: LvsmLeastVariance = LvsmLeastVariance::Receiver,
+            more "global is the paper's: receivers steeper than 45° shade themselves, and those that face the light bleed more.";
         /// Splits that Lloyd's relaxation moves in each frame, in turns.
         splits_per_frame: u32 = 15, in 1..=15,
             more "Follows moving scenes more quickly.";
         /// What Lloyd's relaxation looks at.
         relax_over: RelaxOver = RelaxOver::View,
-            more "view spends layers where the camera sees light bleed; map does not depend on the camera; map_as_printed wastes \
-                  layers on the background, and its splits cut the occluders that they should lie behind.";
+            more "view spends layers where the camera sees light bleed; map does not depend on the camera; splits of \
+                  map_as_printed cut the occluders that they should lie behind.";
+        /// Whether texels without a caster count as occluders at the far end, where `relax_over` is not view.
+        relax_background: bool = false,
+            more "true spends layers on the edges of what stands before nothing.";
+        /// Standard deviation below which depths under a texel's neighbourhood ask for no split, where `relax_over` is not view.
+        relax_from: f32 = 0.0, in 0.0..=0.5, unit "parts of the range",
+            more "Slopes and small steps of depth no longer draw splits to themselves.";
+        /// Standard deviation beyond which they ask for a split no more, where `relax_over` is not view.
+        relax_up_to: f32 = 0.5, in 0.001..=0.5, unit "parts of the range",
+            more "The deepest steps draw splits the more.";
         /// Which layers Lloyd's relaxation merges and splits.
         teleport: LvsmTeleport = LvsmTeleport::Inertia,
             more "weight is the paper's, and stays in worse places.";
@@ -127,12 +149,14 @@ filterable_params! {
         teleport: LvsmTeleport::Weight, ours "Clusters merge and split by inertia.";
         layers_by: LvsmLayersBy::Targets, ours "Layers are encoded from the light map's depths.";
         transition: LvsmTransition::Mixed, ours "Where layers overlap the lesser of both bounds counts at the split.";
+        least_variance: LvsmLeastVariance::Global, ours "The least variance follows from each receiver's slope.";
         bound: LvsmBound::Chebyshev, ours "A layer's bound knows that its depths end where the layer does.";
     } kept {
         "Each layer's two moments are a word of their own, where the paper has two layers to a texel: the same memory.",
         "Relaxed layers are written in a second pass over the casters, after one of depth alone, since their splits are this frame's; \
          the paper's are some frames old.",
         "The overlap follows from the kernel, since the paper names no width.",
+        "σ²min is that of a plane at 45° over a texel, since the paper names none, plus the storage's own step.",
         "A histogram of 4096 bins takes the place of a mip pyramid of weighted samples: the same means.",
         "Splits glide to where they belong, a quarter of the way a frame; the first frame has converged.",
     }

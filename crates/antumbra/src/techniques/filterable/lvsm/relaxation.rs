@@ -36,6 +36,7 @@ struct Gathering {
     source: RelaxOver,
     multisampled: bool,
     is_distance: bool,
+    counts_background: bool,
     /// Threads.
     grid: UVec2,
 }
@@ -51,7 +52,8 @@ impl Gathering {
     }
 
     fn index(self) -> usize {
-        4 * self.source as usize + pipelines_index(self.multisampled, self.is_distance)
+        let source = 2 * self.source as usize + usize::from(self.counts_background);
+        4 * source + pipelines_index(self.multisampled, self.is_distance)
     }
 }
 
@@ -63,7 +65,7 @@ pub(super) struct LayerRelaxation {
     uniform: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
     /// By [`Gathering::index`], made when first asked for.
-    pipelines: [Option<wgpu::ComputePipeline>; 12],
+    pipelines: [Option<wgpu::ComputePipeline>; 24],
     /// None where splits are given.
     gathering: Option<Gathering>,
 }
@@ -81,7 +83,7 @@ impl LayerRelaxation {
         let layout = Wanted::layout(gpu);
         let uniform = create_uniform::<LvsmHistogramUniform>(gpu, "antumbra wanted splits");
         let bind_group = Wanted { grid: &uniform, histogram: lloyd.histogram() }.kept_group(gpu, &layout);
-        Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 12], gathering: None }
+        Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 24], gathering: None }
     }
 
     /// The splits: floats in ascending order, in t.
@@ -118,9 +120,17 @@ impl LayerRelaxation {
             }
         };
         let is_distance = passes.is_distance();
-        let gathering = Gathering { source: params.relax_over, multisampled, is_distance, grid };
+        let (source, counts_background) = (params.relax_over, params.relax_background);
+        let gathering = Gathering { source, multisampled, is_distance, counts_background, grid };
         self.gathering = Some(gathering);
-        let uniform = LvsmHistogramUniform { stride, overlap, kernel_size: params.kernel_size, padding: 0 };
+        let uniform = LvsmHistogramUniform {
+            stride,
+            overlap,
+            kernel_size: params.kernel_size,
+            least_weight: params.relax_from.powi(2),
+            most_weight: params.relax_up_to.powi(2),
+            ..LvsmHistogramUniform::default()
+        };
         write_uniform(stage, &self.uniform, &uniform);
         let how = Relaxation {
             iterations: 1,
@@ -139,7 +149,8 @@ impl LayerRelaxation {
         let pipeline = pipeline.get_or_insert_with(|| match params.relax_over {
             RelaxOver::Map | RelaxOver::MapAsPrinted => {
                 let as_printed = ("AS_PRINTED", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)));
-                let constants = [as_printed, distance];
+                let background = ("COUNTS_BACKGROUND", f64::from(u8::from(params.relax_background)));
+                let constants = [as_printed, background, distance];
                 let layouts = [basis.encode_layout(), layout];
                 compute_entry(stage, "second occluders", gathering.shader(), None, &constants, &layouts)
             }

@@ -3,7 +3,7 @@
 use antumbra_light::Light;
 use glam::{Vec2, Vec3};
 
-use super::{LayerPlacement, Lvsm, LvsmLayersBy, LvsmParams, RelaxOver};
+use super::{LayerPlacement, Lvsm, LvsmLayersBy, LvsmLeastVariance, LvsmParams, RelaxOver};
 use crate::contract::{Opacity, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::{Packing, cpu::unpack_word};
@@ -165,4 +165,50 @@ fn targets_say_that_they_have_one_sample_a_texel() {
     let error = case
         .with_prepared(&casters, |frame| lvsm.prepare(&Stage::at_once(gpu), frame, &params).expect_err("four samples"));
     assert!(error.to_string().contains("set `msaa` to 1"), "{error}");
+}
+
+/// Background is an occluder where it is asked to be: boards before nothing then ask for splits at the far end. Weights that are
+/// clamped to nothing leave no split where it was asked for; small steps left out move them.
+#[test]
+fn what_asks_for_splits_is_switched() {
+    let Some(gpu) = gpu() else { return };
+    let case = boards(gpu, 3.0);
+    let found = |change: LvsmParams| frame(gpu, &mut Lvsm::new(gpu).expect("no features needed"), &case, &change);
+    let usual = params(RelaxOver::MapAsPrinted);
+    let plain = found(usual);
+    let with_background = found(LvsmParams { relax_background: true, ..usual });
+    println!("{plain:?}, with background {with_background:?}");
+    assert!(with_background[2] > plain[2] + 0.05, "{with_background:?}, {plain:?}");
+    // The table is .5 m above the ground of six: a step of a standard deviation of a twentieth. The boards' are of a fourth.
+    let large_steps = found(LvsmParams { relax_from: 0.15, ..usual });
+    let all_alike = found(LvsmParams { relax_up_to: 0.02, ..usual });
+    println!("large steps {large_steps:?}, all alike {all_alike:?}");
+    assert!(large_steps != plain && all_alike != plain && large_steps != all_alike);
+}
+
+/// Equation 7 with one σ²min: a receiver that faces the light, whose own plane has no variance, has that of a plane at 45°.
+#[test]
+fn one_least_variance_is_that_of_a_plane_at_45_degrees() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let run = |least_variance: LvsmLeastVariance| {
+        let settings = [
+            ("least_variance", if least_variance == LvsmLeastVariance::Global { "global" } else { "receiver" }),
+            ("layers", "1"),
+            ("bound", "chebyshev"),
+            ("map_size", "64"),
+            ("kernel_size", "1"),
+            ("mips", "false"),
+            ("depth_axis", "light"),
+        ];
+        case.run(gpu, crate::TechniqueKind::Lvsm, &settings)
+    };
+    let (own, global) = (run(LvsmLeastVariance::Receiver), run(LvsmLeastVariance::Global));
+    // Far behind the half-plane all texels hold its one depth, 1.5 m before the ground: Chebyshev's bound is σ² / (σ² + d²), with
+    // σ half of a texel's width.
+    let umbra = case.ground_pixels(|p| p.x < -0.7 && p.x > -0.95 && p.z.abs() < 1.0);
+    assert!(!umbra.is_empty());
+    for (i, _) in umbra {
+        assert!(global[i] > own[i] && global[i] < 0.01, "{}, {}", global[i], own[i]);
+    }
 }

@@ -18,5 +18,11 @@ pub type Cssm = SoftTechnique<CssmParams>;
 
 table_params! {
     /// Parameters of [`Cssm`].
-    pub struct CssmParams: "cssm" of Convolution, subdivisions = 1, search_scales = 3, second_look = false
+    pub struct CssmParams: "cssm" of Convolution, subdivisions = 1, search_scales = 3, second_look = false;
+        => Paper {
+            table: TableSums::Float, ours "32-bit integers, whose differences are exact.";
+        } kept {
+            "Blockers are searched at several scales, and count where they hide a point of the light; the paper has one window.",
+            "Summed-area tables of four terms, and no mip-maps.",
+        }
 }

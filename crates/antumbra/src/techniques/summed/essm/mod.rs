@@ -65,7 +65,9 @@ mod params;
 #[cfg(test)]
 mod tests;
 
-pub use params::{EssmCuts, EssmKernel, EssmParams, EssmRange, EssmScan, EssmSearch, EssmTable, EssmWindow};
+pub use params::{
+    EssmBlockerMean, EssmCuts, EssmKernel, EssmParams, EssmRange, EssmScan, EssmSearch, EssmTable, EssmWindow,
+};
 
 /// Exponential soft shadow mapping.
 pub type Essm = SoftTechnique<EssmParams>;
@@ -111,6 +113,9 @@ impl SoftParams for EssmParams {
             refinements: self.level,
             is_ellipse: (self.kernel == EssmKernel::Ellipse).then_some(true),
             with_footprint: self.kernel != EssmKernel::Isotropic,
+            footprint_ends: self.footprint_ends,
+            averages_depth: self.blocker_mean == EssmBlockerMean::Depth,
+            horizon: self.horizon,
             direct_texels: self.direct_texels,
             is_sparse: self.sub,
             ..SoftSettings::default()

@@ -76,6 +76,16 @@ param_choice! {
     }
 }
 
+param_choice! {
+    /// What [`Essm`](super::Essm) takes the mean of over blockers.
+    pub enum EssmBlockerMean {
+        /// The width of the penumbra that each asks for.
+        Width = "width",
+        /// Their depth: the paper's.
+        Depth = "depth",
+    }
+}
+
 params! {
     /// Parameters of [`Essm`](super::Essm).
     pub struct EssmParams {
@@ -95,6 +105,12 @@ params! {
         /// Where blockers are searched; `search_scales` and `second_look` are for scales alone.
         search: EssmSearch = EssmSearch::Scales,
             more "window is the paper's; behind lattices what it holds that hides no part of the light widens penumbrae.";
+        /// What the mean of blockers is of. Under a sun both are one.
+        blocker_mean: EssmBlockerMean = EssmBlockerMean::Width,
+            more "depth is the paper's: penumbrae are narrower where blockers of several depths meet under a near light.";
+        /// Whether the light's part below the receiver's own plane counts as hidden.
+        horizon: bool = true,
+            more "false is the paper's: receivers that the light grazes are as bright as those that face it.";
         /// How a kernel's rows are cut.
         cuts: EssmCuts = EssmCuts::Columns,
             more "squares is the paper's: as many times more parts as there are rows in a kernel's height for each part.";
@@ -122,6 +138,9 @@ params! {
         /// The shape that is filtered over.
         kernel: EssmKernel = EssmKernel::Light,
             more "ellipse is the paper's; isotropic leaves fine shadows far away to alias.";
+        /// Whether the pixel's footprint ends where a neighbouring pixel shows another surface.
+        footprint_ends: bool = true,
+            more "false is the paper's: at edges of the picture's surfaces shadows are a little softer.";
         /// Height of an ellipse's rows as the paper has it, of `cuts = squares` alone: columns have as many rows for every ellipse.
         row_height: f32 = 5.0, in 1.0..=64.0, unit "texels", scale Log,
             more "Fewer lookups, coarser outline.";
@@ -142,6 +161,9 @@ params! {
         exponent: CONSISTENT_EXPONENT, ours "0.1 a texel's width; the printed 80 does not go with the printed 20 bits (see below).";
         kernel: EssmKernel::Ellipse, ours "A rectangle's kernel is a parallelogram.";
         search: EssmSearch::Window, ours "Blockers are searched at four scales, and count where they hide a point of the light.";
+        blocker_mean: EssmBlockerMean::Depth, ours "The mean is of g = 1 / z − 1 / z_receiver, which a penumbra's width is proportional to.";
+        horizon: false, ours "The light's part below the receiver's plane is hidden.";
+        footprint_ends: false, ours "The pixel's footprint is narrower where a neighbour shows another surface.";
         cuts: EssmCuts::Squares, ours "A row has n columns, where the paper's rectangles have n × n parts, and an ellipse n rows, where the paper's become more.";
         direct_texels: 0.0, ours "Kernels of parts up to 3 texels wide are read from the map.";
     } kept {

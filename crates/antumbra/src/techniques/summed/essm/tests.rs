@@ -140,3 +140,25 @@ fn a_kept_window_follows_what_moves() {
     };
     println!("prepare: {:.3} ms while all stands still, {:.3} ms while the light moves", ms_of(0.0), ms_of(1e-3));
 }
+
+/// A panel whose lower half stands below the ground's plane: with the horizon the ground sees the upper half of it, and all of
+/// it as published.
+#[test]
+fn the_horizon_is_a_switch() {
+    let Some(gpu) = gpu() else { return };
+    let light =
+        Light::new(LightShape::Rectangle { size_m: Vec2::ONE }, Vec3::new(0.0, 0.3, -3.0), Vec3::new(0.0, 0.0, 0.0));
+    let view = View::new(Vec3::new(0.0, 1.5, 3.0), Vec3::ZERO);
+    let ground = Mesh::horizontal(gpu, Vec2::splat(-4.0), Vec2::splat(4.0), 0.0);
+    let case = Case::new(gpu, light, view, vec![ground]);
+    let mean = |horizon: &str| {
+        let mask = case.run(gpu, TechniqueKind::Essm, &[("horizon", horizon), ("map_size", "256")]);
+        let seen = case.ground_pixels(|p| p.x.abs() < 0.5 && p.z.abs() < 0.5);
+        assert!(!seen.is_empty());
+        seen.iter().map(|(i, _)| mask[*i]).sum::<f32>() / seen.len() as f32
+    };
+    let (with, without) = (mean("true"), mean("false"));
+    println!("lit {with} with the horizon, {without} without");
+    // The light is 1 m high about 0.3 m, tilted by a tenth: .8 of it is above.
+    assert!((0.75..0.85).contains(&with) && without > 0.97, "{with}, {without}");
+}

@@ -19,5 +19,12 @@ pub type Vssm = SoftTechnique<VssmParams>;
 
 table_params! {
     /// Parameters of [`Vssm`].
-    pub struct VssmParams: "vssm" of Variance, subdivisions = 5, search_scales = 3, second_look = true
+    pub struct VssmParams: "vssm" of Variance, subdivisions = 5, search_scales = 3, second_look = true;
+        => Paper {
+            table: TableSums::Float, ours "32-bit integers, whose differences are exact.";
+            second_look: false, ours "Blockers are searched once more about their mean.";
+        } kept {
+            "Blockers are searched at several scales, and count where they hide a point of the light; the paper has one window.",
+            "A kernel has 5 × 5 parts; the paper cuts it until parts are planar.",
+        }
 }

@@ -1,0 +1,111 @@
+//! The two forms in which a paper's technique is run: as published, and ours.
+
+use std::fmt;
+
+use antumbra::{Quality, TechniqueKind};
+
+use super::exhibit::{Paper, Row, Settings};
+use crate::error::LabError;
+use crate::technique_run::TechniqueChoice;
+
+/// A form of a paper's technique.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Form {
+    /// The algorithm as its paper has it: every departure that a parameter turns off is turned off. Verdicts are on this form.
+    Published,
+    /// The technique as this library has it by default.
+    Ours,
+}
+
+impl Form {
+    /// For tables and pages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Published => "as published",
+            Self::Ours => "ours",
+        }
+    }
+}
+
+impl fmt::Display for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Row {
+    /// The forms in which the row is run: both where the technique is the paper's own and departs from it; else one. What a paper
+    /// compares with stands as published in both.
+    pub fn forms(&self, paper: &Paper) -> &'static [Form] {
+        let kind = TechniqueKind::from_name(self.technique);
+        let is_own = paper.own.contains(&self.technique);
+        let departs = kind.is_some_and(|kind| kind.printed().is_some());
+        if is_own && departs && !self.is_published_alone { &[Form::Published, Form::Ours] } else { &[Form::Published] }
+    }
+
+    /// The parameters that are set after the preset's: those of both forms, then what ours has beside them.
+    pub fn settings_of(&self, form: Form) -> impl Iterator<Item = &'static (&'static str, &'static str)> {
+        let own = if form == Form::Ours { self.ours } else { &[] };
+        self.settings.iter().chain(own)
+    }
+
+    /// The technique in a form.
+    ///
+    /// # Errors
+    /// Where there is no such technique.
+    pub(super) fn choice(&self, form: Form) -> Result<TechniqueChoice, LabError> {
+        let settings = self.settings_of(form).map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        Ok(TechniqueChoice { settings, ..choice_of_form(self.technique, form)? })
+    }
+}
+
+/// A technique in a form, with settings.
+pub(super) fn choice_with(technique: &str, form: Form, settings: Settings) -> Result<TechniqueChoice, LabError> {
+    let settings = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    Ok(TechniqueChoice { settings, ..choice_of_form(technique, form)? })
+}
+
+/// The preset of a form: `:paper` where the technique has one.
+fn choice_of_form(technique: &str, form: Form) -> Result<TechniqueChoice, LabError> {
+    let kind = TechniqueKind::from_name(technique)
+        .ok_or_else(|| LabError::Request(format!("there is no technique `{technique}`")))?;
+    let quality = match form {
+        Form::Published if kind.printed().is_some() => Quality::Paper,
+        _ => Quality::Balanced,
+    };
+    Ok(TechniqueChoice::of_quality(kind, quality))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::exhibit::error;
+    use super::super::papers::PAPERS;
+    use super::*;
+
+    /// The paper's own techniques are run twice, as published first; what it compares with once, as its own paper has it.
+    #[test]
+    fn own_techniques_have_two_forms() {
+        let shen = PAPERS.iter().find(|paper| paper.id == "shen-2013").unwrap();
+        let own = error("", "builtin:overlap", "essm").with(&[("map_size", "512")]).ours(&[("table", "tiles")]);
+        assert_eq!(own.forms(shen), [Form::Published, Form::Ours]);
+        let names = [Form::Published, Form::Ours].map(|form| own.choice(form).unwrap());
+        assert_eq!(names.each_ref().map(TechniqueChoice::name), ["essm:paper", "essm"]);
+        assert_eq!(names.map(|choice| choice.settings.len()), [1, 2]);
+        for (technique, name) in [("vssm", "vssm:paper"), ("pcss", "pcss")] {
+            let row = error("", "builtin:overlap", technique);
+            assert_eq!(row.forms(shen), [Form::Published]);
+            assert_eq!(row.choice(Form::Published).unwrap().name(), name);
+        }
+    }
+
+    /// Every claim that rests on a paper's own technique is judged by a row of it as published.
+    #[test]
+    fn own_techniques_have_a_published_preset() {
+        for paper in &PAPERS {
+            for technique in paper.own {
+                let kind = TechniqueKind::from_name(technique).unwrap();
+                assert!(kind.printed().is_some(), "{}: {technique} has no preset `paper`", paper.id);
+            }
+        }
+    }
+}

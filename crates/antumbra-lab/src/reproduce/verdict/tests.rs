@@ -1,0 +1,314 @@
+//! Rules over numbers; and for every rule of every paper an image, or a time, that it rejects.
+
+use glam::UVec2;
+
+use super::super::PAPERS;
+use super::super::claim::{claim, not_here};
+use super::super::exhibit::{Measure, error};
+use super::super::outcome::Measured;
+use super::*;
+use crate::metrics::compare_visibility;
+use crate::picture::Visibility;
+
+/// No claim about time speaks of a row that takes none.
+#[test]
+fn claims_about_time_are_of_rows_that_are_timed() {
+    let exhibits = || PAPERS.iter().flat_map(|paper| paper.exhibits);
+    let mut found = 0;
+    for exhibit in exhibits() {
+        let rules = exhibit.claims.iter().flat_map(|claim| claim.rules);
+        for row in rules.filter(|rule| rule.figure() == Figure::Ms).flat_map(Rule::rows) {
+            let measure = exhibit.rows.iter().find(|one| one.what == row).map(|one| one.measure);
+            let is_of_time = |measure: Measure| {
+                // Rays are traced on the processor, techniques run on the adapter: neither clock judges the other.
+                measure.is_timed() || matches!(measure, Measure::SceneMs { .. })
+            };
+            assert!(measure.is_some_and(is_of_time), "{}: {row}", exhibit.id);
+            found += 1;
+        }
+    }
+    assert!(found > 50, "{found}");
+}
+
+const RULES: &[Rule] = &[Rule::RatioAtMost(Figure::Rmse, "a", "b", 0.5), Rule::AtMost(Figure::Rmse, "a", 0.12)];
+const TIMES: &[Rule] = &[Rule::RatioAtLeast(Figure::Ms, "b", "a", 10.0)];
+const EXHIBIT: Exhibit = Exhibit {
+    id: "figure1",
+    shows: "",
+    rows: &[error("a", "builtin:overlap", "pcss"), error("b", "builtin:overlap", "hard")],
+    claims: &[
+        claim("a errs half as much", RULES).because("of the reason."),
+        claim("a takes a tenth", TIMES),
+        claim("a takes a tenth of the work", TIMES).on_any_adapter(),
+    ],
+    note: "",
+};
+
+fn measured(rmse: f64, ms: f64) -> Outcome {
+    Outcome::Measured(Measured { rmse: Some(rmse), ms: Some(ms), size_px: [64, 36], ..Measured::default() })
+}
+
+fn judged(exhibit: &Exhibit, published: &[Outcome], is_software: bool) -> Vec<Judged> {
+    judge(exhibit, Outcomes { published, ours: &[] }, is_software)
+}
+
+fn verdicts(outcomes: &[Outcome], is_software: bool) -> Vec<Verdict> {
+    judged(&EXHIBIT, outcomes, is_software).into_iter().map(|judged| judged.published.verdict).collect()
+}
+
+#[test]
+fn a_claim_holds_where_all_of_its_rules_do() {
+    use Verdict::{Contradicted, Holds};
+    let found = verdicts(&[measured(0.1, 1.0), measured(0.25, 11.0)], false);
+    assert_eq!(found, [Holds, Holds, Holds]);
+    // One rule of two is not enough; nor is nine times ten.
+    let found = verdicts(&[measured(0.13, 1.0), measured(0.9, 9.0)], false);
+    assert_eq!(found, [Contradicted, Contradicted, Contradicted]);
+    let judged = judged(&EXHIBIT, &[measured(0.15, 1.0), measured(0.2, 9.0)], false);
+    assert!(
+        judged[0].published.found[0].ends_with("at most 0.5 times that of ‘b’: here 0.75 (0.1500, 0.2000)"),
+        "{judged:?}"
+    );
+    assert_eq!(judged[0].published.sentence(), "The claim is contradicted here: of the reason.");
+    assert_eq!(judged[1].published.sentence(), "The claim is contradicted here.");
+    assert_eq!(judged[0].sizes, "64 × 36");
+}
+
+/// What lies within a figure's range of the bound is neither.
+#[test]
+fn what_is_too_close_is_neither() {
+    let found = verdicts(&[measured(0.1, 1.0), measured(0.2, 10.0)], false);
+    for verdict in &found {
+        assert!(matches!(verdict, Verdict::Undecided(why) if why.contains("too close to tell")), "{verdict:?}");
+    }
+    // A reference of 16 points has noise of .016: an rmse of .02 may be one of .012.
+    let noisy =
+        |rmse: f64| Outcome::Measured(Measured { rmse: Some(rmse), truth_samples: Some(16), ..Measured::default() });
+    const AT_LEAST: &[Claim] = &[claim("", &[Rule::AtLeast(Figure::Rmse, "a", 0.018)])];
+    let exhibit = Exhibit { claims: AT_LEAST, ..EXHIBIT };
+    assert!(matches!(judged(&exhibit, &[noisy(0.02)], true)[0].published.verdict, Verdict::Undecided(_)));
+    assert_eq!(judged(&exhibit, &[noisy(0.03)], true)[0].published.verdict, Verdict::Holds);
+    assert_eq!(judged(&exhibit, &[noisy(0.017)], true)[0].published.verdict, Verdict::Contradicted);
+}
+
+#[test]
+fn the_verdict_is_on_what_was_published() {
+    let published = [measured(0.2, 1.0), measured(0.25, 11.0)];
+    let ours = [Some(measured(0.1, 1.0)), None];
+    let judged = judge(&EXHIBIT, Outcomes { published: &published, ours: &ours }, false);
+    assert_eq!(judged[0].published.verdict, Verdict::Contradicted);
+    // What has no form of ours stands as published.
+    assert_eq!(judged[0].ours.as_ref().map(|ours| ours.verdict.clone()), Some(Verdict::Holds));
+    assert!(self::judged(&EXHIBIT, &published, false)[0].ours.is_none());
+}
+
+#[test]
+fn a_software_renderer_decides_no_time_but_of_growth() {
+    let found = verdicts(&[measured(0.1, 2.0), measured(0.25, 30.0)], true);
+    assert!(
+        matches!(&found[..], [Verdict::Holds, Verdict::Undecided(why), Verdict::Holds] if why.contains("GPU")),
+        "{found:?}"
+    );
+    // Nor of growth by two frames,
+    let of_two = |ms: f64| {
+        let count = Some(crate::stopwatch::FrameCount { frames: 2, warm_up: 1 });
+        Outcome::Measured(Measured { ms: Some(ms), rmse: Some(0.1), count, ..Measured::default() })
+    };
+    let found = verdicts(&[of_two(2.0), of_two(30.0)], true);
+    assert!(matches!(&found[2], Verdict::Undecided(why) if why.contains("few frames")), "{found:?}");
+    // nor where its clock says nothing.
+    let found = verdicts(&[measured(0.1, 0.2), measured(0.25, 30.0)], true);
+    assert!(matches!(&found[2], Verdict::Undecided(why) if why.contains("clock")), "{found:?}");
+}
+
+#[test]
+fn what_was_not_measured_decides_nothing() {
+    let not_ready = Outcome::NotReady("sponza.glb".to_owned());
+    let found = verdicts(&[not_ready.clone(), measured(0.2, 10.0)], false);
+    assert!(
+        matches!(&found[0], Verdict::Undecided(why) if why.contains("‘a’ is not ready") && why.contains("Khronos")),
+        "{found:?}"
+    );
+    assert!(found.iter().all(|verdict| verdict.name() == "cannot be shown"));
+    let none = Outcome::Measured(Measured::default());
+    assert!(
+        matches!(&verdicts(&[none.clone(), none], false)[0], Verdict::Undecided(why) if why.contains("‘a’ has no rmse here"))
+    );
+    assert!(matches!(verdicts(&[], false)[0], Verdict::Undecided(_)));
+    let found = verdicts(&[measured(0.1, 0.0), measured(0.25, 0.0)], false);
+    assert!(
+        found[1..].iter().all(|one| matches!(one, Verdict::Undecided(why) if why.contains("‘b’ was timed as nothing")))
+    );
+    // But a rule that is not met is enough.
+    const TWO: &[Claim] = &[claim("", &[Rule::AtMost(Figure::Rmse, "b", 0.1), Rule::AtMost(Figure::Rmse, "a", 0.1)])];
+    let exhibit = Exhibit { claims: TWO, ..EXHIBIT };
+    assert_eq!(judged(&exhibit, &[not_ready, measured(0.2, 1.0)], true)[0].published.verdict, Verdict::Contradicted);
+    const ELSEWHERE: &[Claim] = &[not_here("", "it needs what is not here")];
+    let exhibit = Exhibit { claims: ELSEWHERE, ..EXHIBIT };
+    assert_eq!(judged(&exhibit, &[], true)[0].published.sentence(), "Cannot be shown here: it needs what is not here.");
+}
+
+#[test]
+fn orders_likeness_and_ratios() {
+    let exhibit = |claims| Exhibit { claims, ..EXHIBIT };
+    const CLAIMS: &[Claim] = &[
+        claim("", &[Rule::Rising(Figure::Rmse, &["a", "b"])]),
+        claim("", &[Rule::Alike(Figure::Rmse, &["a", "b"], 1.5)]),
+        claim("", &[Rule::AtLeast(Figure::Rmse, "b", 0.2)]),
+        claim("", &[Rule::RatioWithin(Figure::Rmse, "b", "a", [1.1, 1.4])]),
+    ];
+    let of = |a, b| -> Vec<&str> {
+        let outcomes = [measured(a, 1.0), measured(b, 1.0)];
+        judged(&exhibit(CLAIMS), &outcomes, true).iter().map(|judged| judged.published.verdict.name()).collect()
+    };
+    assert_eq!(of(0.2, 0.25), ["holds", "holds", "holds", "holds"]);
+    assert_eq!(of(0.2, 0.3)[3], "contradicted");
+    assert_eq!(of(0.25, 0.2), ["contradicted", "holds", "cannot be shown", "contradicted"]);
+    assert_eq!(of(0.19, 0.1), ["contradicted", "contradicted", "contradicted", "contradicted"]);
+}
+
+/// A step from umbra to light with a penumbra between them.
+fn truth() -> Visibility {
+    let size = UVec2::new(48, 32);
+    let at = |i: u32| (f32::from((i % size.x) as u16) / 16.0 - 1.0).clamp(0.0, 1.0);
+    Visibility::one(size, (0..size.element_product()).map(at).collect())
+}
+
+/// Images that something may take for the truth: itself, blurred and shifted a little, with light in its umbra, with noise, as a
+/// hard shadow; then those that nothing may: dark, lit, and grey all over.
+fn images() -> [(&'static str, Visibility); 10] {
+    let truth = truth();
+    let with = |change: &dyn Fn(usize, f32) -> f32| {
+        let values =
+            (0..truth.size_px.element_product() as usize).map(|i| change(i, truth.at(i, 0)).clamp(0.0, 1.0)).collect();
+        Visibility::one(truth.size_px, values)
+    };
+    let noise = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7 & 255) as f32 / 255.0 - 0.5;
+    let mean = (0..truth.size_px.element_product() as usize).map(|i| truth.at(i, 0)).sum::<f32>()
+        / truth.size_px.element_product() as f32;
+    [
+        ("the truth", with(&|_, v| v)),
+        ("nearly", with(&|i, v| v + 0.004 * noise(i))),
+        ("a little light", with(&|_, v| v.max(0.012))),
+        ("leaks", with(&|_, v| v.max(0.1))),
+        ("noise", with(&|i, v| v + 0.2 * noise(i))),
+        ("worse noise", with(&|i, v| v + 0.9 * noise(i))),
+        ("a hard shadow", with(&|_, v| v.round())),
+        ("dark", with(&|_, _| 0.0)),
+        ("lit", with(&|_, _| 1.0)),
+        ("grey", with(&|_, _| mean)),
+    ]
+}
+
+const GOOD: usize = 7;
+
+/// The figures of each of the images.
+fn figures() -> Vec<(&'static str, Outcome)> {
+    let truth = truth();
+    let judged = vec![true; truth.size_px.element_product() as usize];
+    let images = images();
+    let flat_rmse = compare_visibility(&truth, &images[9].1, &judged).unwrap().rmse;
+    let outcome = |image: &Visibility| {
+        let metrics = compare_visibility(&truth, image, &judged).unwrap();
+        Outcome::Measured(Measured {
+            rmse: metrics.rmse,
+            umbra_leak: metrics.umbra_leak,
+            lit_loss: metrics.lit_loss,
+            noise: metrics.roughness,
+            flat_rmse,
+            ..Measured::default()
+        })
+    };
+    images.iter().map(|(name, image)| (*name, outcome(image))).collect()
+}
+
+/// Every way to put one of `count` things into each of `places`.
+fn assignments(places: usize, count: usize) -> impl Iterator<Item = Vec<usize>> {
+    (0..count.pow(places as u32)).map(move |n| (0..places).map(|k| n / count.pow(k as u32) % count).collect())
+}
+
+/// For every rule about images: there are images that meet it; a constant in the place of what it finds good does not; and where
+/// it finds something wanting, the exact image in that one's place does not.
+#[test]
+fn every_rule_about_images_rejects_a_wrong_one() {
+    let figures = figures();
+    let mut looked_at = 0;
+    for (paper, exhibit) in PAPERS.iter().flat_map(|paper| paper.exhibits.iter().map(move |exhibit| (paper, exhibit))) {
+        for (claim, rule) in exhibit.claims.iter().flat_map(|claim| claim.rules.iter().map(move |rule| (claim, rule))) {
+            if !rule.figure().is_of_images() {
+                continue;
+            }
+            let rows = rule.rows();
+            let met_by = |images: &[usize]| {
+                let place = |row: &str| rows.iter().position(|one| *one == row).map(|k| images[k]);
+                let none = Outcome::NotRun;
+                let published: Vec<Outcome> = exhibit
+                    .rows
+                    .iter()
+                    .map(|row| place(row.what).map_or_else(|| none.clone(), |image| figures[image].1.clone()))
+                    .collect();
+                let bench =
+                    Bench { exhibit, outcomes: Outcomes { published: &published, ours: &[] }, is_software: true };
+                bench.look(claim, rule, Form::Published).1
+            };
+            let what = format!("{}/{}: {}", paper.id, exhibit.id, rule.text());
+            let good: Vec<Vec<usize>> =
+                assignments(rows.len(), GOOD).filter(|images| met_by(images) == Met::Yes).collect();
+            assert!(!good.is_empty(), "{what}: no image meets it");
+            let with = |good: &[usize], k: usize, image: usize| {
+                let mut images = good.to_vec();
+                images[k] = image;
+                images
+            };
+            for row in rule.favored() {
+                let k = rows.iter().position(|one| *one == row).unwrap();
+                for (image, (name, _)) in figures.iter().enumerate().skip(GOOD) {
+                    let is_met = good.iter().any(|good| met_by(&with(good, k, image)) == Met::Yes);
+                    assert!(!is_met, "{what}: ‘{row}’ may be {name} all over");
+                }
+            }
+            if rule.favored().is_empty() {
+                let is_rejected = good.iter().any(|good| met_by(&with(good, 0, 0)) != Met::Yes);
+                assert!(is_rejected, "{what}: the truth is found wanting");
+            }
+            looked_at += 1;
+        }
+    }
+    assert!(looked_at > 60, "{looked_at}");
+}
+
+/// For every rule about time: times that meet it, and one time for all rows, or times in the reverse order, that do not.
+#[test]
+fn every_rule_about_time_rejects_a_wrong_one() {
+    const MS: [f64; 10] = [10.0, 11.2, 12.0, 14.0, 16.0, 21.0, 30.0, 45.0, 105.0, 1150.0];
+    let mut looked_at = 0;
+    for (paper, exhibit) in PAPERS.iter().flat_map(|paper| paper.exhibits.iter().map(move |exhibit| (paper, exhibit))) {
+        for (claim, rule) in exhibit.claims.iter().flat_map(|claim| claim.rules.iter().map(move |rule| (claim, rule))) {
+            if rule.figure() != Figure::Ms {
+                continue;
+            }
+            let rows = rule.rows();
+            let met_by = |times: &[f64]| {
+                let place = |row: &str| rows.iter().position(|one| *one == row).map(|k| times[k]);
+                let published: Vec<Outcome> = exhibit
+                    .rows
+                    .iter()
+                    .map(|row| place(row.what).map_or(Outcome::NotRun, |ms| measured(0.1, ms)))
+                    .collect();
+                let bench =
+                    Bench { exhibit, outcomes: Outcomes { published: &published, ours: &[] }, is_software: false };
+                bench.look(claim, rule, Form::Published).1
+            };
+            let what = format!("{}/{}: {}", paper.id, exhibit.id, rule.text());
+            let of = |places: &[usize]| -> Vec<f64> { places.iter().map(|i| MS[*i]).collect() };
+            let good =
+                assignments(rows.len(), MS.len()).map(|places| of(&places)).find(|times| met_by(times) == Met::Yes);
+            assert!(good.is_some(), "{what}: no times meet it");
+            let wrong =
+                assignments(rows.len(), MS.len()).map(|places| of(&places)).find(|times| met_by(times) == Met::No);
+            assert!(wrong.is_some(), "{what}: no times fail it");
+            looked_at += 1;
+        }
+    }
+    assert!(looked_at > 30, "{looked_at}");
+}
