@@ -21,20 +21,20 @@ shaders! {
     /// Smoothing of noisy visibility over pixels.
     SMOOTHING_SMOOTH = "frame/smoothing/smooth";
     /// Masks of fewer bits than techniques write.
-    NARROW_MASK_DRAW = "frame/narrow_mask/draw";
+    MASK_FORMAT_DRAW = "frame/mask_format/draw";
     /// Points as receivers: from a host's buffers to textures.
-    POINTS_READ = "frame/points/read";
+    POINTS_PACK = "frame/points/pack";
     /// What a technique gave for points, into a host's buffer.
     POINTS_WRITE = "frame/points/write";
     /// What a frame's receivers are, for tests.
     #[cfg(test)]
     POINTS_PROBE = "frame/points/probe";
     /// hard for hosts' shaders.
-    HARD_AT = "techniques/single_map/hard/at";
+    HARD_FUNCTION = "techniques/single_map/hard/shader_function";
     /// pcf for hosts' shaders.
-    PCF_AT = "techniques/single_map/pcf/at";
+    PCF_FUNCTION = "techniques/single_map/pcf/shader_function";
     /// pcss for hosts' shaders.
-    PCSS_AT = "techniques/single_map/pcss/at";
+    PCSS_FUNCTION = "techniques/single_map/pcss/shader_function";
     /// Receivers of a multisampled depth buffer.
     SPLIT_RECEIVERS_DRAW = "frame/split_receivers/split";
     /// Parts of what a light reaches: the receivers of one.

@@ -11,7 +11,7 @@ use std::fmt;
 
 use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Mask, Overflow, Params, PreparedFrame, PreparedReceivers};
 use crate::frame::denoise::{Denoiser, PreparedDenoise};
-use crate::frame::narrow_mask::NarrowMask;
+use crate::frame::mask_format::NarrowMask;
 use crate::frame::points::PointTextures;
 use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;

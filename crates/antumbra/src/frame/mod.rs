@@ -5,7 +5,7 @@ pub(crate) mod accumulation;
 pub(crate) mod blue_noise;
 pub(crate) mod denoise;
 pub(crate) mod inputs;
-pub(crate) mod narrow_mask;
+pub(crate) mod mask_format;
 pub(crate) mod points;
 #[cfg(any(feature = "multi_layer", feature = "single_map", feature = "summed"))]
 pub(crate) mod resolve;

@@ -23,7 +23,7 @@ pub(crate) mod tests;
 const TILE: u32 = 8;
 
 bindings! {
-    struct Read = "points", COMPUTE, group 0 of [POINTS_READ] {
+    struct Read = "points", COMPUTE, group 0 of [POINTS_PACK] {
         0 points: Uniform,
         1 position_words: Storage,
         2 normal_words: Storage,
@@ -120,7 +120,7 @@ impl PointTextures {
         let (read_group, write_group) = (read.group(stage, &read_layout), write.group(stage, &write_layout));
         Self {
             size_px,
-            read: (compute_pipeline(stage, "points", shaders::POINTS_READ, &[&read_layout]), read_group),
+            read: (compute_pipeline(stage, "points", shaders::POINTS_PACK, &[&read_layout]), read_group),
             write: (
                 compute_pipeline(stage, "points' visibilities", shaders::POINTS_WRITE, &[&write_layout]),
                 write_group,
@@ -134,7 +134,7 @@ impl PointTextures {
 
     /// Compiles both passes before there is a frame.
     pub(crate) fn compile_ahead(gpu: &Gpu) {
-        compute_pipeline(gpu, "points", shaders::POINTS_READ, &[&Read::layout(gpu)]);
+        compute_pipeline(gpu, "points", shaders::POINTS_PACK, &[&Read::layout(gpu)]);
         compute_pipeline(gpu, "points' visibilities", shaders::POINTS_WRITE, &[&Written::layout(gpu)]);
     }
 

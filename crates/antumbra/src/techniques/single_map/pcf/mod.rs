@@ -85,7 +85,7 @@ impl Technique for Pcf {
     }
 
     fn embeddable(&self) -> Option<Embeddable> {
-        self.resolve.embeddable(shaders::PCF_AT)
+        self.resolve.embeddable(shaders::PCF_FUNCTION)
     }
 
     fn memory_bytes(&self) -> u64 {

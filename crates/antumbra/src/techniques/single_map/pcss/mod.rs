@@ -145,7 +145,7 @@ impl Technique for Pcss {
     }
 
     fn embeddable(&self) -> Option<Embeddable> {
-        self.resolve.embeddable(shaders::PCSS_AT)
+        self.resolve.embeddable(shaders::PCSS_FUNCTION)
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -1,4 +1,4 @@
-// Linked from src/frame/narrow_mask/draw.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/frame/mask_format/draw.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(0)
 var wide: texture_2d_array<f32>;

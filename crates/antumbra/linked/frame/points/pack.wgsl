@@ -1,4 +1,4 @@
-// Linked from src/frame/points/read.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/frame/points/pack.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(1)
 var<storage, read> position_words: array<u32>;

@@ -1,4 +1,4 @@
-// Linked from src/techniques/single_map/pcss/at.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/single_map/pcss/shader_function.wesl by `cargo xtask shaders`: edit that, not this.
 
 fn visibility_at(position: vec3f, normal: vec3f, pixel: vec2u) -> f32 {
     return resolve_visibility(inputs_receiver_at(position, normal), pixel);

@@ -1,7 +1,7 @@
-// Linked from src/techniques/single_map/hard/at.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/single_map/pcf/shader_function.wesl by `cargo xtask shaders`: edit that, not this.
 
 fn visibility_at(position: vec3f, normal: vec3f, pixel: vec2u) -> f32 {
-    return resolve_visibility(inputs_receiver_at(position, normal));
+    return resolve_visibility(inputs_receiver_at(position, normal), pixel);
 }
 
 @compute @workgroup_size(1)
@@ -103,6 +103,21 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
+@group(0) @binding(6)
+var noise_noise_tile: texture_2d<f32>;
+
+const noise_TILE_SIDE: u32 = 64;
+
+fn noise_blue_noise(pixel: vec2u) -> f32 {
+    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
+}
+
+const noise_GOLDEN = 0.618033989;
+
+fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
+}
+
 const bias_HALF_TEXEL = 0.5;
 
 const bias_SNAPPED_TEXELS = 0.00390625;
@@ -122,6 +137,18 @@ var map_light_map_sampler: sampler;
 
 fn map_is_in_map(uv: vec2f) -> bool {
     return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+}
+
+fn map_texel_of_uv(uv: vec2f) -> vec2i {
+    return clamp(vec2i(floor(uv * map_light_view.map_size)), vec2i(0), vec2i(map_light_view.map_size) - 1);
+}
+
+fn map_uv_of_texel(texel: vec2i) -> vec2f {
+    return (vec2f(texel) + 0.5) / map_light_view.map_size;
+}
+
+fn map_depth_in_front(plane: space_ReceiverPlane, texel: vec2i, stored: f32) -> f32 {
+    return map_light_view.depth_sign * (stored - space_plane_depth(map_light_view, plane, map_uv_of_texel(texel)));
 }
 
 struct map_Quad {
@@ -144,21 +171,34 @@ fn map_quad_of(plane: space_ReceiverPlane, uv: vec2f, stored: vec4f) -> map_Quad
     return map_Quad(space_lit_quad(map_light_view, plane, uv, t, stored), stored, t);
 }
 
-fn map_lit_nearest(plane: space_ReceiverPlane, uv: vec2f) -> f32 {
+fn map_widest_blur_texels(plane: space_ReceiverPlane, gap: f32, widest_tangent: f32) -> f32 {
+    let rise_per_texel = length(plane.depth_per_uv / map_light_view.map_size);
+    let texel_width = plane.surface_step / space_SURFACE_SLOPE;
+    return 2.0 * max(gap, 0.0) / max(rise_per_texel, texel_width / widest_tangent);
+}
+
+fn map_gap_of(plane: space_ReceiverPlane, stored: f32) -> f32 {
+    return map_light_view.depth_sign * (stored - plane.depth);
+}
+
+const map_ANY_GAP = 1e20;
+
+fn map_lit_narrowed(plane: space_ReceiverPlane, uv: vec2f, width: f32, most_gap: f32) -> f32 {
     if !map_is_in_map(uv) {
         return 1.0;
     }
-    let quad = map_quad_at(plane, uv);
-    return space_bilinear(quad.lit, round(quad.t));
+    return map_narrowed(map_quad_at(plane, uv), plane, width, vec2f(-map_ANY_GAP, most_gap));
+}
+
+fn map_narrowed(quad: map_Quad, plane: space_ReceiverPlane, width: f32, gaps: vec2f) -> f32 {
+    let gap = map_light_view.depth_sign * (quad.stored - plane.depth);
+    let lit = select(quad.lit, vec4f(1.0), (gap < vec4f(gaps.x)) | (gap > vec4f(gaps.y)));
+    return space_bilinear(lit, saturate((quad.t - 0.5) / max(width, 0.001) + 0.5));
 }
 
 fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
     let towards = select(inputs_light_source.center_in_world - receiver.pos_in_world, -inputs_light_source.axis_in_world, inputs_light_source.kind == light_KIND_SUN);
     return dot(receiver.normal_in_world, towards) > 0.0;
-}
-
-fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
 }
 
 fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
@@ -188,12 +228,12 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
-const space_MIN_GRAZING_SINE = 0.00390625;
-
 const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
 
-fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
-    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
+const space_COARSE_GRAZING_SINE = 0.0175;
+
+fn space_coarse_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_COARSE_GRAZING_SINE, view.perspective == 1u);
 }
 
 struct space_ReceiverPlane {
@@ -271,6 +311,10 @@ fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f
     return saturate(no_farther);
 }
 
+fn space_plane_depth(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f) -> f32 {
+    return space_held(view, plane, vec4f(plane.depth + dot(plane.depth_per_uv, uv - plane.uv))).x;
+}
+
 fn space_lit_quad(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
     let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
     let from_here = space_from_quad_center(t);
@@ -313,21 +357,104 @@ fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
     return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
-struct resolve_HardUniform {
-    bias_scale: f32
+struct resolve_PcfUniform {
+    kernel_size_texels: f32,
+    tap_count: u32,
+    rotate: u32,
+    bias_scale: f32,
+    attach_contacts: u32
 }
 
 @group(2) @binding(0)
-var<uniform> resolve_hard: resolve_HardUniform;
+var<uniform> resolve_pcf: resolve_PcfUniform;
 
-fn resolve_visibility(receiver: inputs_Receiver) -> f32 {
+@group(2) @binding(1)
+var<storage, read> resolve_taps: array<vec2f>;
+
+const resolve_TAU = 6.283185307179586;
+
+const resolve_WIDEST_TANGENT = 0.1;
+
+const resolve_MIN_SIZE_TEXELS = 0.25;
+
+struct resolve_Found {
+    lit: f32,
+    widest: f32
+}
+
+fn resolve_look_in_box(plane: space_ReceiverPlane, size: f32) -> resolve_Found {
+    let center = plane.uv * map_light_view.map_size;
+    let low = center - 0.5 * size;
+    let high = center + 0.5 * size;
+    let first = vec2i(floor(low));
+    let last = vec2i(ceil(high)) - 1;
+    let map_last = vec2i(map_light_view.map_size) - 1;
+    var occluded = 0.0;
+    var widest = size;
+    for (var y = max(first.y, 0); y <= min(last.y, map_last.y); y++) {
+        let weight_y = min(high.y, f32(y + 1)) - max(low.y, f32(y));
+        for (var x = max(first.x, 0); x <= min(last.x, map_last.x); x++) {
+            let texel = vec2i(x, y);
+            let stored = textureLoad(map_light_map, texel, 0);
+            if map_depth_in_front(plane, texel, stored) > 0.0 {
+                let weight = weight_y * (min(high.x, f32(x + 1)) - max(low.x, f32(x)));
+                occluded += weight;
+                let beyond = max(abs(vec2f(texel) + 0.5 - center) - 0.5, vec2f(0.0));
+                let own_widest = map_widest_blur_texels(plane, map_gap_of(plane, stored), resolve_WIDEST_TANGENT);
+                widest = min(widest, max(own_widest, 2.0 * max(beyond.x, beyond.y)));
+            }
+        }
+    }
+    return resolve_Found(saturate(1.0 - occluded / (size * size)), widest);
+}
+
+fn resolve_widest_disc(plane: space_ReceiverPlane, size: f32, turn: mat2x2f) -> f32 {
+    var widest = size;
+    for (var i = 0u; i < resolve_pcf.tap_count; i++) {
+        let uv = plane.uv + turn * resolve_taps[i] * 0.5 * size / map_light_view.map_size;
+        let texel = map_texel_of_uv(uv);
+        let stored = textureLoad(map_light_map, texel, 0);
+        if map_is_in_map(uv) && map_depth_in_front(plane, texel, stored) > 0.0 {
+            let own_widest = map_widest_blur_texels(plane, map_gap_of(plane, stored), resolve_WIDEST_TANGENT);
+            widest = min(widest, max(own_widest, size * length(resolve_taps[i])));
+        }
+    }
+    return widest;
+}
+
+fn resolve_lit_disc(plane: space_ReceiverPlane, size: f32, turn: mat2x2f) -> f32 {
+    var lit = 0.0;
+    for (var i = 0u; i < resolve_pcf.tap_count; i++) {
+        let uv = plane.uv + turn * resolve_taps[i] * 0.5 * size / map_light_view.map_size;
+        lit += map_lit_narrowed(plane, uv, min(size, 1.0), map_ANY_GAP);
+    }
+    return lit / f32(resolve_pcf.tap_count);
+}
+
+fn resolve_visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
     }
     if !receiver.is_reached || !receiver_light_faces_light_center(receiver) {
         return 0.0;
     }
-    var plane = receiver_light_biased_plane(receiver, resolve_hard.bias_scale);
-    plane.farthest_depth = plane.depth - plane.bias;
-    return map_lit_nearest(plane, plane.uv);
+    var plane = receiver_light_biased_plane_within(receiver, resolve_pcf.bias_scale, space_coarse_grazing_sine(map_light_view));
+    let attach = resolve_pcf.attach_contacts == 1u;
+    if attach {
+        plane.farthest_depth = plane.depth;
+    }
+    let size = resolve_pcf.kernel_size_texels;
+    if resolve_pcf.tap_count == 0u {
+        let found = resolve_look_in_box(plane, size);
+        if !attach || found.widest >= size {
+            return found.lit;
+        }
+        return resolve_look_in_box(plane, max(found.widest, resolve_MIN_SIZE_TEXELS)).lit;
+    }
+    let angle = select(0.0, resolve_TAU * noise_noise_of_pixel(pixel), resolve_pcf.rotate == 1u);
+    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    if !attach {
+        return resolve_lit_disc(plane, size, turn);
+    }
+    return resolve_lit_disc(plane, resolve_widest_disc(plane, size, turn), turn);
 }
