@@ -38,11 +38,11 @@ pub use any::AnyShadow;
 pub use frame::{Casters, Frame, PointFrame};
 pub use warm_up::WarmUp;
 
-/// One light's shadow by a technique that is known at compile time.
+/// State of one light's shadow, by a technique known at compile time.
 pub struct Shadow<T: Technique> {
     gpu: Gpu,
     validator: Validator,
-    /// What the next frame is prepared by.
+    /// Parameters of the next frame.
     pub params: T::Params,
     /// How the next frame's mask is made smooth; `None`, as it comes, leaves it as the technique writes it. What the frames
     /// before had is kept as long as there is one.
@@ -72,7 +72,7 @@ impl<T: Technique> fmt::Debug for Shadow<T> {
 }
 
 impl<T: Technique> Shadow<T> {
-    /// A light's state, with default parameters.
+    /// Creates a light's state with default parameters.
     ///
     /// # Errors
     /// [`Error::Unsupported`] where the device lacks something.
@@ -80,7 +80,7 @@ impl<T: Technique> Shadow<T> {
         Self::with_params(gpu, T::Params::default())
     }
 
-    /// A light's state.
+    /// Creates a light's state.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -103,7 +103,7 @@ impl<T: Technique> Shadow<T> {
         })
     }
 
-    /// Makes ready for `frame`: fits, allocates, puts uploads aside.
+    /// Prepares a frame: fits maps, allocates, collects uploads.
     ///
     /// # Errors
     /// Where parameters, light or frame do not fit one another or the device. Nothing is left that draws.
@@ -256,7 +256,7 @@ impl<T: Technique> Shadow<T> {
         &self.technique
     }
 
-    /// Bytes of GPU memory that the state holds; the mask, programs and the host's resources apart.
+    /// GPU memory of the state, bytes, without the mask, pipelines and the host's resources.
     pub fn memory_bytes(&self) -> u64 {
         self.technique.memory_bytes()
             + self.parted.as_ref().map_or(0, Parted::memory_bytes)
@@ -322,7 +322,7 @@ enum LightPasses<'a, P> {
     Parts(Box<PartedPasses<'a, P>>),
 }
 
-/// A frame of one light, ready to be recorded. It goes before what the frame borrows: declare a list of them after their casters.
+/// Prepared frame of one light. It must be dropped before what it borrows: declare a list of them after their casters.
 #[must_use = "nothing is drawn before it is recorded"]
 pub struct Prepared<'a> {
     work: Box<dyn Work + 'a>,
@@ -340,7 +340,7 @@ impl Prepared<'_> {
         self.work.overflow()
     }
 
-    /// Records the frame's uploads and passes: none where the mask holds just this frame.
+    /// Records the frame's uploads and passes; none if the mask already holds this frame.
     pub fn record(self, recorder: &mut Recorder<'_>) {
         self.work.record(recorder);
     }

@@ -38,7 +38,7 @@ pub struct TechniqueFacts {
     pub source: &'static str,
     /// The feature of this crate that compiles it.
     pub family: &'static str,
-    /// What the width of a penumbra follows from.
+    /// Source of the penumbra's width.
     pub penumbra: &'static str,
     /// Number and kind of its shadow maps.
     pub light_maps: &'static str,
@@ -48,7 +48,7 @@ pub struct TechniqueFacts {
     pub fails_where: &'static str,
     /// Name of the laboratory's built-in scene that shows its worst failure.
     pub worst_scene: &'static str,
-    /// What goes wrong there, for a caption.
+    /// Caption of that failure.
     pub worst_case: &'static str,
 }
 
@@ -97,10 +97,10 @@ macro_rules! techniques {
         ); )+
 
         impl TechniqueKind {
-            /// Every technique, in the order of documentation.
+            /// All techniques, in the order of the documentation.
             pub const ALL: &'static [Self] = &[$( #[cfg(feature = $family)] Self::$variant, )+];
 
-            /// Facts for choosing it.
+            /// Facts for choosing the technique.
             pub fn facts(self) -> &'static TechniqueFacts {
                 match self { $(
                     #[cfg(feature = $family)]
@@ -119,7 +119,7 @@ macro_rules! techniques {
                 )+ }
             }
 
-            /// The declarations of its parameters.
+            /// Declarations of the parameters.
             pub fn param_specs(self) -> &'static [ParamSpec] {
                 match self { $(
                     #[cfg(feature = $family)]
@@ -147,7 +147,7 @@ macro_rules! techniques {
                 )+ }
             }
 
-            /// What a quality sets otherwise than the defaults.
+            /// Parameters whose values in a quality differ from the defaults.
             pub fn quality_settings(self, quality: Quality) -> Vec<(&'static str, ParamValue)> {
                 match self { $(
                     #[cfg(feature = $family)]
@@ -155,7 +155,7 @@ macro_rules! techniques {
                 )+ }
             }
 
-            /// The technique as its paper prints it, which [`Quality::Paper`] sets; `None` for those of other papers.
+            /// The technique as published, which [`Quality::Paper`] sets; `None` for techniques of other papers.
             pub fn printed(self) -> Option<&'static Printed> {
                 match self { $(
                     #[cfg(feature = $family)]
@@ -163,7 +163,7 @@ macro_rules! techniques {
                 )+ }
             }
 
-            /// A light's state with default parameters.
+            /// Creates a light's state with default parameters.
             ///
             /// # Errors
             /// As [`Shadow::new`].
@@ -409,19 +409,19 @@ impl TechniqueKind {
         self.facts().source
     }
 
-    /// The technique of this name, in any case.
+    /// Technique of this name, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|kind| kind.name().eq_ignore_ascii_case(name))
     }
 
-    /// Whether there is such a quality of it: every step of the ladder, and [`Quality::Paper`] where that sets anything.
+    /// Whether the technique has this quality: all of the ladder, and [`Quality::Paper`] if it sets anything.
     pub fn has_quality(self, quality: Quality) -> bool {
         quality != Quality::Paper || self.printed().is_some()
     }
 }
 
 impl AnyShadow {
-    /// Which technique this is by.
+    /// Technique.
     ///
     /// # Panics
     /// By a technique of the caller's own, which is not listed.

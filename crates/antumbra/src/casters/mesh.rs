@@ -9,11 +9,11 @@ use glam::{Affine2, Vec3};
 /// index buffers that engines grow have anyway.
 #[derive(Clone, Copy, Debug)]
 pub struct Mesh<'a> {
-    /// How many vertices there are.
+    /// Number of vertices.
     pub vertex_count: u32,
-    /// Their positions.
+    /// Vertex positions.
     pub positions: Positions<'a>,
-    /// Their texture coordinates, for casters whose surface has a texture.
+    /// Vertex texture coordinates, for casters whose surface has a texture.
     pub texture_coordinates: Option<TextureCoordinates<'a>>,
     /// Corners in the order of `topology`; `None`: vertices are in that order.
     pub indices: Option<Indices<'a>>,
@@ -27,20 +27,20 @@ pub struct Mesh<'a> {
     pub bounds: Aabb,
 }
 
-/// Positions, one a vertex.
+/// Positions, one per vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Positions<'a> {
-    /// Where they lie.
+    /// Buffer.
     pub buffer: &'a wgpu::Buffer,
-    /// Bytes before the first, a multiple of four.
+    /// Offset of the first element, bytes; a multiple of four.
     pub offset: u64,
-    /// Bytes from one to the next, a multiple of four.
+    /// Stride, bytes; a multiple of four.
     pub stride: u64,
-    /// How each is written.
+    /// Element format.
     pub format: PositionFormat,
 }
 
-/// How a position is written.
+/// Position format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PositionFormat {
@@ -72,22 +72,22 @@ impl PositionFormat {
     }
 }
 
-/// Texture coordinates, one pair a vertex.
+/// Texture coordinates, one pair per vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct TextureCoordinates<'a> {
-    /// Where they lie.
+    /// Buffer.
     pub buffer: &'a wgpu::Buffer,
-    /// Bytes before the first, a multiple of four.
+    /// Offset of the first element, bytes; a multiple of four.
     pub offset: u64,
-    /// Bytes from one to the next, a multiple of four.
+    /// Stride, bytes; a multiple of four.
     pub stride: u64,
-    /// How each is written.
+    /// Element format.
     pub format: TextureCoordinateFormat,
-    /// What is done to them before they are used, as by `KHR_texture_transform`.
+    /// Transform of the coordinates, as by `KHR_texture_transform`.
     pub transform: Affine2,
 }
 
-/// How a pair of texture coordinates is written.
+/// Texture coordinate format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TextureCoordinateFormat {
@@ -108,22 +108,22 @@ impl TextureCoordinateFormat {
     }
 }
 
-/// Indices.
+/// Index buffer range.
 #[derive(Clone, Copy, Debug)]
 pub struct Indices<'a> {
-    /// Where they lie, from offset 0.
+    /// Buffer, read from offset 0.
     pub buffer: &'a wgpu::Buffer,
-    /// 16 or 32 bits each.
+    /// Index format: 16 or 32 bits.
     pub format: wgpu::IndexFormat,
-    /// The first to use.
+    /// First index to use.
     pub first_index: u32,
-    /// How many to use.
+    /// Number of indices to use.
     pub count: u32,
-    /// Added to each.
+    /// Value added to each index.
     pub base_vertex: i32,
 }
 
-/// Where a caster's instances are, in the world.
+/// World transforms of a caster's instances.
 #[derive(Clone, Copy, Debug)]
 pub enum Instances<'a> {
     /// World-from-object matrices, affine.
@@ -135,22 +135,22 @@ pub enum Instances<'a> {
 /// World-from-object matrices in a host's buffer, which needs the usage `STORAGE` or `COPY_SRC`.
 #[derive(Clone, Copy, Debug)]
 pub struct InstanceBuffer<'a> {
-    /// Where they lie.
+    /// Buffer.
     pub buffer: &'a wgpu::Buffer,
-    /// Bytes before the first, a multiple of four.
+    /// Offset of the first element, bytes; a multiple of four.
     pub offset: u64,
-    /// Bytes from one to the next, a multiple of four.
+    /// Stride, bytes; a multiple of four.
     pub stride: u64,
-    /// How each is written.
+    /// Element format.
     pub layout: InstanceLayout,
-    /// How many there are.
+    /// Number of matrices.
     pub count: u32,
     /// World-space box of all of them, infinite on sides that are not known; `None` where nothing is. What of it lies behind all that
     /// receives, or beside, changes nothing; say where that is (`Receivers::bounds`), for maps are as fine as they are small.
     pub bounds: Option<Aabb>,
 }
 
-/// How a matrix is written.
+/// Matrix layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InstanceLayout {

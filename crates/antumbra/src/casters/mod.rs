@@ -45,20 +45,20 @@ pub use mesh::{
 use pack::{InstanceSource, MeshSource, PackDispatch, PackTargets, Packer};
 
 slotmap::new_key_type! {
-    /// A mesh of a [`CasterSet`].
+    /// Handle of a mesh in a [`CasterSet`].
     pub struct MeshId;
-    /// A caster of a [`CasterSet`].
+    /// Handle of a caster in a [`CasterSet`].
     pub struct CasterId;
 }
 
-/// A caster to add: a mesh, once or many times, with one surface.
+/// Description of a caster: one or more instances of a mesh, with one surface.
 #[derive(Clone, Debug)]
 pub struct Caster<'a> {
-    /// Its mesh.
+    /// Mesh.
     pub mesh: MeshId,
-    /// Where it is.
+    /// World transforms.
     pub instances: Instances<'a>,
-    /// What its surface does to light.
+    /// Surface.
     pub surface: Surface,
     /// A bit for each layer that it is in. Lights see casters of the layers that
     /// [`Casters::Set`](crate::Casters::Set) names.
@@ -72,7 +72,7 @@ impl<'a> Caster<'a> {
     }
 }
 
-/// What a caster's surface does to light that meets it. Textures are the host's; the set keeps handles on them.
+/// Effect of a caster's surface on light. Textures belong to the host; the set keeps handles.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Surface {
@@ -113,16 +113,16 @@ impl Surface {
     }
 }
 
-/// A texture on a caster.
+/// Texture of a caster.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// A 2D view of a filterable colour format.
     pub view: wgpu::TextureView,
-    /// A filtering sampler, which also says how the texture wraps.
+    /// Filtering sampler; it also sets the texture's address modes.
     pub sampler: wgpu::Sampler,
 }
 
-/// Casters that lights share. See the module.
+/// Set of casters shared by all lights; see the module.
 #[derive(Debug)]
 pub struct CasterSet {
     gpu: Gpu,
@@ -188,7 +188,7 @@ static NEXT_SET: AtomicU64 = AtomicU64::new(0);
 static NEXT_MESH: AtomicU64 = AtomicU64::new(0);
 
 impl CasterSet {
-    /// An empty set.
+    /// Creates an empty set.
     pub fn new(gpu: &Gpu) -> Self {
         let columns = [("antumbra caster positions", 12), ("antumbra caster texture coordinates", 8)];
         let vertices = |columns| Arena::new(columns, wgpu::BufferUsages::VERTEX);
@@ -329,7 +329,7 @@ impl CasterSet {
         Ok(self.casters.insert(entry))
     }
 
-    /// Moves a caster; as many instances as before need no new room.
+    /// Moves a caster. Storage is reallocated only if the number of instances grows.
     ///
     /// # Errors
     /// Where there is no such caster, or matrices are not finite or cannot be read.
@@ -359,7 +359,7 @@ impl CasterSet {
         Ok(())
     }
 
-    /// Changes the layers that a caster is in.
+    /// Changes a caster's layers.
     ///
     /// # Errors
     /// Where there is no such caster.
@@ -382,12 +382,12 @@ impl CasterSet {
         Ok(())
     }
 
-    /// How many casters there are.
+    /// Number of casters.
     pub fn len(&self) -> usize {
         self.casters.len()
     }
 
-    /// Whether there is no caster.
+    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         self.casters.is_empty()
     }
@@ -548,7 +548,7 @@ impl CasterSet {
         CastersKey::new(self.number, self.version, layers)
     }
 
-    /// How many channels of a mask the casters of some layers have a use for: three where any of them tints.
+    /// Number of mask channels that casters in these layers need: three if any tints, otherwise one.
     pub fn mask_channels(&self, layers: u32) -> MaskChannels {
         if self.casters.values().any(|caster| caster.layers & layers != 0 && caster.surface.tints()) {
             MaskChannels::Three
@@ -557,7 +557,7 @@ impl CasterSet {
         }
     }
 
-    /// Bytes of GPU memory that the set holds.
+    /// GPU memory of the set, bytes.
     pub fn memory_bytes(&self) -> u64 {
         let vertices: u64 = self.vertices.iter().map(Arena::memory_bytes).sum();
         vertices + self.indices.memory_bytes() + self.instances.memory_bytes()

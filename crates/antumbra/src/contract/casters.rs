@@ -5,7 +5,7 @@ use glam::{Mat4, UVec2, Vec3};
 
 use super::{DepthConvention, MaskChannels};
 
-/// What casts shadows in a frame, as techniques draw it.
+/// Casters of a frame, as techniques receive them.
 #[derive(Clone, Copy, Debug)]
 pub enum PreparedCasters<'a> {
     /// Meshes.
@@ -15,7 +15,7 @@ pub enum PreparedCasters<'a> {
 }
 
 impl PreparedCasters<'_> {
-    /// How many channels of a mask these casters have a use for: three where any of them tints.
+    /// Number of mask channels that these casters need: three if any tints, otherwise one.
     pub fn mask_channels(&self) -> MaskChannels {
         match self {
             Self::Draws(meshes) if meshes.iter().any(|mesh| mesh.opacity.tints()) => MaskChannels::Three,
@@ -47,20 +47,20 @@ pub struct MeshCaster<'a> {
     pub positions: &'a wgpu::Buffer,
     /// `u32` each, three a triangle, from offset 0.
     pub indices: &'a wgpu::Buffer,
-    /// The first triangle to draw.
+    /// First triangle to draw.
     pub first_triangle: u32,
-    /// How many indices to draw.
+    /// Number of indices to draw.
     pub index_count: u32,
     /// World-from-object matrices: column-major, affine `[[f32; 4]; 4]` each, tightly packed.
     pub instances: &'a wgpu::Buffer,
-    /// The first matrix to use.
+    /// First instance to draw.
     pub first_instance: u32,
-    /// How many instances to draw.
+    /// Number of instances to draw.
     pub instance_count: u32,
     /// Triangles counter-clockwise from outside bound a solid, which holds no receivers but where the camera's near plane is
     /// within `bounds`. Some techniques then need no bias.
     pub closed: bool,
-    /// What the surface does to light.
+    /// Effect of the surface on light.
     pub opacity: Opacity<'a>,
     /// World-space box of all instances, infinite on sides that are not known ([`Aabb::EVERYTHING`] on all).
     pub bounds: Aabb,
@@ -69,16 +69,16 @@ pub struct MeshCaster<'a> {
     pub version: Option<MeshVersion>,
 }
 
-/// What a mesh's positions and indices are: equal versions, equal meshes.
+/// Version key of a mesh's positions and indices: equal versions mean equal meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MeshVersion {
     /// No other mesh has it, nor has the same place in buffers once it holds another mesh.
     pub mesh: u64,
-    /// Another for each pose of the mesh: skinned, morphed.
+    /// Pose counter: another number for each skinned or morphed pose.
     pub vertices: u64,
 }
 
-/// What a surface does to light that meets it.
+/// Effect of a surface on light.
 #[derive(Clone, Copy, Debug)]
 pub enum Opacity<'a> {
     /// Blocks all.
@@ -105,7 +105,7 @@ pub enum Opacity<'a> {
     },
 }
 
-/// How much of a translucent surface is there. Without a texture its alpha counts as 1.
+/// Coverage of a translucent surface. Without a texture alpha is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SurfaceCoverage {
     /// All of it, whatever the texture's alpha.
@@ -133,7 +133,7 @@ impl SurfaceCoverage {
 }
 
 impl<'a> Opacity<'a> {
-    /// Whether light may change its colour on its way through.
+    /// Whether the surface can change the colour of light.
     pub fn tints(&self) -> bool {
         match self {
             Self::Opaque | Self::Masked { .. } => false,
@@ -157,27 +157,27 @@ pub(crate) fn tints(transmitted: Vec3, is_textured: bool) -> bool {
     transmitted != Vec3::ZERO && (is_textured || !is_grey)
 }
 
-/// A texture on a caster.
+/// Texture of a caster.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceTexture<'a> {
     /// Texture coordinates: `[f32; 2]` a vertex, tightly packed from offset 0.
     pub uvs: &'a wgpu::Buffer,
     /// A 2D view of a filterable colour format.
     pub view: &'a wgpu::TextureView,
-    /// A filtering sampler, which also says how the texture wraps.
+    /// Filtering sampler; it also sets the texture's address modes.
     pub sampler: &'a wgpu::Sampler,
 }
 
-/// A light depth map that the host has rendered.
+/// Depth map of a light, rendered by the host.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthMapCaster<'a> {
     /// `Depth32Float` (depth aspect), 2D, one layer.
     pub view: &'a wgpu::TextureView,
-    /// Its size in texels.
+    /// Size, texels.
     pub size_px: UVec2,
     /// The matrix it was rendered with: a perspective from the light's centre along its axis, or for a sun an
     /// orthographic one along its axis. Any roll and any window of either.
     pub clip_from_world: Mat4,
-    /// Which way its depth runs.
+    /// Depth convention.
     pub depth_convention: DepthConvention,
 }

@@ -22,7 +22,7 @@ use glam::Vec3;
 /// `fn coherent_cosine(smooth_cosine: f32, bent_cosine: f32) -> f32`: the last two lines of the formula, not below 0.
 pub const COHERENT_WGSL: &str = include_str!("coherent.wgsl");
 
-/// For each vertex, the normals of the triangles around it.
+/// Face normals around each vertex.
 ///
 /// Triangles are around a vertex where they have a corner at its position with its normal: seams of texture coordinates
 /// do not part them, hard edges do.
@@ -67,7 +67,7 @@ impl VertexFaces {
         faces
     }
 
-    /// The normals of the triangles around a vertex; none where there are none.
+    /// Face normals around one vertex; empty for a vertex without triangles.
     ///
     /// # Panics
     /// Where there is no such vertex.

@@ -1,6 +1,6 @@
 //! How a noisy mask is made smooth.
 
-/// How a mask is made smooth over frames and neighbouring pixels, by whatever technique it is.
+/// Denoiser settings: means of a mask over frames and neighbouring pixels, for any technique.
 ///
 /// Techniques that take few samples a pixel, turned by chance, are noisy: `pcss`, `pcss_anisotropic`, `smrt`, `ray_traced`, `pcf` with `rotate`,
 /// `sample_based`. Denoised, each pixel's chance differs from frame to frame as well, and its visibility is the mean over
@@ -22,7 +22,7 @@ pub struct Denoise {
 }
 
 impl Denoise {
-    /// The most that [`most_frames`](Self::most_frames) can be.
+    /// Upper limit of [`most_frames`](Self::most_frames).
     pub const MOST_FRAMES: u32 = 64;
 }
 

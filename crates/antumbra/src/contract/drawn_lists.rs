@@ -10,17 +10,17 @@ use glam::UVec2;
 pub struct DrawnLists {
     /// 32-bit words, with usage `STORAGE`; how long a list is they say by `lengths`.
     pub words: wgpu::Buffer,
-    /// How.
+    /// Encoding of the lengths.
     pub lengths: ListLengths,
-    /// What is listed, in the plural: `fragments`, `receivers`.
+    /// Plural noun of the list's elements: `fragments`, `receivers`.
     pub listed: &'static str,
-    /// Where the texels of the map are among the lists.
+    /// Order of the texels in the lists.
     pub order: ListOrder,
-    /// The finest first; at least one.
+    /// Levels, the finest first; at least one.
     pub levels: Vec<ListLevel>,
 }
 
-/// How words say how long list *i* is, counted from the buffer's first.
+/// Encoding of the length of list *i*, counted from the buffer's first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ListLengths {
     /// Word 2 i + 1; the word before says where the list begins.
@@ -29,7 +29,7 @@ pub enum ListLengths {
     Between,
 }
 
-/// Which list is which texel's.
+/// Mapping from texels to lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ListOrder {
     /// Row after row.
@@ -45,11 +45,11 @@ pub enum ListOrder {
     },
 }
 
-/// Lists of one fineness.
+/// One level of lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ListLevel {
-    /// Its first list.
+    /// Index of the level's first list.
     pub first: u32,
-    /// Texels along each side.
+    /// Size, texels.
     pub size_texels: UVec2,
 }

@@ -12,9 +12,9 @@ pub struct DrawnMap {
     pub depth: wgpu::TextureView,
     /// Width and height, texels.
     pub size_px: UVec2,
-    /// Samples a texel.
+    /// Samples per texel.
     pub sample_count: u32,
-    /// What it holds where nothing casts.
+    /// Clear value: the depth of texels without a caster.
     pub empty_depth: f32,
     /// The nearest and the farthest place that it has room for, metres along the light's axis from where it is seen from.
     pub range_m: [f32; 2],
@@ -38,18 +38,18 @@ pub struct DrawnMap {
     pub levels: Vec<MapLevel>,
 }
 
-/// One fineness of what was made of a map.
+/// One level of textures derived from a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapLevel {
-    /// A texture of two dimensions.
+    /// 2D texture view.
     pub view: wgpu::TextureView,
     /// The texels that stand for the map, from the texture's first.
     pub size_px: UVec2,
-    /// What they hold.
+    /// Content of the texels.
     pub texels: LevelTexels,
 }
 
-/// What texels of a [`MapLevel`] hold.
+/// Content of the texels of a [`MapLevel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LevelTexels {
     /// Floats: the least and the greatest depth of a square of the map's texels, stored as the map's are.

@@ -2,7 +2,7 @@
 
 use antumbra_light::LightError;
 
-/// Why a technique cannot be made or a frame cannot be prepared.
+/// Reason why a technique cannot be created or a frame cannot be prepared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     /// The device lacks something.
@@ -42,7 +42,7 @@ pub enum Error {
     Param(#[from] ParamError),
 }
 
-/// Why a parameter could not be set.
+/// Reason why a parameter cannot be set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParamError {
     /// No such key.

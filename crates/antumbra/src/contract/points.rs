@@ -52,7 +52,7 @@ pub struct PointReceivers<'a> {
     /// it faces away from the light. `None`, or a normal of length zero: the point faces the light's centre. Without normals points may lie
     /// anywhere, within closed casters too; with them they lie on or outside closed casters.
     pub normals: Option<PointBuffer<'a>>,
-    /// How wide they are.
+    /// Widths of the points.
     pub widths: PointWidths<'a>,
     /// Points in a row, of points that lie in rows as pixels do: a lightmap's, say. Random numbers are those of pixels there, and
     /// workgroups take 8 × 8. `None`: a workgroup takes 64 points that follow one another, so order them by place if you can.
@@ -68,7 +68,7 @@ pub struct PointReceivers<'a> {
 }
 
 impl<'a> PointReceivers<'a> {
-    /// Points without normals or widths, in no order.
+    /// Creates receivers without normals or widths, in no order.
     pub fn new(count: u32, positions: PointBuffer<'a>, bounds: Aabb) -> Self {
         Self {
             count,

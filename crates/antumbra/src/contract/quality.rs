@@ -21,12 +21,12 @@ pub enum Quality {
 }
 
 impl Quality {
-    /// Every name: the ladder, then the paper's.
+    /// All qualities: the ladder, then the paper's.
     pub const ALL: [Self; 5] = [Self::Fast, Self::Balanced, Self::High, Self::Best, Self::Paper];
-    /// From the cheapest to the dearest.
+    /// The ladder, from the cheapest to the most expensive.
     pub const LADDER: [Self; 4] = [Self::Fast, Self::Balanced, Self::High, Self::Best];
 
-    /// The name that command lines and files use.
+    /// Name in command lines and files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fast => "fast",
@@ -37,7 +37,7 @@ impl Quality {
         }
     }
 
-    /// The step of this name, in any case.
+    /// Quality of this name, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quality| quality.name().eq_ignore_ascii_case(name))
     }
@@ -46,18 +46,18 @@ impl Quality {
 /// A technique as its paper prints it: what of ours [`Quality::Paper`] turns off, and what nothing turns off.
 #[derive(Clone, Copy, Debug)]
 pub struct Printed {
-    /// Each departure that a parameter turns off.
+    /// Departures that a parameter turns off.
     pub departures: &'static [Departure],
-    /// The others.
+    /// Departures that nothing turns off.
     pub kept: &'static [&'static str],
 }
 
-/// Where a technique departs from its paper.
+/// Departure of a technique from its paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Departure {
-    /// The parameter that turns it off; [`Quality::Paper`] has the value.
+    /// Parameter that turns it off; [`Quality::Paper`] has the value.
     pub key: &'static str,
-    /// What ours does in the paper's place.
+    /// What the default does in place of the paper's algorithm.
     pub ours: &'static str,
 }
 

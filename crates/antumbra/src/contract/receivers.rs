@@ -10,7 +10,7 @@ pub(crate) struct SeenPoint {
     pub(crate) weight: f32,
 }
 
-/// Which way a depth buffer runs, and so what its background is.
+/// Depth convention of a depth buffer, which implies its background value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DepthConvention {
     /// 0 near, 1 far; cleared to 1.
@@ -21,7 +21,7 @@ pub enum DepthConvention {
 }
 
 impl DepthConvention {
-    /// The value a depth buffer is cleared to; pixels that hold it have no geometry.
+    /// Clear value of the depth buffer; pixels that hold it have no geometry.
     pub fn background(self) -> f32 {
         match self {
             Self::Standard => 1.0,
@@ -30,21 +30,21 @@ impl DepthConvention {
     }
 }
 
-/// The receivers of one frame. Positions are reconstructed from depth.
+/// Receivers of one frame. Positions are reconstructed from depth.
 #[derive(Clone, Copy, Debug)]
 pub struct Receivers<'a> {
-    /// Size of the mask, and of the camera's picture in depth buffer and normals.
+    /// Size of the mask and of the viewport in depth buffer and normals, pixels.
     pub size_px: UVec2,
-    /// Where the picture begins in depth buffer and normals: a viewport's corner, zero where it fills them.
+    /// Corner of the viewport in depth buffer and normals, pixels; zero if it fills them.
     pub origin_px: UVec2,
     /// `Depth32Float` or `R32Float`, single-sampled, usage `TEXTURE_BINDING`; a 2D view of the depth aspect alone, be it of one
     /// layer of an array. `Depth24Plus` and the formats with a stencil do, too; 16 bits are too few.
     pub depth: &'a wgpu::TextureView,
-    /// Which way the depth runs.
+    /// Depth convention.
     pub depth_convention: DepthConvention,
-    /// The camera's pose: rigid.
+    /// Camera pose; a rigid transform.
     pub view_from_world: Mat4,
-    /// The camera's projection, jitter included. Finite or infinite far plane: the matrix says.
+    /// Camera projection, jitter included, with a finite or infinite far plane.
     pub clip_from_view: Mat4,
     /// World-space *geometric* normals in xyz, either side, of the depth buffer's size and with `TEXTURE_BINDING`: `Rgba32Float`,
     /// `Rgba16Float`, `Rgba16Snorm` or `Rgba8Snorm`. 32-bit floats or 16-bit octahedral decode keep grazing light clean. `None` derives them from depth, which is less exact at
@@ -69,14 +69,14 @@ pub struct Receivers<'a> {
     pub version: Option<u64>,
 }
 
-/// The camera of a depth buffer.
+/// Camera of a depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Its pose.
+    /// Pose.
     pub view_from_world: Mat4,
-    /// Its projection.
+    /// Projection.
     pub clip_from_view: Mat4,
-    /// Which way its depth runs.
+    /// Depth convention.
     pub depth_convention: DepthConvention,
 }
 
@@ -105,7 +105,7 @@ impl Camera {
     }
 }
 
-/// Where receivers are read from. Points have no camera: nothing that depends on one is done for them.
+/// Source of receivers. Points have no camera, and nothing that depends on one is done for them.
 #[derive(Clone, Copy, Debug)]
 pub enum Surfaces<'a> {
     /// A depth buffer; neighbouring pixels mostly see one surface.
@@ -124,14 +124,14 @@ pub enum Surfaces<'a> {
     },
 }
 
-/// The receivers of one frame, as techniques receive them.
+/// Receivers of one frame, as techniques receive them.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedReceivers<'a> {
-    /// Size of the mask, and of the receivers' texels.
+    /// Size of the mask and of the receivers' textures, pixels.
     pub size_px: UVec2,
-    /// Where these begin.
+    /// Corner of the receivers in their textures, pixels.
     pub origin_px: UVec2,
-    /// What they are.
+    /// Source of the receivers.
     pub surfaces: Surfaces<'a>,
     /// World-space normals; points always have some.
     pub normals: Option<&'a wgpu::TextureView>,

@@ -76,7 +76,7 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
 }
 
-/// One light's shadow by a technique chosen while the program runs.
+/// State of one light's shadow, by a technique chosen at run time.
 pub struct AnyShadow {
     technique: &'static str,
     inner: Box<dyn ErasedShadow>,
@@ -95,12 +95,12 @@ impl<T: Technique + 'static> From<Shadow<T>> for AnyShadow {
 }
 
 impl AnyShadow {
-    /// The name of the technique that this is by.
+    /// Name of the technique.
     pub fn name(&self) -> &'static str {
         self.technique
     }
 
-    /// The parameters with their present values.
+    /// Parameters with their current values.
     pub fn params(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> + '_ {
         self.inner.param_specs().iter().map(|spec| (spec, self.inner.get(spec.key).unwrap_or(spec.default)))
     }
@@ -121,17 +121,17 @@ impl AnyShadow {
         self.inner.set_value(key, value.into())
     }
 
-    /// Sets all parameters to what a quality has, for the next frame; set single ones after it.
+    /// Sets all parameters to a quality's values, for the next frame. Set single ones afterwards.
     pub fn set_quality(&mut self, quality: Quality) {
         self.inner.set_quality(quality);
     }
 
-    /// How the next frame's mask is made smooth: [`Shadow::denoise`].
+    /// Denoiser settings of the next frame: [`Shadow::denoise`].
     pub fn denoise(&self) -> Option<&Denoise> {
         self.inner.denoise()
     }
 
-    /// Sets how the next frame's mask is made smooth: [`Shadow::denoise`].
+    /// Sets the denoiser of the next frame: [`Shadow::denoise`].
     pub fn set_denoise(&mut self, denoise: Option<Denoise>) {
         self.inner.set_denoise(denoise);
     }

@@ -8,32 +8,32 @@ use crate::contract::{
     PreparedReceivers, Receivers,
 };
 
-/// One light's work for one frame.
+/// Frame of one light: inputs and output.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// The light.
+    /// Light.
     pub light: &'a Light,
-    /// What casts.
+    /// Casters.
     pub casters: Casters<'a>,
-    /// What receives.
+    /// Receivers.
     pub receivers: Receivers<'a>,
-    /// Where visibility goes; the receivers' size.
+    /// Output mask; its size is the receivers'.
     pub mask: &'a Mask,
 }
 
-/// One light's work for points in place of a depth buffer.
+/// Frame of one light for points in place of a depth buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct PointFrame<'a> {
-    /// The light.
+    /// Light.
     pub light: &'a Light,
-    /// What casts.
+    /// Casters.
     pub casters: Casters<'a>,
-    /// The points.
+    /// Points.
     pub receivers: PointReceivers<'a>,
     /// Where visibility goes: a 32-bit float for each point and channel, red, green and blue of a point after one another. Usage
     /// `STORAGE`, no larger than a binding.
     pub visibilities: &'a wgpu::Buffer,
-    /// How many channels: [`Casters::mask_channels`] says how many the casters have a use for.
+    /// Number of channels; [`Casters::mask_channels`] returns the number that the casters need.
     pub channels: MaskChannels,
 }
 
@@ -62,7 +62,7 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// What casts shadows, in one of three forms.
+/// Casters in one of three forms.
 #[derive(Clone, Copy, Debug)]
 pub enum Casters<'a> {
     /// A set of casters that lights share; every technique takes it.
@@ -80,7 +80,7 @@ pub enum Casters<'a> {
 }
 
 impl Casters<'_> {
-    /// How many channels of a mask these casters have a use for: three where any of them tints.
+    /// Number of mask channels that these casters need: three if any tints, otherwise one.
     pub fn mask_channels(&self) -> MaskChannels {
         match self {
             Self::Set { set, layers } => set.mask_channels(*layers),

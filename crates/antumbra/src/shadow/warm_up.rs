@@ -17,7 +17,7 @@ use crate::frame::points::PointTextures;
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{Coverage, Technique};
 
-/// What a scene has, and so which programs its frames need.
+/// Features of a scene that decide which pipelines its frames need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WarmUp {
     /// Casters with holes, and translucent ones that do not tint.
