@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 /// The shape of an emitter, and how its area is weighted.
 ///
-/// The size is physical and is the only softness there is: penumbra width follows from geometry.
+/// The size is physical and the only setting of softness: the penumbra's width follows from geometry.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightShape {
     /// A flat rectangle, uniform over its area.
@@ -90,15 +90,15 @@ impl Cone {
 /// A light: shape, pose and emission.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// A name for reports.
+    /// Name in reports.
     pub name: String,
-    /// The emitter's shape and size.
+    /// Shape and size of the emitter.
     pub shape: LightShape,
     /// Centre in world space, metres. A sun's is where its frustum is anchored and has no effect on visibility.
     pub center: Vec3,
     /// Unit vector along which the light looks, from its centre towards its target.
     pub axis: Vec3,
-    /// The up hint from which [`LightFrame`] is built; need be neither unit nor orthogonal to the axis.
+    /// Up hint of the [`LightFrame`]; need be neither unit nor orthogonal to the axis.
     pub up: Vec3,
     /// Full angle of the square frustum about its axis that the light is held to, radians. `None`: a sphere, an ellipsoid
     /// and points shine in all directions, a rectangle and a disk into the half-space before them.
@@ -111,13 +111,13 @@ pub struct Light {
     /// it, lux. `None` where that is not known: as much as others of its kind. Ratios between lights are what it
     /// sets; a picture's exposure goes by all of them.
     pub candela_or_lux: Option<f32>,
-    /// A dimmer on top of that; at 1 all lights together expose sensibly.
+    /// Dimmer; at 1 all lights together expose sensibly.
     pub intensity: f32,
     /// Emission over a [`LightShape::Rectangle`]; `None` is uniform.
     pub emission: Option<EmissionTexture>,
 }
 
-/// The light's axes. `(right, up, −axis)` is right-handed, as for a camera that looks down −z.
+/// Axes of a light. `(right, up, −axis)` is right-handed, as for a camera that looks down −z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightFrame {
     /// World position of the light's centre.
@@ -126,11 +126,11 @@ pub struct LightFrame {
     pub right: Vec3,
     /// Unit, `right × axis`.
     pub up: Vec3,
-    /// Unit, the way the light looks.
+    /// Unit, the direction in which the light looks.
     pub axis: Vec3,
 }
 
-/// A point of the light in homogeneous form.
+/// Sample point of a light in homogeneous form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightPoint {
     /// A world position (`w = 1`), or a direction towards the light, not normalised (`w = 0`).
@@ -148,7 +148,7 @@ impl LightPoint {
     }
 }
 
-/// What is wrong with a light.
+/// Fault of a light.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LightError {
     /// The axis has no direction.
