@@ -1,4 +1,4 @@
-//! Which adapter the laboratory works on, and the device made from it: headless, with every error kept.
+//! Adapter of the laboratory and its headless device, which keeps every error.
 //!
 //! A real GPU is preferred, software Vulkan does where there is none. Errors that wgpu reports asynchronously are
 //! recorded rather than thrown from a driver's thread: [`LabDevice::check`] hands them to the caller, who can fail with

@@ -1,4 +1,4 @@
-//! What can go wrong on the way from a scene to a report.
+//! Errors between a scene and its report.
 
 use antumbra_reference::ReferenceError;
 use antumbra_scene::SceneError;

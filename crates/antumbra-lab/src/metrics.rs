@@ -1,4 +1,4 @@
-//! How far a visibility image is from the truth, in the terms that `metrics.json` fixes.
+//! Error metrics of a visibility image against the truth, as `metrics.json` defines them.
 //!
 //! All but [`flip`](Metrics::flip) are over *judged* pixels: those with geometry that faces the light's centre, given
 //! as a mask. What the definitions leave open, and what is done here:

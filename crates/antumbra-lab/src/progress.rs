@@ -1,4 +1,4 @@
-//! Who watches long work. The laboratory says what it does and how far it is; whoever calls it decides what to show.
+//! Observers of long work. The laboratory reports what it does and how far it is; the caller decides what to show.
 
 /// Someone who is told how far long work is. All methods may be called from any thread.
 pub trait Progress: Sync {

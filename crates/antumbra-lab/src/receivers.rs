@@ -1,4 +1,4 @@
-//! What the camera sees, drawn and waited for: the receivers of `antumbra-render`, read back for those who ask.
+//! Receivers of `antumbra-render`, rendered and waited for, with readback on demand.
 
 use std::ops::Deref;
 use std::time::Instant;

@@ -1,4 +1,4 @@
-//! Which frames of a row count: those from the one on by which nothing new is compiled, made or found.
+//! Choice of the frames to time: those after which nothing new is compiled, created or found.
 //!
 //! Drivers compile when a program is made, when it first runs, and once more where a texture's format or a number is another one;
 //! techniques find the room for their lists over some frames. None of that tells when it is over, so that it is seen by what frames

@@ -1,4 +1,4 @@
-//! What has been measured, in memory and in a file, so that work that was stopped goes on.
+//! Measurements in memory and in a file, from which interrupted work is resumed.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What the GPU tests share: one device for all of them, and small scenes.
+//! Helpers of GPU tests: one device for all of them, and small scenes.
 
 use std::sync::OnceLock;
 

@@ -1,4 +1,4 @@
-//! Where places far from the world's origin are counted from.
+//! Anchor: the origin of positions far from the world's origin.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! What a light is: shape, pose and the points that sample it.
+//! Lights: shape, pose and sample points.
 //!
 //! The library that shades with soft shadows, the setup files that describe them and the ray tracer that judges
 //! them must agree on where a light lies and how its area is weighted. This crate is that agreement, with the box that

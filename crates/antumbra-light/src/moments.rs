@@ -1,4 +1,4 @@
-//! How far a light's points reach and how they lie about their mean: once, for all that fit maps, margins and kernels to a
+//! Extent and covariance of a light's points: once, for all that fit maps, margins and kernels to a
 //! light.
 
 use glam::{DVec2, DVec3, UVec2, Vec2, Vec3};

@@ -1,4 +1,4 @@
-//! How far from a camera shadows are drawn.
+//! Shadow distance: how far from a camera shadows are drawn.
 
 /// Receivers so far from the camera's eye are lit, with a fade before.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! What a picture and a visibility image are on the CPU: plain data on the CPU, first row at the top.
+//! Images and visibility images on the CPU: plain data, first row at the top.
 
 use antumbra_scene::srgb_from_linear;
 use glam::{UVec2, Vec3};

@@ -1,4 +1,4 @@
-//! What the GPU tests share: a device whose errors fail the test, and a small mesh.
+//! Helpers of GPU tests: a device whose errors fail the test, and a small mesh.
 
 use std::sync::OnceLock;
 

@@ -1,4 +1,4 @@
-//! What the library's tests draw and read back with: one device, small meshes, a camera, cases with closed forms.
+//! Helpers of the library's tests: one device, small meshes, a camera, cases with closed forms.
 
 use std::f32::consts::FRAC_PI_4;
 use std::sync::OnceLock;

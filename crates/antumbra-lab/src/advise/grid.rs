@@ -1,4 +1,4 @@
-//! Every combination of a grid: what the search is held against.
+//! Exhaustive grid of settings, against which the search is tested.
 //!
 //! The grid is over the parameters that a technique's qualities set, each with the values that they set, the default, its half and
 //! its double. A combination is left out where one that is less or equal in every number, and the same in all else, took more than

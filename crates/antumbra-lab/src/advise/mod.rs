@@ -1,4 +1,4 @@
-//! Which technique, with what settings, for a scene and a budget: searched, not guessed.
+//! Search for the technique and settings with the least error for a scene within a budget.
 //!
 //! ```text
 //! declarations ─► space ─┐

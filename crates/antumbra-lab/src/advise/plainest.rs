@@ -1,4 +1,4 @@
-//! Settings that are not worth writing down: those that change nothing here, found by drawing with and without them.
+//! Removal of settings that change nothing in this scene, found by rendering with and without them.
 //!
 //! A parameter may depend on another one (`layers` of `pcss` on `attach_contacts`), on the light, on the casters, or on what the camera
 //! happens to see. No declaration says which, so that none can go stale: a setting that leaves every pixel of every view as it

@@ -1,4 +1,4 @@
-//! What can be chosen: a technique with values for its parameters, and the steps from one value to the next. All of it comes from
+//! Search space: a technique with values for its parameters, and the steps from one value to the next. All of it comes from
 //! the parameters' declarations.
 
 use std::fmt;

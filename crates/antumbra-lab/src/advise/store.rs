@@ -1,4 +1,4 @@
-//! What an advice has measured, so that work that was stopped goes on.
+//! Measurements of a search in a file, from which interrupted work is resumed.
 
 use std::collections::BTreeMap;
 use std::path::Path;

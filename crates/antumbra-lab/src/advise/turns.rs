@@ -1,4 +1,4 @@
-//! Times taken in turns: configurations one after the other, several times over, with `pcf` among them.
+//! Interleaved timing: configurations one after the other, several times over, with `pcf` among them.
 
 use antumbra::TechniqueKind;
 

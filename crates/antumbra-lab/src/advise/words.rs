@@ -1,4 +1,4 @@
-//! Why a recommendation is what it is: from what was measured of the scene, and of the techniques.
+//! Reasons of a recommendation, from measurements of the scene and of the techniques.
 
 use std::fmt;
 

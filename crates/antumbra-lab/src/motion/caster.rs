@@ -1,4 +1,4 @@
-//! Which caster moves.
+//! Choice of the moving caster.
 
 use antumbra_reference::Receivers;
 use antumbra_scene::{Aabb, Scene};

@@ -1,4 +1,4 @@
-//! Where camera, light and caster are in each frame of a motion.
+//! Paths of camera, light and caster: their poses in each frame.
 //!
 //! Every motion *arrives*: in its last frame all is where the setup and the scene have it, so that the masks after it are
 //! those of a still comparison, and a caster named for its place stands there at the end. Before, it is a step back for

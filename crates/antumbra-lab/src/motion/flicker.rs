@@ -1,4 +1,4 @@
-//! How masks change from frame to frame, held against how the truth changes, at the same pixels.
+//! Flicker: changes of masks from frame to frame, against those of the truth at the same pixels.
 //!
 //! With M_i the mask and V_i the truth of frame i, over the pixels that are judged in both frames:
 //!

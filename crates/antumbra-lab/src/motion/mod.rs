@@ -1,4 +1,4 @@
-//! Techniques in motion: what flickers, and what lags behind.
+//! Flicker and lag of techniques in motion.
 //!
 //! A camera, a light or a caster moves for some frames and stops ([`Motion`]). Each technique keeps one state over all of
 //! them, as a host's light does, and is held frame by frame against the traced truth of that frame. What is made of that is

@@ -1,4 +1,4 @@
-//! What went wrong with a file, in one line: which file, why, and what would be right.
+//! Errors of files, in one line: which file, why, and what would be right.
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};

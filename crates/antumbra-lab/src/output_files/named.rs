@@ -1,4 +1,4 @@
-//! What an output's name has to say: that it is a file, and of which kind.
+//! Validation of an output's name: a file, of a known kind.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What a report says, before it is a page: plain data that a comparison fills in.
+//! Content of a report as plain data, which a comparison fills in.
 
 use image::RgbImage;
 use serde::{Deserialize, Serialize};

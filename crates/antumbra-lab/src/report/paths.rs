@@ -1,4 +1,4 @@
-//! Which files a report is made of, by their paths in its folder.
+//! Paths of a report's files in its folder.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What a paper shows, as data: its tables and figures, what stands in them, what of ours to hold beside it, and what the
+//! A paper's tables and figures as data: what is in them, what of ours to hold beside it, and what the
 //! paper claims by it.
 
 use super::claim::Claim;

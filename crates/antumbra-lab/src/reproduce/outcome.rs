@@ -1,4 +1,4 @@
-//! What came of a row.
+//! Outcome of a row.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! What each paper compares: its own techniques, and those that it measures them against.
+//! Techniques that each paper compares: its own, and those that it measures them against.
 
 use antumbra::TechniqueKind;
 

@@ -1,4 +1,4 @@
-//! Where from the papers look: setup files for scenes whose file has no camera, or whose own is not the paper's view.
+//! Cameras of the papers: setup files for scenes whose file has no camera, or whose own is not the paper's view.
 
 /// Each view's name, and its setup file.
 pub const VIEWS: &[(&str, &str)] = &[

@@ -1,4 +1,4 @@
-//! What a scene is like for shadows: measured on one view, for the light that is judged, from rays alone.
+//! Facts about a scene's shadows: measured in one view, for one light, by rays alone.
 //!
 //! ```text
 //! truth ─► lit, penumbra, umbra ─► some pixels of the penumbra ─► rays to the light ─► every occluder on them

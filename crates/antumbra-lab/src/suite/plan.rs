@@ -1,4 +1,4 @@
-//! What the suite runs: the rows of BENCHMARKS' tables, in groups that share a scene.
+//! Plan of the suite: the rows of BENCHMARKS' tables, in groups that share a scene.
 
 use antumbra::TechniqueKind;
 use glam::UVec2;

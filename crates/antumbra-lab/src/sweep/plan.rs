@@ -1,4 +1,4 @@
-//! What is to be run, as a file.
+//! Plan of a sweep, as a file.
 
 use std::fmt;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What the camera sees: depth, exact normals and surfaces of the first hit at each pixel's centre.
+//! Receivers of a camera: depth, exact normals and surface of the first hit at each pixel's centre.
 //!
 //! A small deferred pass (Saito and Takahashi, "Comprehensible Rendering of 3-D Shapes", SIGGRAPH 1990): geometry once,
 //! then as many lights and techniques as there are over the same images. One sample a pixel, both faces of every

@@ -1,4 +1,4 @@
-//! What casts shadows, kept: a set that lights share, in which meshes and casters are added, moved, changed and removed by
+//! Caster set: casters that lights share, in which meshes and casters are added, moved, changed and removed by
 //! handle.
 //!
 //! Hosts' vertices come in many formats, and every technique reads every caster, many of them in compute. So the set packs

@@ -1,4 +1,4 @@
-//! What casts shadows: the host's meshes, or a light depth map that the host has rendered itself.
+//! Casters: the host's meshes, or a depth map of the light that the host has rendered.
 
 use antumbra_light::Aabb;
 use glam::{Mat4, UVec2, Vec3};

@@ -1,4 +1,4 @@
-//! How a noisy mask is made smooth.
+//! Denoiser settings.
 
 /// Denoiser settings: means of a mask over frames and neighbouring pixels, for any technique.
 ///

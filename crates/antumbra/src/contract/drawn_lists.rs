@@ -1,4 +1,4 @@
-//! What a technique's lists per texel hold, for whoever wants to look at them.
+//! Lists per texel of a technique, for inspection.
 
 use glam::UVec2;
 

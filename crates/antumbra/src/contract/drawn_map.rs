@@ -1,4 +1,4 @@
-//! What a technique's light map holds, for whoever wants to look at it.
+//! Light map of a technique, for inspection.
 
 use glam::UVec2;
 

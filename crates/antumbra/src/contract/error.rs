@@ -1,4 +1,4 @@
-//! What can go wrong. Each message names the technique, what it needed, what it got, and what to do.
+//! Errors. Each message names the technique, what it needed, what it got, and what to do.
 
 use antumbra_light::LightError;
 

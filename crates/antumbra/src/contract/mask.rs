@@ -1,4 +1,4 @@
-//! What comes out: a visibility mask the size of the receivers.
+//! Visibility mask, the output, of the receivers' size.
 
 use glam::UVec2;
 

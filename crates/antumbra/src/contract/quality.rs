@@ -1,4 +1,4 @@
-//! How much a technique may spend: named sets of its parameters; and what its paper prints.
+//! Qualities: named sets of a technique's parameters, from fast to best, and as published.
 
 use std::fmt;
 

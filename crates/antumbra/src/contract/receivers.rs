@@ -1,4 +1,4 @@
-//! What receives shadows: the host's depth buffer and the camera that it was rendered with.
+//! Receivers: the host's depth buffer and the camera that it was rendered with.
 
 use antumbra_light::{Aabb, ShadowDistance, hash_u32, polytope_corners, unit_f32};
 use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec3, Vec4};

@@ -1,4 +1,4 @@
-//! How one light's state covers what the light reaches, where that is more than a planar map holds.
+//! Partition of a light's receivers into parts, where one planar map cannot hold them.
 //!
 //! A planar map holds less than a half-space, and the texels that its outer degrees take are missed in its middle. So what
 //! receives is cut into *parts*, each a convex region about the light with a view that suits it; the technique runs for

@@ -1,4 +1,4 @@
-//! What keeps a sun's maps where they are while the camera moves.
+//! Stable placement of a sun's maps while the camera moves.
 //!
 //! A map that is fitted to what the camera sees lies elsewhere in every frame of a walk, and its texels with it: edges crawl
 //! over what stands still, filters change their minds, and all is drawn again. So what a slice receives is held by a box

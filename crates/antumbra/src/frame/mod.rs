@@ -1,4 +1,4 @@
-//! What a frame's receivers bring to every pass over them, and what is done with masks: nothing here knows a light map.
+//! Inputs of every pass over receivers, and passes over masks: nothing here knows a light map.
 
 #[cfg(feature = "receiver_lists")]
 pub(crate) mod accumulation;

@@ -1,4 +1,4 @@
-//! Counters that shaders leave for a later frame: copied to mappable memory, and read when they have arrived.
+//! Feedback counters, written by shaders: copied to mappable memory, and read in a later frame when they have arrived.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};

@@ -1,4 +1,4 @@
-//! Shader modules, layouts and pipelines, told to a listener as they are made: `cargo xtask web --shaders` has each of them made
+//! Shader modules, layouts and pipelines, reported as they are created: `cargo xtask web --shaders` has each of them created
 //! by a browser too.
 //!
 //! The library's own renderer and viewer make theirs by these functions. No host has a use for them.

@@ -1,4 +1,4 @@
-//! What a technique prepares a frame with: uploads that wait for the frame's commands, and what the frames before made.
+//! Frame preparation: uploads that wait for the frame's commands, and resources cached from earlier frames.
 //!
 //! `prepare` describes its frame in full, every bind group of it, as if nothing had been there before; the stage gives
 //! back what an earlier frame of the same light made of the same parts. So nothing that is described twice is made twice,

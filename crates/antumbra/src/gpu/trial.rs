@@ -1,4 +1,4 @@
-//! Whether a host's texture view or buffer can be bound. wgpu does not tell a view's aspect, dimension or device, nor a buffer's
+//! Trial binding of a host's texture view or buffer. wgpu does not tell a view's aspect, dimension or device, nor a buffer's
 //! device, so it is bound on trial.
 
 use super::Gpu;

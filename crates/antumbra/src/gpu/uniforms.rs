@@ -1,4 +1,4 @@
-//! How shaders read uniforms: as such, or as storage buffers where a driver compiles their values in.
+//! Binding type of uniforms: uniform buffers, or storage buffers where a driver compiles their values in.
 //!
 //! Mesa's software Vulkan before version 23 takes the values of uniforms that decide over branches and loops as constants: at
 //! every dispatch and draw it copies the shader, puts the values in and compiles the copy, which it keeps until the pipeline

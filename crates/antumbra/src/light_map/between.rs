@@ -1,4 +1,4 @@
-//! What of casters' boxes lies between a light and what receives: no other part of them can shade anything, be it as large as
+//! Part of casters' boxes between a light and the receivers: no other part of them can shade anything, be it as large as
 //! it may.
 
 use antumbra_light::{Aabb, Light};

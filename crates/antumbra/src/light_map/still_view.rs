@@ -1,4 +1,4 @@
-//! Views under a sun whose texels stay where they are in the world while the camera moves.
+//! Stable views under a sun: texels stay in place in the world while the camera moves.
 //!
 //! Such a map is not fitted to what receives but to a box about it that mostly stays ([`Stage::still`]). Where it does not,
 //! the new map's texels fall on the old one's places: sides are one of few, so that texels are mostly as wide, and windows

@@ -1,4 +1,4 @@
-//! What a body sweeps towards a sun: where its occluders are.
+//! Volume that a convex body sweeps towards a sun, in which its occluders are.
 
 use antumbra_light::{Aabb, Light, polytope_corners};
 use glam::{DVec4, Vec2, Vec3};

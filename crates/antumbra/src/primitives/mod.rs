@@ -1,4 +1,4 @@
-//! Building blocks that know neither light nor shadow, each with a twin on the CPU that it is tested against.
+//! Building blocks that know neither light nor shadow, each with a CPU reference that it is tested against.
 
 #[cfg(test)]
 pub(crate) mod depth_basis;

@@ -1,4 +1,4 @@
-//! Frames as techniques see them.
+//! Prepared frames: positions relative to an anchor near the light.
 //!
 //! Far from the world's origin 32-bit floats are a millimetre apart: places are counted from an anchor near what the frame is
 //! about, in double precision on the processor. And boxes whose sides are not known have finite sides all the same.

@@ -1,4 +1,4 @@
-//! Keys of frames: a light's mask is drawn again where its frame's key changes.
+//! Frame cache key: a light's mask is redrawn when the key changes.
 
 use antumbra_light::{Aabb, Light, ShadowDistance};
 use glam::{Mat4, UVec2, Vec3};

@@ -1,4 +1,4 @@
-//! What every technique is: programs, a frame made ready, a frame recorded.
+//! Interface of every technique: pipelines, a prepared frame, a recorded frame.
 
 use crate::contract::{DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::cover::Coverage;

@@ -1,4 +1,4 @@
-//! How coarsely the adapter's rasteriser places corners, measured.
+//! Subpixel precision of the adapter's rasteriser, measured.
 //!
 //! A rasteriser snaps corners to a grid of subpixels, and depths are those of the triangle so moved: on a slanted surface they are
 //! off by what the surface falls over as much of a texel. WebGPU does not tell how fine the grid is. Graphics chips have 256 steps

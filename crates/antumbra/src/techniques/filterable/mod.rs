@@ -1,4 +1,4 @@
-//! What the fixed-width filterable techniques share: all passes. They differ in their basis alone (see
+//! Passes of the filterable techniques of fixed width. They differ in their basis alone (see
 //! `primitives/depth_basis`): two thin shaders, one that encodes and one that decodes.
 //!
 //! ```text

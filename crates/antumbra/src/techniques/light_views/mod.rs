@@ -1,4 +1,4 @@
-//! What `multi_view` and the reprojecting techniques share: the light points, a view from each, and batches of views
+//! Shared passes of `multi_view` and the reprojecting techniques: light points, a view from each, and batches of views
 //! that are made, added into the mask, and made over, so that memory does not grow with the number of points.
 
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint, LightShape, SampleSet};

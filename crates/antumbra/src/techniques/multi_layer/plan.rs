@@ -1,4 +1,4 @@
-//! What the processor works out of a frame: the view, its levels, and the parameters of every pass.
+//! Plan of a frame, computed on the CPU: the view, its levels, and the parameters of every pass.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! What this folder's shaders share with Rust.
+//! Structs shared with this folder's shaders.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! Which triangles are taken together: as many as memory is set aside for, opaque ones first, then each surface that is
+//! Batches of triangles: as many as memory is set aside for, opaque ones first, then each surface that is
 //! there for some light points and not for others, then each of which a share passes.
 //!
 //! Masked surfaces are there or not at a place. Translucent ones that do not tint are there for as many of many light

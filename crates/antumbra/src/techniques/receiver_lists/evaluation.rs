@@ -1,4 +1,4 @@
-//! How a batch of triangles and a batch of light points meet: passes over groups of receivers, or triangles drawn over the
+//! Evaluation of a batch of triangles against a batch of light points: passes over groups of receivers, or triangles drawn over the
 //! windows between two such passes.
 
 use std::collections::HashMap;

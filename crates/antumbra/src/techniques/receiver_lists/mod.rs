@@ -1,4 +1,4 @@
-//! What `alias_free` and `sample_based` share: view-samples in lists by where they lie as seen from the light, triangles
+//! Shared passes of `alias_free` and `sample_based`: view-samples in lists by where they lie as seen from the light, triangles
 //! sorted by place, and one bit for each view-sample and light point.
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",

@@ -1,4 +1,4 @@
-//! What a frame comes to before anything is allocated: batches of triangles and light points, and how many of all there are.
+//! Plan of a frame before anything is allocated: batches of triangles and light points, and their numbers.
 
 use antumbra_light::Aabb;
 use glam::Vec3;

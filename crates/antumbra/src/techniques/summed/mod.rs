@@ -1,4 +1,4 @@
-//! What `essm`, `savsm`, `vssm`, `cssm`, `evssm` and `mssm` share: percentage-closer soft shadows whose sums over the map
+//! Shared passes of `essm`, `savsm`, `vssm`, `cssm`, `evssm` and `mssm`: percentage-closer soft shadows whose sums over the map
 //! come from summed-area tables of a depth basis, in a time that does not depend on the light's size.
 //!
 //! 1. *Table*: sums (`summed_area_table`) of the map's depth, encoded where it is read (`source.wesl`,

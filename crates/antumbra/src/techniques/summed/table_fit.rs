@@ -1,4 +1,4 @@
-//! How large tiles are and how many bits their values have, by the widest piece of a kernel that light and casters allow.
+//! Size of tiles and bits of their values, by the widest piece of a kernel that light and casters allow.
 
 use super::{Basis, SoftDesign, SoftSettings};
 use crate::gpu::shared_constants;

@@ -1,4 +1,4 @@
-//! Where the layers meet, found on the GPU: a histogram of where splits are wanted, then Lloyd's relaxation on it.
+//! Depths where layers meet, found on the GPU: a histogram of where splits are wanted, then Lloyd's relaxation on it.
 
 use glam::UVec2;
 

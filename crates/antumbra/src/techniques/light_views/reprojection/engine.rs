@@ -1,4 +1,4 @@
-//! What `reprojection` and `reprojection_layered` share: central maps, fragments scattered into a batch of views, and
+//! Shared passes of `reprojection` and `reprojection_layered`: central maps, fragments scattered into a batch of views, and
 //! that batch added into the mask; batch after batch, within a budget.
 
 use antumbra_light::Aabb;

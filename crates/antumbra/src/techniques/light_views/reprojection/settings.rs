@@ -1,4 +1,4 @@
-//! What a frame of `reprojection` or `reprojection_layered` is asked for.
+//! Settings of a frame of `reprojection` or `reprojection_layered`.
 
 use crate::contract::param_choice;
 use crate::techniques::Coverage;
