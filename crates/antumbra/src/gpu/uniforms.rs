@@ -8,21 +8,17 @@
 //! But each lane of a vector loads them by itself, where a uniform is loaded once. Uniforms of numbers, over which hangs no branch
 //! alone, are left as they are: `reprojection_layered` scatters in .7 of the time that its views' matrices from storage take.
 //!
-//! This module is the one place that knows the driver and the uniforms that are left as they are: declarations of bind groups,
+//! This module is the one place that knows of it and of the uniforms that are left as they are: declarations of bind groups,
 //! shaders and buffers are the same on every device, and `device` passes them through here.
 
 use std::borrow::Cow;
+
+use super::quirks;
 
 /// Storage buffers that a stage may read where uniforms are such too: as many as WebGPU lets it read of both.
 const STORAGE_BUFFERS: u32 = 8 + 12;
 /// The same of those whose place is chosen when the group is bound.
 const DYNAMIC_STORAGE_BUFFERS: u32 = 4 + 8;
-
-/// Whether uniforms are better read as storage buffers on this adapter, if its limits allow.
-fn compiles_values_in(adapter: &wgpu::AdapterInfo) -> bool {
-    let mesa = adapter.driver_info.strip_prefix("Mesa ").and_then(|rest| rest.split('.').next()?.parse::<u32>().ok());
-    adapter.driver == "llvmpipe" && mesa.is_some_and(|version| version < 23)
-}
 
 /// WebGPU's default limits, and what [`UniformAccess`] needs where it matters.
 pub(super) fn wanted_limits(adapter: &wgpu::AdapterInfo, allowed: &wgpu::Limits) -> wgpu::Limits {
@@ -32,7 +28,7 @@ pub(super) fn wanted_limits(adapter: &wgpu::AdapterInfo, allowed: &wgpu::Limits)
         max_dynamic_storage_buffers_per_pipeline_layout: DYNAMIC_STORAGE_BUFFERS,
         ..defaults.clone()
     };
-    if compiles_values_in(adapter) && has_room(allowed) { raised } else { defaults }
+    if quirks::compiles_uniform_values_in(adapter) && has_room(allowed) { raised } else { defaults }
 }
 
 /// Uniforms of one device: as such, or as storage buffers. Nothing else in the library knows which.
@@ -100,7 +96,7 @@ pub(super) fn assert_alike(layout: &str, binding: u32, name: &str) {
 impl UniformAccess {
     /// What suits a device.
     pub(super) fn of(device: &wgpu::Device) -> Self {
-        Self { is_storage: compiles_values_in(&device.adapter_info()) && has_room(&device.limits()) }
+        Self { is_storage: quirks::compiles_uniform_values_in(&device.adapter_info()) && has_room(&device.limits()) }
     }
 
     /// The entries of a bind group's layout as the device gets them.
@@ -154,19 +150,6 @@ mod tests {
         let mut info = wgpu::AdapterInfo::new(wgpu::DeviceType::Cpu, wgpu::Backend::Vulkan);
         (info.driver, info.driver_info) = (driver.into(), driver_info.into());
         info
-    }
-
-    #[test]
-    fn old_drivers_that_compile_values_in_are_known_by_name() {
-        assert!(compiles_values_in(&adapter("llvmpipe", "Mesa 22.3.6 (LLVM 15.0.6)")));
-        for (driver, info) in [
-            ("llvmpipe", "Mesa 24.2.8 (LLVM 19.1.1)"),
-            ("llvmpipe", ""),
-            ("radv", "Mesa 22.3.6"),
-            ("NVIDIA", "570.86.15"),
-        ] {
-            assert!(!compiles_values_in(&adapter(driver, info)), "{driver} {info}");
-        }
     }
 
     #[test]
