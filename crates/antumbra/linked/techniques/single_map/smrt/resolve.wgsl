@@ -991,12 +991,8 @@ struct bins_SearchTaps {
     scale_shift: f32
 }
 
-fn bins_texel_corner(lane: u32) -> vec2f {
-    return vec2f(f32(lane & 1u), f32((lane >> 3u) & 1u)) - 0.5;
-}
-
 fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, count: u32, bins: bins_Bins) {
-    let own = floor(receiver.center + bins_texel_corner(search_taps.first));
+    let own = floor(receiver.center);
     bins_mark_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
     for (var i = 0u; i < count; i++) {
         let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;

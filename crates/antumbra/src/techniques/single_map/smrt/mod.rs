@@ -18,12 +18,11 @@
 //! 1. **Search** (`bins.wesl`). The depths from the farthest receiver to the nearest blocker that a pyramid of the map allows
 //!    are cut into 32 bins. A few taps of every pixel mark the bins with blockers, for all pixels: what one misses its
 //!    neighbour finds. Taps lie at all scales of the light's shape, as in [`pcss`](super::pcss); those of a tile's pixels are
-//!    one set, spread evenly over light and scales. One more, at the receiver, is off by half a texel as rays are: where a tile
-//!    missed what its rays would read, it ended in steps.
+//!    one set, spread evenly over light and scales.
 //! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance between the depths of the
 //!    blockers found there. A surface of that texel in the bin blocks it, if the ray is within a texel where it crosses the
 //!    surface's depth; else the texel that it crosses there decides. (By the first texel alone, a wall through a whole bin darkened
-//!    what it faces: on Sponza's floor .0115 of the lit pixels' light was lost, .0051 now, 1280 × 720.) Gaps between occluders cost
+//!    what it faces: on Sponza's floor .0115 of the lit pixels' light was lost, .0050 now, 1280 × 720.) Gaps between occluders cost
 //!    nothing; of more bins than `steps` neighbours are joined.
 //! 3. **Early end.** Where the first quarter of the rays of all 64 pixels are free, or all blocked, so are the others; without
 //!    `smooth` likewise those of a pixel whose first half are.
