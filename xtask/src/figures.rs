@@ -72,7 +72,7 @@ pub fn run(names: &[String]) -> Result<(), String> {
         shell::run(&mut render)?;
     }
     let from = compare(&binary, HERO_SCENE, &HERO.join(","), "640x360", "hero")?;
-    for name in [HERO[0], HERO[1], "reference"] {
+    for name in HERO.into_iter().chain(["reference"]) {
         copy(&from.join(format!("{name}_shaded.png")), &figures.join(format!("hero_{name}.png")))?;
     }
     animate(&binary, &figures.join("moving.png"))?;

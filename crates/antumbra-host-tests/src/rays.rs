@@ -271,6 +271,17 @@ pub fn rmse(mask: &[f32], truth: &Truth) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
+/// Darkness of a mask, mean over the pixels that see all of the light.
+///
+/// # Panics
+/// Where fewer than a tenth of the pixels do.
+pub fn lit_loss(mask: &[f32], truth: &Truth) -> f64 {
+    let lit = mask.iter().zip(truth).filter(|(_, right)| **right == Some(1.0));
+    let losses: Vec<f64> = lit.map(|(had, _)| 1.0 - f64::from(*had)).collect();
+    assert!(losses.len() * 10 >= mask.len(), "only {} of {} pixels are lit", losses.len(), mask.len());
+    losses.iter().sum::<f64>() / losses.len() as f64
+}
+
 /// The share of judged pixels in a range of visibility.
 pub fn share_between(truth: &Truth, low: f32, high: f32) -> f64 {
     let judged: Vec<f32> = truth.iter().flatten().copied().collect();

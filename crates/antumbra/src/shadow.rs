@@ -111,7 +111,7 @@ impl<T: Technique> Shadow<T> {
         self.prepare_asked(Asked::Mask(*frame))
     }
 
-    /// Makes ready for points in place of a depth buffer. Give points a state of their own beside that of a light's mask: each
+    /// Prepares a frame of points in place of a depth buffer. Give points a state of their own beside that of a light's mask: each
     /// keeps what its last frame drew.
     ///
     /// What needs neighbours has no meaning for points and is not done: `sub` and the smoothing of `smrt`; `denoise` is refused.
@@ -191,7 +191,7 @@ impl<T: Technique> Shadow<T> {
         Ok(Passes { casters, light, denoise })
     }
 
-    /// Prepares what stands between the host's receivers and mask and those of techniques.
+    /// Prepares the conversions between the host's receivers and mask and those of techniques.
     fn prepare_ends(&mut self, stage: &Stage<'_>, asked: &Asked<'_>) {
         (self.narrow, self.points) = match asked {
             Asked::Mask(Frame { mask, .. }) => {

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use antumbra_lab::progress::Progress;
 use antumbra_lab::report::{AdapterInfo, ReproductionInfo, utc_now, write_reproduction};
 use antumbra_lab::reproduce::{
-    Exhibit, ExhibitResult, Form, Judged, Measure, PAPERS, Paper, REPRODUCED_NAME, Readiness, Reported, Ruling,
-    RunOptions, SCENES_HINT, SCENES_VARIABLE, Session, VerdictCount, exhibits,
+    Exhibit, ExhibitResult, Form, Measure, PAPERS, Paper, REPRODUCED_NAME, Readiness, Reported, Ruling, RunOptions,
+    SCENES_HINT, SCENES_VARIABLE, Session, VerdictCount, exhibits,
 };
 use serde_json::{Value, json};
 
@@ -113,16 +113,11 @@ fn print(result: &ExhibitResult) {
     for one in judged {
         let size = if one.sizes.is_empty() { String::new() } else { format!(" (at {})", one.sizes) };
         say!("\n  {}{size}", one.claim.says);
-        for (form, ruling) in rulings(one) {
+        for (form, ruling) in one.rulings() {
             say!("  {form}: {}. {}", ruling.verdict.name(), ruling.sentence());
             ruling.found.iter().for_each(|line| say!("    - {line}"));
         }
     }
-}
-
-/// A claim over each of its forms.
-fn rulings(judged: &Judged) -> impl Iterator<Item = (Form, &Ruling)> {
-    std::iter::once((Form::Published, &judged.published)).chain(judged.ours.as_ref().map(|ours| (Form::Ours, ours)))
 }
 
 fn sum_up(results: &[ExhibitResult], ran: usize, all: usize, dir: Option<&Path>) {

@@ -4,7 +4,7 @@ use antumbra::light::{Light, LightShape};
 use antumbra_host_tests::device::Device;
 use antumbra_host_tests::host::{HostCasters, kind_of, mask_of};
 use antumbra_host_tests::raster::Picture;
-use antumbra_host_tests::rays::{Rays, Truth, rmse};
+use antumbra_host_tests::rays::{Rays, Truth, lit_loss, rmse};
 use antumbra_host_tests::scene::{Camera, Mesh, Object, Scene, base_light, base_light_of};
 use glam::{Vec2, Vec3};
 
@@ -47,17 +47,6 @@ impl Place {
             assert!(error <= *most, "{what}, {name}: {error}, and may be {most}");
         }
     }
-}
-
-/// How dark a mask is on average where all of the light is seen.
-fn lit_loss(mask: &[f32], truth: &Truth) -> f64 {
-    let lit: Vec<f64> = mask
-        .iter()
-        .zip(truth)
-        .filter(|(_, right)| right.is_some_and(|right| right == 1.0))
-        .map(|(had, _)| 1.0 - f64::from(*had))
-        .collect();
-    lit.iter().sum::<f64>() / lit.len().max(1) as f64
 }
 
 /// The base scene with more in it.

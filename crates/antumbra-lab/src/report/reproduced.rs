@@ -181,7 +181,7 @@ fn claims(judged: &[Judged]) -> String {
     for one in judged {
         let _ =
             write!(html, "<div class=\"claim\"><p>The paper: {}{}</p>", escape(one.claim.says), escape(&at_size(one)));
-        for (form, ruling) in rulings(one) {
+        for (form, ruling) in one.rulings() {
             let found: String = ruling.found.iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
             let _ = write!(
                 html,
@@ -194,11 +194,6 @@ fn claims(judged: &[Judged]) -> String {
         html += "</div>";
     }
     html
-}
-
-/// The claim over each of its forms.
-fn rulings(judged: &Judged) -> impl Iterator<Item = (Form, &Ruling)> {
-    std::iter::once((Form::Published, &judged.published)).chain(judged.ours.as_ref().map(|ours| (Form::Ours, ours)))
 }
 
 fn capitalised(form: Form) -> &'static str {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use antumbra::{Quality, TechniqueKind};
 
-use super::exhibit::{Paper, Row, Settings};
+use super::exhibit::{Paper, Row};
 use crate::error::LabError;
 use crate::technique_run::TechniqueChoice;
 
@@ -54,14 +54,17 @@ impl Row {
     /// # Errors
     /// Where there is no such technique.
     pub(super) fn choice(&self, form: Form) -> Result<TechniqueChoice, LabError> {
-        let settings = self.settings_of(form).map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-        Ok(TechniqueChoice { settings, ..choice_of_form(self.technique, form)? })
+        choice_with(self.technique, form, self.settings_of(form))
     }
 }
 
 /// A technique in a form, with settings.
-pub(super) fn choice_with(technique: &str, form: Form, settings: Settings) -> Result<TechniqueChoice, LabError> {
-    let settings = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+pub(super) fn choice_with(
+    technique: &str,
+    form: Form,
+    settings: impl IntoIterator<Item = &'static (&'static str, &'static str)>,
+) -> Result<TechniqueChoice, LabError> {
+    let settings = settings.into_iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
     Ok(TechniqueChoice { settings, ..choice_of_form(technique, form)? })
 }
 

@@ -71,6 +71,13 @@ pub struct Judged {
     pub sizes: String,
 }
 
+impl Judged {
+    /// The ruling on each form.
+    pub fn rulings(&self) -> impl Iterator<Item = (Form, &Ruling)> {
+        std::iter::once((Form::Published, &self.published)).chain(self.ours.as_ref().map(|ours| (Form::Ours, ours)))
+    }
+}
+
 /// What came of an exhibit's rows, in their order.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcomes<'a> {
@@ -168,26 +175,8 @@ impl Bench<'_> {
             Rule::RatioAtMost(..) | Rule::RatioAtLeast(..) | Rule::RatioWithin(..) => ratio_text(&values, &all),
             _ => all,
         };
-        if rule.figure() == Figure::Ms && self.is_software {
-            let why = if !claim.on_any_adapter {
-                Some(
-                    "it needs a GPU, since times of a software renderer say little about one: the same command on a GPU would show it",
-                )
-            } else if values.iter().any(|ms| *ms < LEAST_MS) {
-                Some(
-                    "a time is too short for a software renderer's clock: a larger image (--size) or a GPU would show it",
-                )
-            } else if rule.rows().iter().any(|row| self.is_of_few_frames(row, form)) {
-                Some(
-                    "a median of so few frames says little on a processor that others use: more of them (--frames) on an idle one \
-                     would show it",
-                )
-            } else {
-                None
-            };
-            if let Some(why) = why {
-                return (format!("{}: here {here}", rule.text()), Met::Unknown(why.to_owned()));
-            }
+        if let Some(doubt) = self.doubt_of_times(claim, rule, &values, form) {
+            return (format!("{}: here {here}", rule.text()), Met::Unknown(doubt.to_owned()));
         }
         if let Some(why) = rule.favored().iter().find_map(|row| self.is_flat(row, form)) {
             return (format!("{}: here {here}, but {why}", rule.text()), Met::No);
@@ -200,6 +189,28 @@ impl Bench<'_> {
         (format!("{}: here {here}", rule.text()), met)
     }
 
+    /// Why a software renderer's times do not decide a rule, and what would; `None` where they do, and of other figures.
+    fn doubt_of_times(&self, claim: &Claim, rule: &Rule, values: &[f64], form: Form) -> Option<&'static str> {
+        if rule.figure() != Figure::Ms || !self.is_software {
+            return None;
+        }
+        if !claim.on_any_adapter {
+            return Some(
+                "it needs a GPU, since times of a software renderer say little about one: the same command on a GPU would show it",
+            );
+        }
+        if values.iter().any(|ms| *ms < LEAST_MS) {
+            return Some(
+                "a time is too short for a software renderer's clock: a larger image (--size) or a GPU would show it",
+            );
+        }
+        let is_of_few_frames = rule.rows().iter().any(|row| self.is_of_few_frames(row, form));
+        is_of_few_frames.then_some(
+            "a median of so few frames says little on a processor that others use: more of them (--frames) on an idle one would \
+             show it",
+        )
+    }
+
     /// Why an image is none: it errs no less than one without any shadow in it.
     fn is_flat(&self, row: &str, form: Form) -> Option<String> {
         let measured = self.measured(row, form)?;
@@ -207,8 +218,12 @@ impl Bench<'_> {
         (rmse >= flat).then(|| format!("‘{row}’ errs no less than one grey (rmse {rmse:.4} and {flat:.4})"))
     }
 
+    fn outcome(&self, row: &str, form: Form) -> Option<&Outcome> {
+        self.outcomes.of(self.place(row)?, form)
+    }
+
     fn measured(&self, row: &str, form: Form) -> Option<&Measured> {
-        match self.place(row).and_then(|i| self.outcomes.of(i, form)) {
+        match self.outcome(row, form) {
             Some(Outcome::Measured(measured)) => Some(measured),
             _ => None,
         }
@@ -225,7 +240,7 @@ impl Bench<'_> {
     }
 
     fn value(&self, figure: Figure, row: &str, form: Form) -> Result<f64, String> {
-        match self.place(row).and_then(|i| self.outcomes.of(i, form)) {
+        match self.outcome(row, form) {
             None => Err(format!("‘{row}’ was not run")),
             Some(Outcome::Measured(measured)) => match measured.figure(figure) {
                 // Software renderers' clocks do: a ratio to it would say anything.

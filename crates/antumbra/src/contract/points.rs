@@ -3,35 +3,35 @@
 use antumbra_light::Aabb;
 use glam::Vec3;
 
-/// Numbers of points in a host's buffer: so many 32-bit floats for each, interleaved with others as the host likes.
+/// Attribute of points in a host's buffer: 32-bit floats with an offset and a stride.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PointBuffer<'a> {
-    /// Usage `STORAGE`; all of it is bound, so that it may be as large as one binding.
+    /// Buffer with usage `STORAGE`. All of it is bound, so it may be as large as one binding.
     pub buffer: &'a wgpu::Buffer,
-    /// Bytes before the first point's; a multiple of 4.
+    /// Offset of the first point, bytes; a multiple of 4.
     pub offset: u64,
-    /// Bytes from a point to the next; a multiple of 4. 12 for three floats without a gap, 16 for a `vec4f`.
+    /// Stride, bytes; a multiple of 4. 12 for three floats without a gap, 16 for a `vec4f`.
     pub stride: u32,
 }
 
 impl<'a> PointBuffer<'a> {
-    /// Three floats a point, one after the other.
+    /// Tightly packed attribute: three floats per point.
     pub fn packed(buffer: &'a wgpu::Buffer) -> Self {
         Self { buffer, offset: 0, stride: 12 }
     }
 
-    /// Three floats of four, as WGSL lays out an array of `vec3f` or `vec4f`; the fourth is not read.
+    /// Padded attribute: three floats of four, as WGSL lays out an array of `vec3f` or `vec4f`. The fourth is not read.
     pub fn padded(buffer: &'a wgpu::Buffer) -> Self {
         Self { stride: 16, ..Self::packed(buffer) }
     }
 }
 
-/// How wide points are: each stands for a square of its plane, over which techniques that filter by a pixel's footprint filter.
+/// Widths of points. A point represents a square of its plane, over which techniques filter that filter over a pixel's footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointWidths<'a> {
-    /// Metres, of all. Zero, the usual: points without an extent.
+    /// One width for all points, metres; zero, the default, for points without extent.
     Same(f32),
-    /// Metres, a float a point. What is negative or not finite is taken as zero.
+    /// One float per point, metres. Negative and non-finite values count as zero.
     Each(PointBuffer<'a>),
 }
 
@@ -41,10 +41,10 @@ impl Default for PointWidths<'_> {
     }
 }
 
-/// The receivers of one frame, given as points: probes, texels of lightmaps, splats, particles.
+/// Receivers of one frame, given as points: probes, texels of lightmaps, splats, particles.
 #[derive(Clone, Copy, Debug)]
 pub struct PointReceivers<'a> {
-    /// How many.
+    /// Number of points.
     pub count: u32,
     /// World-space positions, three floats each. One that is not finite receives nothing, and is lit.
     pub positions: PointBuffer<'a>,
@@ -68,6 +68,15 @@ pub struct PointReceivers<'a> {
 }
 
 impl<'a> PointReceivers<'a> {
+    /// Buffers of positions, normals and widths.
+    pub(crate) fn buffers(&self) -> [Option<PointBuffer<'a>>; 3] {
+        let widths = match self.widths {
+            PointWidths::Same(_) => None,
+            PointWidths::Each(widths) => Some(widths),
+        };
+        [Some(self.positions), self.normals, widths]
+    }
+
     /// Creates receivers without normals or widths, in no order.
     pub fn new(count: u32, positions: PointBuffer<'a>, bounds: Aabb) -> Self {
         Self {

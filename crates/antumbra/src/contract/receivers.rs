@@ -69,6 +69,17 @@ pub struct Receivers<'a> {
     pub version: Option<u64>,
 }
 
+impl Receivers<'_> {
+    /// Camera of the depth buffer.
+    pub(crate) fn camera(&self) -> Camera {
+        Camera {
+            view_from_world: self.view_from_world,
+            clip_from_view: self.clip_from_view,
+            depth_convention: self.depth_convention,
+        }
+    }
+}
+
 /// Camera of a depth buffer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -147,14 +158,10 @@ pub struct PreparedReceivers<'a> {
 
 impl<'a> From<Receivers<'a>> for PreparedReceivers<'a> {
     fn from(receivers: Receivers<'a>) -> Self {
-        let Receivers { view_from_world, clip_from_view, depth_convention, .. } = receivers;
         Self {
             size_px: receivers.size_px,
             origin_px: receivers.origin_px,
-            surfaces: Surfaces::Depth {
-                depth: receivers.depth,
-                camera: Camera { view_from_world, clip_from_view, depth_convention },
-            },
+            surfaces: Surfaces::Depth { depth: receivers.depth, camera: receivers.camera() },
             normals: receivers.normals,
             bounds: receivers.bounds,
             hull: receivers.hull,
@@ -165,7 +172,7 @@ impl<'a> From<Receivers<'a>> for PreparedReceivers<'a> {
 }
 
 impl<'a> PreparedReceivers<'a> {
-    /// The camera; points have none.
+    /// Camera; points have none.
     pub(crate) fn camera(&self) -> Option<&Camera> {
         match &self.surfaces {
             Surfaces::Depth { camera, .. } => Some(camera),
@@ -173,7 +180,7 @@ impl<'a> PreparedReceivers<'a> {
         }
     }
 
-    /// The texels that passes over the receivers read: depth, or positions.
+    /// Texture that passes over the receivers read: depth, or positions.
     pub(crate) fn texels(&self) -> &'a wgpu::TextureView {
         match self.surfaces {
             Surfaces::Depth { depth, .. } => depth,

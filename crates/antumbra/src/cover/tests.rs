@@ -290,11 +290,7 @@ fn parts_end_where_shadows_do() {
     let meshes = [slab(0.0), slab(-700.0)];
     let casters: Vec<_> = meshes.iter().map(Mesh::caster).collect();
     let receivers = Receivers { hull: &far, ..test_receivers(SIZE, &depth) };
-    let eye = crate::contract::PreparedReceivers::from(receivers)
-        .camera()
-        .expect("of a depth buffer")
-        .eye_in_world()
-        .as_vec3();
+    let eye = receivers.camera().eye_in_world().as_vec3();
     let forward = -receivers.view_from_world.row(2).truncate();
     let parts = |light: &Light, end_m: Option<f32>| {
         let receivers = Receivers { shadow_distance: end_m.map(ShadowDistance::new), ..receivers };

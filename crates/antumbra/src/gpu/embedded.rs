@@ -1,4 +1,4 @@
-//! Functions of techniques for hosts' own shaders: text that hosts put before theirs, and one bind group.
+//! Techniques as functions of hosts' shaders: WGSL that hosts prepend to theirs, and one bind group.
 //!
 //! The text is a linked shader, made to lie within another: its bindings are in one group of the host's choice, its constants have
 //! their values, its entry point is left out, and all names that it declares begin with a word of the host's choice, so that several
@@ -9,17 +9,17 @@ use std::sync::Arc;
 
 use super::{Bindings, Resource, overrides};
 
-/// From one group of a linked shader to the next, in the host's group.
+/// Step between the bindings of one group of a linked shader and those of the next, in the host's group.
 const BINDINGS_PER_GROUP: u32 = 16;
 
-/// What a technique gives for a host's shader, of the frame prepared last.
+/// A technique's shader and resources for a host's shader, of the frame prepared last.
 #[derive(Debug)]
 pub struct Embeddable {
     /// Linked text with a function `visibility_at`.
     pub(crate) wgsl: &'static str,
     /// Values of overridable constants, by their names.
     pub(crate) constants: Vec<(&'static str, f64)>,
-    /// Of each group of the text its layout and what is bound.
+    /// Layout and resources of each group of the text.
     pub(crate) groups: Vec<EmbeddedGroup>,
     /// Whether what is bound holds what the frame draws until the light's next frame.
     pub(crate) is_own: bool,
@@ -47,9 +47,9 @@ pub struct ShaderFunction {
     /// particles do; and a pixel, which chooses random numbers. It is the same text, by [`Arc::ptr_eq`], until parameters, kind of light
     /// or casters ask for another program.
     pub wgsl: Arc<str>,
-    /// Of the group, for fragment and compute shaders.
+    /// Layout of the group, for fragment and compute shaders.
     pub layout: wgpu::BindGroupLayout,
-    /// What the function reads, once the frame's commands have run.
+    /// Resources that the function reads; valid once the frame's commands have run.
     pub bind_group: wgpu::BindGroup,
 }
 
@@ -86,12 +86,16 @@ impl Embeddable {
     /// The text for a group of the host's and a prefix.
     pub(crate) fn text(&self, group: u32, prefix: &str) -> String {
         let wgsl = crate::shaders::text_of(self.wgsl);
-        let constants = overrides::linked(&wgsl, &self.constants);
-        let text = without_entry_point(&wgsl);
-        let lines = text.lines().filter(|line| !line.starts_with("//"));
-        let lines = lines.map(|line| with_constant(&with_binding(line, group), &constants) + "\n");
-        with_prefix(&lines.collect::<String>(), prefix)
+        embedded_text(&wgsl, &overrides::linked(&wgsl, &self.constants), group, prefix)
     }
+}
+
+/// A linked text as part of another.
+fn embedded_text(wgsl: &str, constants: &[(String, f64)], group: u32, prefix: &str) -> String {
+    let text = without_entry_point(wgsl);
+    let lines = text.lines().filter(|line| !line.starts_with("//"));
+    let lines = lines.map(|line| with_constant(&with_binding(line, group), constants) + "\n");
+    with_prefix(&lines.collect::<String>(), prefix)
 }
 
 /// Without the only entry point of a linked text, whose functions end by a brace of their own line.
@@ -141,7 +145,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 
 /// The text with a prefix before every name that it declares. Members and locals of the same names get it too, wherever they stand.
 fn with_prefix(text: &str, prefix: &str) -> String {
-    const DECLARE: [&str; 6] = ["fn", "struct", "const", "var", "alias", "override"];
+    const DECLARE: [&str; 5] = ["fn", "struct", "const", "var", "alias"];
     let mut names = HashSet::new();
     for line in text.lines() {
         // Of functions only what is not indented: `var<uniform> name`, `var<storage, read> name`, `fn name`.
@@ -164,11 +168,7 @@ mod tests {
                     @group(2) @binding(1)\nvar<storage, read> one: array<vec2f>;\n\n\
                     override space_COUNT: u32 = 1u;\noverride space_IS: bool = false;\n\n\
                     fn space_scale(x: f32) -> f32 {\n    var x = x;\n    return x * f32(space_COUNT);\n}\n";
-        let constants = [("space_COUNT".to_owned(), 3.0)];
-        let lines = without_entry_point(text);
-        let lines = lines.lines().filter(|line| !line.starts_with("//"));
-        let got: String = lines.map(|line| with_constant(&with_binding(line, 5), &constants) + "\n").collect();
-        let got = with_prefix(&got, "sun_");
+        let got = embedded_text(text, &[("space_COUNT".to_owned(), 3.0)], 5, "sun_");
         for part in [
             "fn sun_visibility_at(x: f32)",
             "return sun_space_scale(x) * sun_one.x;",

@@ -19,10 +19,11 @@ pub(super) fn compiles_uniform_values_in(adapter: &wgpu::AdapterInfo) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn adapter(driver: &str, driver_info: &str) -> wgpu::AdapterInfo {
+    /// A software adapter of a driver.
+    pub(in crate::gpu) fn adapter(driver: &str, driver_info: &str) -> wgpu::AdapterInfo {
         let mut info = wgpu::AdapterInfo::new(wgpu::DeviceType::Cpu, wgpu::Backend::Vulkan);
         (info.driver, info.driver_info) = (driver.into(), driver_info.into());
         info

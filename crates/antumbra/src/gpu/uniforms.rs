@@ -143,14 +143,9 @@ impl UniformAccess {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::quirks::tests::adapter;
     use crate::testing::{Case, RECTANGLE, gpu, gpu_with};
     use crate::{Gpu, TechniqueKind};
-
-    fn adapter(driver: &str, driver_info: &str) -> wgpu::AdapterInfo {
-        let mut info = wgpu::AdapterInfo::new(wgpu::DeviceType::Cpu, wgpu::Backend::Vulkan);
-        (info.driver, info.driver_info) = (driver.into(), driver_info.into());
-        info
-    }
 
     #[test]
     fn more_buffers_are_asked_for_where_there_are_some() {

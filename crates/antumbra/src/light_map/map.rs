@@ -121,6 +121,13 @@ impl Textures {
     }
 }
 
+/// The bindings of a map, by what is searched besides.
+enum BoundMap<'a> {
+    Alone(MapBindings<'a>),
+    WithPyramid(PyramidBindings<'a>),
+    WithLayers(LayersBindings<'a>),
+}
+
 /// One light map, with a min/max pyramid for techniques that search it: bind group 1 of their passes.
 #[derive(Debug)]
 pub(crate) struct LightMap {
@@ -136,7 +143,7 @@ pub(crate) struct LightMap {
     /// Of the map of our own, layers behind it and pyramid.
     content: Content<(CastersKey, Vec<u8>)>,
     /// Of the frame prepared last: the map, ours or the host's, and whether no other light draws into it.
-    bound: Option<(wgpu::TextureView, bool)>,
+    last: Option<(wgpu::TextureView, bool)>,
     drawn: Option<DrawnMap>,
 }
 
@@ -174,7 +181,7 @@ impl LightMap {
             }),
             textures: None,
             content: Content::default(),
-            bound: None,
+            last: None,
             drawn: None,
         }
     }
@@ -225,36 +232,36 @@ impl LightMap {
         if let Some(behind) = &mut self.layers_behind {
             behind.prepare(stage, lease, map, map_size, shape.layers.saturating_sub(1));
         }
-        let map = MapBindings { light_view: &self.view_uniform, light_map: map, light_map_sampler: &self.sampler };
-        self.bound = Some((map.light_map.clone(), lease.is_own()));
-        self.drawn = Some(view.drawn_map(map.light_map, 1, empty_depth)).filter(|_| lease.is_own());
-        let group = self.bind(stage, map);
+        self.last = Some((map.clone(), lease.is_own()));
+        self.drawn = Some(view.drawn_map(map, 1, empty_depth)).filter(|_| lease.is_own());
+        let group = match self.bound(map) {
+            BoundMap::Alone(bindings) => bindings.group(stage, &self.layout),
+            BoundMap::WithPyramid(bindings) => bindings.group(stage, &self.layout),
+            BoundMap::WithLayers(bindings) => bindings.group(stage, &self.layout),
+        };
         Ok(PreparedMap { group, is_drawn, view, size_px: shape.size_px, empty_depth })
     }
 
-    /// The map with whatever is searched besides.
-    fn bind<'a>(&'a self, stage: &Stage<'_>, map: MapBindings<'a>) -> wgpu::BindGroup {
+    /// A map with whatever is searched besides.
+    fn bound<'a>(&'a self, light_map: &'a wgpu::TextureView) -> BoundMap<'a> {
+        let map = MapBindings { light_view: &self.view_uniform, light_map, light_map_sampler: &self.sampler };
         let Some(light_map_pyramid) = self.pyramid.as_ref().and_then(DepthPyramid::view) else {
-            return map.group(stage, &self.layout);
+            return BoundMap::Alone(map);
         };
         let searched = PyramidBindings { map, light_map_pyramid };
         match &self.layers_behind {
-            None => searched.group(stage, &self.layout),
-            Some(behind) => LayersBindings { searched, further_layers: behind.array() }.group(stage, &self.layout),
+            None => BoundMap::WithPyramid(searched),
+            Some(behind) => BoundMap::WithLayers(LayersBindings { searched, further_layers: behind.array() }),
         }
     }
 
     /// The group as a host's shader binds it, of the frame prepared last, and whether no other light's frame changes what it holds.
     pub(crate) fn embedded(&self) -> Option<(EmbeddedGroup, bool)> {
-        let (light_map, is_own) = self.bound.as_ref()?;
-        let map = MapBindings { light_view: &self.view_uniform, light_map, light_map_sampler: &self.sampler };
-        let Some(light_map_pyramid) = self.pyramid.as_ref().and_then(DepthPyramid::view) else {
-            return Some((EmbeddedGroup::of(&map), *is_own));
-        };
-        let searched = PyramidBindings { map, light_map_pyramid };
-        let group = match &self.layers_behind {
-            None => EmbeddedGroup::of(&searched),
-            Some(behind) => EmbeddedGroup::of(&LayersBindings { searched, further_layers: behind.array() }),
+        let (light_map, is_own) = self.last.as_ref()?;
+        let group = match self.bound(light_map) {
+            BoundMap::Alone(bindings) => EmbeddedGroup::of(&bindings),
+            BoundMap::WithPyramid(bindings) => EmbeddedGroup::of(&bindings),
+            BoundMap::WithLayers(bindings) => EmbeddedGroup::of(&bindings),
         };
         Some((group, *is_own))
     }

@@ -34,10 +34,7 @@ pub(super) struct Anchored<'a> {
 pub(super) fn anchor_of(asked: &Asked<'_>) -> Vec3 {
     let about = match asked {
         _ if !asked.light().is_distant() => asked.light().center,
-        Asked::Mask(frame) => {
-            let receivers = PreparedReceivers::from(frame.receivers);
-            receivers.camera().map_or(Vec3::ZERO, |camera| camera.eye_in_world().as_vec3())
-        }
+        Asked::Mask(frame) => frame.receivers.camera().eye_in_world().as_vec3(),
         Asked::Points(frame) => {
             let Aabb { min, max } = frame.receivers.bounds;
             let are_known = min.is_finite_mask() & max.is_finite_mask();

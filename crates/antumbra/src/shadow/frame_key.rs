@@ -1,13 +1,11 @@
 //! Frame cache key: a light's mask is redrawn when the key changes.
 
 use antumbra_light::{Aabb, Light, ShadowDistance};
-use glam::{Mat4, UVec2, Vec3};
+use glam::{UVec2, Vec3};
 
 use super::frame::Asked;
 use super::{Frame, PointFrame};
-use crate::contract::{
-    CastersKey, Denoise, DepthConvention, MaskChannels, MaskPlace, Params, PointBuffer, PointWidths,
-};
+use crate::contract::{Camera, CastersKey, Denoise, MaskChannels, MaskPlace, Params, PointBuffer, PointWidths};
 
 /// Key of a frame: all that its mask depends on.
 #[derive(Debug, PartialEq)]
@@ -29,8 +27,7 @@ enum ReceiversKey {
         size_px: UVec2,
         origin_px: UVec2,
         depth: wgpu::TextureView,
-        depth_convention: DepthConvention,
-        camera: Box<[Mat4; 2]>,
+        camera: Box<Camera>,
         normals: Option<wgpu::TextureView>,
         bounds: Option<Aabb>,
         shadow_distance: Option<ShadowDistance>,
@@ -54,8 +51,7 @@ impl ReceiversKey {
             size_px: receivers.size_px,
             origin_px: receivers.origin_px,
             depth: receivers.depth.clone(),
-            depth_convention: receivers.depth_convention,
-            camera: Box::new([receivers.view_from_world, receivers.clip_from_view]),
+            camera: Box::new(receivers.camera()),
             normals: receivers.normals.cloned(),
             bounds: receivers.bounds,
             shadow_distance: receivers.shadow_distance,
@@ -64,16 +60,16 @@ impl ReceiversKey {
 
     fn of_points(frame: &PointFrame<'_>) -> Self {
         let receivers = &frame.receivers;
-        let (widths, width_m) = match receivers.widths {
-            PointWidths::Same(width_m) => (None, Some(width_m)),
-            PointWidths::Each(widths) => (Some(widths), None),
+        let width_m = match receivers.widths {
+            PointWidths::Same(width_m) => Some(width_m),
+            PointWidths::Each(_) => None,
         };
         let key = |buffer: PointBuffer<'_>| (buffer.buffer.clone(), buffer.offset, buffer.stride);
         Self::Points {
             visibilities: (frame.visibilities.clone(), frame.channels),
             count: receivers.count,
             row_length: receivers.row_length,
-            buffers: [Some(receivers.positions), receivers.normals, widths].map(|buffer| buffer.map(key)),
+            buffers: receivers.buffers().map(|buffer| buffer.map(key)),
             width_m,
             bounds: receivers.bounds,
         }

@@ -10,11 +10,11 @@ use crate::techniques::Technique;
 #[cfg(test)]
 mod tests;
 
-/// What a light's functions have been made of.
+/// State of a light's shader functions.
 #[derive(Debug, Default)]
 pub(super) struct ShaderFunctions {
     keep: Keep,
-    /// Of the last one.
+    /// Text of the last one, with its key.
     text: Option<(TextKey, Arc<str>)>,
 }
 

@@ -14,21 +14,48 @@ use crate::contract::{
 use crate::frame::points::size_of_points;
 use crate::gpu::{Gpu, ViewKind, storage_complaint};
 
-/// Validates frames. Keeps which views were found good.
+/// Validator of frames. It remembers which views and buffers could be bound.
 #[derive(Debug, Default)]
 pub(super) struct Validator {
-    /// With the last frame that had each.
-    good: Vec<(BoundView, u64)>,
-    /// The same of buffers.
-    good_buffers: Vec<(wgpu::Buffer, u64)>,
+    views: Good<(wgpu::TextureView, ViewKind)>,
+    buffers: Good<wgpu::Buffer>,
+}
+
+/// Resources that could be bound on trial, with the last frame of each.
+#[derive(Debug)]
+struct Good<R> {
+    found: Vec<(R, u64)>,
     frame: u64,
 }
 
-/// A view, and as what it was bound.
-type BoundView = (wgpu::TextureView, ViewKind);
+impl<R> Default for Good<R> {
+    fn default() -> Self {
+        Self { found: Vec::new(), frame: 0 }
+    }
+}
 
-/// Views that no frame has had for so long are forgotten, so that their textures can go.
-const KEPT_FRAMES: u64 = 8;
+impl<R: PartialEq> Good<R> {
+    /// Resources unused for this many frames are forgotten, so that they can be freed.
+    const KEPT_FRAMES: u64 = 8;
+
+    fn begin_frame(&mut self) {
+        self.frame += 1;
+        self.found.retain(|(_, frame)| frame + Self::KEPT_FRAMES >= self.frame);
+    }
+
+    /// What wgpu says against a resource; `None` where nothing is wrong with it. Only new resources are tried.
+    fn complaint(&mut self, resource: R, trial: impl FnOnce(&R) -> Option<String>) -> Option<String> {
+        if let Some((_, frame)) = self.found.iter_mut().find(|(good, _)| *good == resource) {
+            *frame = self.frame;
+            return None;
+        }
+        let complaint = trial(&resource);
+        if complaint.is_none() {
+            self.found.push((resource, self.frame));
+        }
+        complaint
+    }
+}
 
 /// How far a rigid matrix's axes may be from unit length and right angles: rotations that are multiplied for hours drift.
 const RIGID_TOLERANCE: f64 = 1e-2;
@@ -49,9 +76,8 @@ impl Validator {
         asked: &Asked<'_>,
         denoise: Option<&Denoise>,
     ) -> Result<(), Error> {
-        self.frame += 1;
-        self.good.retain(|(_, frame)| frame + KEPT_FRAMES >= self.frame);
-        self.good_buffers.retain(|(_, frame)| frame + KEPT_FRAMES >= self.frame);
+        self.views.begin_frame();
+        self.buffers.begin_frame();
         match asked {
             Asked::Mask(frame) => self.check_mask(&Check { technique, gpu, frame }, denoise),
             Asked::Points(frame) => self.check_points(&Check { technique, gpu, frame }, denoise),
@@ -83,32 +109,6 @@ impl Validator {
         check.host_map(self, &frame.casters)?;
         let Some(Denoise { most_frames, .. }) = denoise else { return Ok(()) };
         check.bad("`denoise`", format!("of {most_frames} frames"), "`None` for points, which have no neighbours")
-    }
-
-    /// What wgpu says against a buffer's being bound; `None` where nothing is wrong with it.
-    fn buffer_complaint(&mut self, gpu: &Gpu, buffer: &wgpu::Buffer) -> Option<String> {
-        if let Some((_, frame)) = self.good_buffers.iter_mut().find(|(good, _)| good == buffer) {
-            *frame = self.frame;
-            return None;
-        }
-        let complaint = storage_complaint(gpu, buffer);
-        if complaint.is_none() {
-            self.good_buffers.push((buffer.clone(), self.frame));
-        }
-        complaint
-    }
-
-    /// What wgpu says against a view of this kind; `None` where nothing is wrong with it.
-    fn complaint(&mut self, gpu: &Gpu, view: &wgpu::TextureView, kind: ViewKind) -> Option<String> {
-        if let Some((_, frame)) = self.good.iter_mut().find(|((good, of), _)| good == view && *of == kind) {
-            *frame = self.frame;
-            return None;
-        }
-        let complaint = kind.complaint(gpu, view);
-        if complaint.is_none() {
-            self.good.push(((view.clone(), kind), self.frame));
-        }
-        complaint
     }
 }
 
@@ -145,7 +145,8 @@ impl<F> Check<'_, F> {
         if !view.texture().usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
             return self.bad(what, "a texture without the usage TEXTURE_BINDING", "one with it");
         }
-        let complaint = validator.complaint(self.gpu, view, kind);
+        let trial = |(view, kind): &(wgpu::TextureView, ViewKind)| kind.complaint(self.gpu, view);
+        let complaint = validator.views.complaint((view.clone(), kind), trial);
         complaint.map_or(Ok(()), |complaint| self.bad(what, format!("one that cannot be bound ({complaint})"), needed))
     }
 
@@ -284,7 +285,7 @@ impl Check<'_, Frame<'_>> {
         Ok(())
     }
 
-    /// What is told of where receivers are.
+    /// Refuses bounds, hull, seen points and a shadow distance that are none.
     fn places(&self) -> Result<(), Error> {
         let Receivers { bounds, hull, seen, shadow_distance, .. } = self.frame.receivers;
         // A box of no receivers is empty, and does.
@@ -400,12 +401,8 @@ impl Check<'_, PointFrame<'_>> {
 
     fn buffers(&self, validator: &mut Validator) -> Result<(), Error> {
         let PointFrame { receivers, visibilities, channels, .. } = self.frame;
-        let widths = if let PointWidths::Each(widths) = receivers.widths { Some(widths) } else { None };
-        for (what, buffer, floats) in [
-            ("the points' positions", Some(receivers.positions), 3),
-            ("the points' normals", receivers.normals, 3),
-            ("the points' widths", widths, 1),
-        ] {
+        let read = [("the points' positions", 3), ("the points' normals", 3), ("the points' widths", 1)];
+        for ((what, floats), buffer) in read.into_iter().zip(receivers.buffers()) {
             if let Some(buffer) = buffer {
                 self.point_buffer(validator, what, &buffer, floats)?;
                 if buffer.buffer == *visibilities {
@@ -448,7 +445,7 @@ impl Check<'_, PointFrame<'_>> {
                 format!("in one of {most} at most, which this device binds"),
             );
         }
-        let complaint = validator.buffer_complaint(self.gpu, buffer);
+        let complaint = validator.buffers.complaint(buffer.clone(), |buffer| storage_complaint(self.gpu, buffer));
         let refuse = |complaint| {
             self.bad(what, format!("in a buffer that cannot be bound ({complaint})"), "in one of the light's device")
         };
@@ -464,7 +461,7 @@ impl Check<'_, PointFrame<'_>> {
         }
     }
 
-    /// What is told of where points are.
+    /// Refuses bounds, hull and seen points that are no places.
     fn point_places(&self) -> Result<(), Error> {
         let receivers = &self.frame.receivers;
         if let Some(problem) = receivers.bounds.problem() {

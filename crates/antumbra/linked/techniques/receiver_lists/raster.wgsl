@@ -244,13 +244,16 @@ fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
     return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
 }
 
+fn inputs_point_receiver(pos_in_world: vec3f, normal: vec3f) -> inputs_Receiver {
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
 fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
     let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
     if normal.w == 0.0 {
         return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz;
-    return inputs_Receiver(pos_in_world, inputs_point_normal(normal.xyz, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+    return inputs_point_receiver(textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz, normal.xyz);
 }
 
 fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {

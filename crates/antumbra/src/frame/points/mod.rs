@@ -1,8 +1,8 @@
-//! Points as receivers: a pass that makes of a host's buffers what passes over receivers read in place of a depth buffer, and one that
-//! writes what they give back into a buffer. No technique knows of either.
+//! Points as receivers: a pass that packs a host's buffers into textures, which passes over receivers read in place of a depth buffer,
+//! and one that writes the resulting mask into a buffer. No technique knows of either.
 //!
 //! ```text
-//! positions, normals, widths ──► read ──► textures of texels ──► technique ──► mask ──► write ──► visibilities
+//! positions, normals, widths ──► pack ──► textures of texels ──► technique ──► mask ──► write ──► visibilities
 //! ```
 
 use std::sync::Arc;
@@ -59,7 +59,7 @@ gpu_structs! {
     }
 }
 
-/// Texels that points take: the size of textures, and of what stands for a mask.
+/// Size of the points' textures and of their mask, texels.
 pub(crate) fn size_of_points(count: u32, row_length: Option<u32>) -> UVec2 {
     let Some(row_length) = row_length else {
         let tiles = count.div_ceil(TILE * TILE);
@@ -104,14 +104,14 @@ impl PointTextures {
             .filter(|earlier| earlier.scratch == scratch)
             .map_or_else(|| Mask::of_layers(&scratch, 0, channels), |earlier| earlier.mask);
         let points = &stage.uniform("antumbra points", &PointLayout::new(stage.anchor(), receivers, size_px, channels));
-        let PointReceivers { positions: host, normals: host_normals, widths, .. } = receivers;
-        let host_widths = if let PointWidths::Each(widths) = widths { Some(widths) } else { None };
+        // What the host did not bring has the positions in its place, which are not read for it.
+        let words = receivers.buffers().map(|buffer| buffer.unwrap_or(receivers.positions).buffer);
         let read_layout = Read::layout(stage);
         let read = Read {
             points,
-            position_words: host.buffer,
-            normal_words: host_normals.map_or(host.buffer, |normals| normals.buffer),
-            width_words: host_widths.map_or(host.buffer, |widths| widths.buffer),
+            position_words: words[0],
+            normal_words: words[1],
+            width_words: words[2],
             positions: &positions.1,
             normals: &normals.1,
         };
@@ -157,12 +157,12 @@ impl PointTextures {
         &self.mask
     }
 
-    /// Records the way of the host's points to the technique.
+    /// Records the packing of the host's points.
     pub(crate) fn record_read(&self, recorder: &mut Recorder<'_>) {
         self.record(recorder, "points", &self.read);
     }
 
-    /// Records the way of the technique's mask to the host's buffer.
+    /// Records the writing of the technique's mask into the host's buffer.
     pub(crate) fn record_write(&self, recorder: &mut Recorder<'_>) {
         self.record(recorder, "points' visibilities", &self.write);
     }

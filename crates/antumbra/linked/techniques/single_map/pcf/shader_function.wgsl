@@ -57,9 +57,12 @@ fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
     return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
 }
 
-fn inputs_receiver_at(position: vec3f, normal: vec3f) -> inputs_Receiver {
-    let pos_in_world = position - inputs_receiver_view.anchor_in_world;
+fn inputs_point_receiver(pos_in_world: vec3f, normal: vec3f) -> inputs_Receiver {
     return inputs_Receiver(pos_in_world, inputs_point_normal(normal, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+fn inputs_receiver_at(position: vec3f, normal: vec3f) -> inputs_Receiver {
+    return inputs_point_receiver(position - inputs_receiver_view.anchor_in_world, normal);
 }
 
 const light_KIND_RECTANGLE = 0u;

@@ -85,9 +85,6 @@ fn blocker_g_in_step(fan: fan_Fan, offset: vec2f, steps: bins_Steps, step: u32, 
     let begin_g = steps.begin_g + steps.width_g * f32(step);
     let end_g = begin_g + steps.width_g;
     let texel = texel_at(fan, offset, bins_g_in_step(fan.at, steps, step, along), jitter);
-    if !map_receiver_is_texel(texel) {
-        return map_receiver_NO_G;
-    }
     let hit_g = fan_blocker_g_in(fan, texel, begin_g, end_g);
     if hit_g == map_receiver_NO_G {
         return map_receiver_NO_G;
@@ -95,9 +92,6 @@ fn blocker_g_in_step(fan: fan_Fan, offset: vec2f, steps: bins_Steps, step: u32, 
     let passed = texel_at(fan, offset, clamp(hit_g, max(begin_g, 0.0), end_g), jitter);
     if all(abs(passed - texel) <= vec2f(1.0)) {
         return hit_g;
-    }
-    if !map_receiver_is_texel(passed) {
-        return map_receiver_NO_G;
     }
     return fan_blocker_g_in(fan, passed, begin_g, end_g);
 }
@@ -371,13 +365,16 @@ fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
     return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
 }
 
+fn inputs_point_receiver(pos_in_world: vec3f, normal: vec3f) -> inputs_Receiver {
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
 fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
     let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
     if normal.w == 0.0 {
         return inputs_Receiver(vec3f(), vec3f(), true, true);
     }
-    let pos_in_world = textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz;
-    return inputs_Receiver(pos_in_world, inputs_point_normal(normal.xyz, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+    return inputs_point_receiver(textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz, normal.xyz);
 }
 
 fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
@@ -1092,6 +1089,9 @@ fn fan_stored_depth(texel: vec2f, layer: u32) -> f32 {
 }
 
 fn fan_blocker_g_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> f32 {
+    if !map_receiver_is_texel(texel) {
+        return map_receiver_NO_G;
+    }
     let least = max(map_receiver_plane_depth(fan.at, texel), fan.at.depth + begin_g / fan.at.g_per_depth);
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(texel, layer);
