@@ -150,55 +150,55 @@ shaders! {
     /// View-samples: zeroes an array.
     VIEW_SAMPLES_CLEAR = "techniques/receiver_lists/clear";
     /// View-samples: the box of the receivers asked for.
-    VIEW_SAMPLES_BOUNDS = "techniques/receiver_lists/bounds";
+    VIEW_SAMPLES_BOUNDS = "techniques/receiver_lists/lists/bounds";
     /// View-samples: counts receivers a texel.
-    VIEW_SAMPLES_COUNT = "techniques/receiver_lists/count";
+    VIEW_SAMPLES_COUNT = "techniques/receiver_lists/lists/count";
     /// View-samples: drawn or walked triangles.
-    VIEW_SAMPLES_CHOOSE = "techniques/receiver_lists/choose";
+    VIEW_SAMPLES_CHOOSE = "techniques/receiver_lists/lists/choose";
     /// View-samples: stores receivers in lists.
-    VIEW_SAMPLES_SCATTER = "techniques/receiver_lists/scatter";
+    VIEW_SAMPLES_SCATTER = "techniques/receiver_lists/lists/scatter";
     /// View-samples: sizes of dispatches.
-    VIEW_SAMPLES_ARGUMENTS = "techniques/receiver_lists/arguments";
+    VIEW_SAMPLES_ARGUMENTS = "techniques/receiver_lists/lists/arguments";
     /// View-samples: before the first pass over the groups.
-    VIEW_SAMPLES_BEGIN = "techniques/receiver_lists/begin";
+    VIEW_SAMPLES_BEGIN = "techniques/receiver_lists/evaluation/begin";
     /// View-samples: before a further one.
-    VIEW_SAMPLES_ADVANCE = "techniques/receiver_lists/advance";
+    VIEW_SAMPLES_ADVANCE = "techniques/receiver_lists/evaluation/advance";
     /// View-samples: edges that can be silhouettes.
-    VIEW_SAMPLES_EDGE_FACES = "techniques/receiver_lists/edge_faces";
+    VIEW_SAMPLES_EDGE_FACES = "techniques/receiver_lists/triangles/edge_faces";
     /// View-samples: counts triangles a cell.
-    VIEW_SAMPLES_TRIANGLE_COUNT = "techniques/receiver_lists/triangle_count";
+    VIEW_SAMPLES_TRIANGLE_COUNT = "techniques/receiver_lists/triangles/count";
     /// View-samples: stores triangles by cell.
-    VIEW_SAMPLES_TRIANGLE_SCATTER = "techniques/receiver_lists/triangle_scatter";
+    VIEW_SAMPLES_TRIANGLE_SCATTER = "techniques/receiver_lists/triangles/scatter";
     /// View-samples: boxes of triangles.
-    VIEW_SAMPLES_CLUSTER_BOXES = "techniques/receiver_lists/cluster_boxes";
+    VIEW_SAMPLES_CLUSTER_BOXES = "techniques/receiver_lists/triangles/cluster_boxes";
     /// View-samples: boxes of boxes.
-    VIEW_SAMPLES_SUPER_BOXES = "techniques/receiver_lists/super_boxes";
+    VIEW_SAMPLES_SUPER_BOXES = "techniques/receiver_lists/triangles/super_boxes";
     /// View-samples: visibility of the listed receivers.
-    VIEW_SAMPLES_EVALUATE = "techniques/receiver_lists/evaluate";
+    VIEW_SAMPLES_EVALUATE = "techniques/receiver_lists/evaluation/evaluate";
     /// View-samples: how much is drawn.
-    VIEW_SAMPLES_RASTER_ARGUMENTS = "techniques/receiver_lists/raster_arguments";
+    VIEW_SAMPLES_RASTER_ARGUMENTS = "techniques/receiver_lists/raster/arguments";
     /// View-samples: bits before triangles are drawn.
-    VIEW_SAMPLES_RASTER_BEFORE = "techniques/receiver_lists/raster_before";
+    VIEW_SAMPLES_RASTER_BEFORE = "techniques/receiver_lists/raster/before";
     /// View-samples: what bits weigh after that.
-    VIEW_SAMPLES_RASTER_AFTER = "techniques/receiver_lists/raster_after";
+    VIEW_SAMPLES_RASTER_AFTER = "techniques/receiver_lists/raster/after";
     /// View-samples: triangles over the receivers that they may shade.
-    VIEW_SAMPLES_RASTER = "techniques/receiver_lists/raster";
+    VIEW_SAMPLES_RASTER = "techniques/receiver_lists/raster/draw";
     /// View-samples: the same for a light of one point, by planes of each triangle.
-    VIEW_SAMPLES_RASTER_LIGHT_PLANES = "techniques/receiver_lists/raster_light_planes";
+    VIEW_SAMPLES_RASTER_LIGHT_PLANES = "techniques/receiver_lists/raster/draw_by_light_planes";
     /// View-samples: hulls of hexagons about the light's shadows.
-    VIEW_SAMPLES_REGION_HULLS = "techniques/receiver_lists/region_hulls";
+    VIEW_SAMPLES_REGION_HULLS = "techniques/receiver_lists/raster/hulls";
     /// View-samples: texels that penumbrae can fall in.
-    VIEW_SAMPLES_RASTER_SILHOUETTES = "techniques/receiver_lists/raster_silhouettes";
+    VIEW_SAMPLES_RASTER_SILHOUETTES = "techniques/receiver_lists/raster/silhouettes";
     /// View-samples: texels that hold receivers.
-    VIEW_SAMPLES_RASTER_STENCIL = "techniques/receiver_lists/raster_stencil";
+    VIEW_SAMPLES_RASTER_STENCIL = "techniques/receiver_lists/raster/stencil";
     /// View-samples: table of planes.
-    VIEW_SAMPLES_MAKE_LOOKUP = "techniques/receiver_lists/make_lookup";
+    VIEW_SAMPLES_MAKE_LOOKUP = "techniques/receiver_lists/light_bits/make_lookup";
     /// View-samples: triangles against boxes of light points.
     #[cfg(test)]
-    VIEW_SAMPLES_TRIANGLE_PROBE = "techniques/receiver_lists/triangle_probe";
+    VIEW_SAMPLES_TRIANGLE_PROBE = "techniques/receiver_lists/light_bits/triangle_probe";
     /// What regions of influence are made of.
     #[cfg(test)]
-    VIEW_SAMPLES_REGION_PROBE = "techniques/receiver_lists/region_probe";
+    VIEW_SAMPLES_REGION_PROBE = "techniques/receiver_lists/raster/probe";
     /// `ray_traced`: triangles' boxes.
     RAY_GATHER = "techniques/ray_traced/mesh/gather";
     /// Triangles kept in their tree's order.

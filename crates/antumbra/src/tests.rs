@@ -240,7 +240,7 @@ fn parameters_say_what_they_take() {
 /// How many runs of casters a dispatch takes is said in shaders and in Rust.
 #[test]
 fn tables_of_runs_are_as_long_as_the_shaders_say() {
-    for name in ["light_map/caster_triangles/gather", "techniques/receiver_lists/triangle_count"] {
+    for name in ["light_map/caster_triangles/gather", "techniques/receiver_lists/triangles/count"] {
         let (_, wgsl) = crate::shaders::ALL.iter().find(|(path, _)| *path == name).expect("a listed shader");
         let module = naga::front::wgsl::parse_str(&shaders::text_of(wgsl)).expect("valid");
         let runs = module.global_variables.iter().find(|(_, variable)| {

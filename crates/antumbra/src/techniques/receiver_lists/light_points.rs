@@ -95,7 +95,7 @@ pub(crate) fn most_cells(points: &[LocalPoint]) -> u32 {
     MOST_SINGLED_OUT / fullest
 }
 
-/// Cells for a metre along each side; as `evaluate.wesl` has it.
+/// Cells for a metre along each side; as `evaluation/` has it.
 fn cells_per_m(points: &[LocalPoint]) -> Vec2 {
     let half = box_of(points).1.truncate();
     cells_across(points) as f32 / (2.0 * half).max(Vec2::splat(1e-20))
@@ -129,7 +129,7 @@ pub(crate) fn packed_box(points: &[LocalPoint]) -> [Vec4; 2] {
     [middle.extend(scale.x), half.extend(scale.y)]
 }
 
-/// As `evaluate.wesl` reads them: middle and half of the box of all, with the cells for a metre, then of each word's, then
+/// As `evaluation/` reads them: middle and half of the box of all, with the cells for a metre, then of each word's, then
 /// the points, four at a time: x, y, z, weights.
 pub(crate) fn packed_words(points: &[LocalPoint]) -> Vec<Vec4> {
     let entry = |(middle, half): (Vec3, Vec3)| [middle.extend(0.0), half.extend(0.0)];
@@ -149,7 +149,7 @@ pub(crate) fn packed_words(points: &[LocalPoint]) -> Vec<Vec4> {
     packed
 }
 
-/// As `evaluate.wesl` reads them: the points in the order of cells, each with its bit's number, then the first of each cell,
+/// As `evaluation/` reads them: the points in the order of cells, each with its bit's number, then the first of each cell,
 /// four at a time.
 pub(crate) fn packed_cells(points: &[LocalPoint]) -> Vec<Vec4> {
     let (starts, order) = by_cells(points);

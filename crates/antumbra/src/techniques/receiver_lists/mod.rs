@@ -1,67 +1,65 @@
-//! Shared passes of `alias_free` and `sample_based`: view-samples in lists by where they lie as seen from the light, triangles
-//! sorted by place, and one bit for each view-sample and light point.
+//! View-samples in lists by where they lie as seen from the light, triangles sorted by place, and one bit for each view-sample and
+//! light point: the passes of `alias_free` and `sample_based`.
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
-//! EGSR 2008. The paper rasterises each triangle's region of influence and lets its fragments walk the lists: that is
-//! `traversal=raster`. Its time has no bound that follows from a scene's size: in a street under a sun, where the receivers
-//! of the first metres share a few texels of a map of two kilometres, each triangle over these walks them all (at 480 × 270
-//! 73 s, where the groups take 9), and of the six windows of a cube every triangle that crosses a window's light plane is
-//! drawn over all of it. `traversal=groups` exchanges the loops: sixty-four view-samples that lie together in
-//! the lists take a workgroup, whose *shaft* (the hull of their box and the light's) takes the part of the regions of
-//! influence. Triangles are sorted into a grid by a count, a scan and a scatter, in clusters of 64 and clusters of clusters, with boxes that the shaft culls. So lists may be of any length, triangles
-//! may be as many as there are, nothing is stored per pair of the two, and a bit never leaves its thread.
-//!
-//! For one light point drawing is the faster way where lists are short, three times on foliage: `alias_free` lets the device
-//! choose once the window's lists are counted (`choose.wesl`), and makes them anew by cells of space where many receivers share
-//! a texel. For hundreds of light points groups are faster everywhere that was measured, and the default of `sample_based`.
-//!
-//! Three things keep the tests few. The lists take direction *and distance* from the light, so that a group holds neighbours
-//! in space: with the paper's texels a group on `knot` holds the lit tube and the floor in its shadow, and meets five times
-//! as many triangles. Of the triangles that wait for a group most lie between none of its view-samples and the light: each thread
-//! asks the shafts of eight blocks of eight view-samples about its own (`block_shafts.wesl`). And each
-//! view-sample first carries a triangle's corners on to the light (`shadow_window.wesl`): where
-//! that box touches few cells of a grid over the light points, only the points in these are tested. On `knot` with 100 000
-//! triangles and 256 light points at 320 × 180, view-samples held against triangles fell from 250 to 13 million (53 before blocks had shafts)
-//! and light points from 751 to 42 million. Before that, planes tell whether the triangle lies beside the cone from the view-sample
-//! to the light, which holds for corners behind it too: among the carvings of Sponza, at 160 × 90, that leaves 0.02 of 25
-//! million pairs, where the box alone left 21.
-//!
-//! # The paper's way
-//! Every triangle is drawn over the texels whose receivers it can shade (sections 3.2 and 4.1, `region.wesl`): the convex
-//! hull of three boxes, each of a corner and of its shadows from the whole light on the farthest receivers, half a texel
-//! wider, so that plain rasterisation is conservative; or the paper's own: of a light of one point six vertices
-//! (`six_vertices.wesl`), of others the hull of hexagons about an ellipsoid's shadows (`region_hulls.wesl`). Neither misses a
-//! bit. The map is one window towards the receivers, fitted to them, or the
-//! six of a cube where they lie around the light; what comes beside the light is drawn over the whole window. WebGPU's
-//! fragments have no bitwise blending, so bits are cleared by atomics. Long lists are walked in parts, an instance each.
-//! Tinted casters, whose transmittances no atomics multiply, are left to the groups. Silhouettes' regions are drawn first, into a
-//! word for each texel (`raster_silhouettes.wesl`): in the others one light point stands for all. A triangle's plane cuts
-//! its region off where fragments begin (`supporting_plane.wesl`). Lists may have the receivers' positions, and a depth test
-//! in place of the paper's stencil may drop fragments over empty lists (`raster_stencil.wesl`). The bits are those of the
-//! groups, tested for every shape of light; all but those of planes that are made once a triangle (`light_planes.wesl`), which
-//! round otherwise. Before the first batch a pass opens the light points in front of each receiver's own surface, and after the
-//! last one weighs what is left (`raster_before.wesl`, `raster_after.wesl`). On llvmpipe at 320 × 180 it takes
-//! .8 to .24 of the groups' time for one light point and 1.8 to 10 times theirs for 256 (`columns`, `hairball`, `knot` with
-//! 100 000 triangles, Sponza).
-//!
-//! # Where this departs from the paper
-//! *Section 4.3.* Empty lists cost nothing here: groups are made of listed view-samples alone. The other four are switches,
-//! and change no bit. Measured by tests at 64 × 36 with 256 light points on `columns` and `knot` with 20 000 triangles, in
-//! multiplications: without `cull_facing` there are 10 % and 12 % more; without `cut_by_plane` and `stop_when_occluded`, up to 1 %;
-//! without `penumbra_only` 6 % and 1 % *fewer*, since no group there is far from every silhouette. On llvmpipe no built-in scene
-//! that was tried is faster with it (`bench-under-tree` takes 1.5 times as long), so it is off but in `sample_based:paper`. Of drawn triangles, without
-//! `cull_facing` 2.2 and 1.8 times as many are held against receivers; without `cut_by_plane`, 2 % and 3 % more; without
-//! `stop_when_occluded` 13 % and 12 % more come near receivers; without `penumbra_only` no more words of light points are
-//! tested there, and 29 % and 12 % more under a disk of 2 cm on `overlap` and `columns`. The `stencil` drops 99 of 100
-//! fragments on `columns`. Hexagons hold 1.18 times the receivers that boxes do under the rectangle of `columns`, .71 times
-//! under a sphere of 30 cm, .98 times under a sun of .1 rad.
+//! EGSR 2008.
 //!
 //! ```text
 //! depth ──► bounds ──► count ──► scan ──► scatter ──► lists ─────┐
-//!              └► hull of all that is asked ─┐                   ▼
+//!              └► hull of receivers and light ─┐                 ▼
 //! meshes ──► cull ──► count ──► scan ──► scatter ──► boxes ──► evaluate ──► mask
 //!                                           └─► or drawn over the windows ──┘
 //! ```
+//!
+//! | folder | contents | section |
+//! |---|---|---|
+//! | `lists` | receivers sorted into lists; the windows of the light's map | 3.1 |
+//! | `triangles` | triangles that can matter, sorted into a grid, in clusters of 64 and clusters of clusters | |
+//! | `light_bits` | the light's points, and which of them a triangle hides from a receiver | 3.3, 4.2 |
+//! | `evaluation` | groups of 64 receivers that walk the triangles: `traversal=groups` | |
+//! | `raster` | regions of influence, drawn over the windows: `traversal=raster`, as published | 3.2, 4.1 |
+//!
+//! # Groups of receivers
+//! The paper rasterises each triangle's region of influence, and its fragments walk the lists. The time of that has no bound that follows
+//! from a scene's size: in a street under a sun the receivers of the first metres share a few texels of a map of two kilometres, and each
+//! triangle over these texels walks them all. `traversal=groups` exchanges the loops. Sixty-four receivers that are neighbours in the lists
+//! share a workgroup, and its *shaft*, the hull of their box and the light's, takes the part of the regions of influence. Lists may be
+//! of any length, triangles may be any number, nothing is stored per pair of the two, and a bit never leaves its thread.
+//!
+//! Three things keep the tests few:
+//! 1. Lists are sorted by direction *and distance* from the light, so that a group holds neighbours in space.
+//! 2. Of the triangles that the group's shaft meets, each thread asks which matter to eight blocks of eight receivers
+//!    (`evaluation/block_shafts.wesl`).
+//! 3. Each receiver projects a triangle onto the light first (`light_bits/shadow_window.wesl`), and tests the light points only in the cells
+//!    of a grid that the projection touches.
+//!
+//! For a single light point drawing is faster where lists are short. `alias_free` lets the device choose once the lists are counted
+//! (`lists/choose.wesl`), and sorts them anew by cells of space where many receivers share a texel. For hundreds of light points groups are
+//! faster on every scene that was measured, and the default of `sample_based`. `bench/measurements.md` has the figures.
+//!
+//! # Drawn regions
+//! Every triangle is drawn over the texels whose receivers it can shade (`raster/region.wesl`): the convex hull of three boxes,
+//! each of a corner and of its shadows from the whole light on the farthest receivers, half a texel wider, so that plain rasterisation is
+//! conservative. The paper's own regions are options: six vertices for a single light point (`raster/six_vertices.wesl`), else
+//! the hull of hexagons about an ellipsoid's shadows (`raster/hulls.wesl`). Neither misses a bit.
+//!
+//! - The map is one window fitted to the receivers, or the six of a cube where receivers are all around the light. What comes
+//!   beside the light is drawn over the whole window.
+//! - WebGPU's fragments have no bitwise blending, so atomics clear bits. Long lists are walked in parts, an instance each.
+//! - Tinted casters go to the groups: no atomic multiplies their transmittances.
+//! - The regions of silhouettes are drawn first, into a word for each texel (`raster/silhouettes.wesl`): elsewhere one light point
+//!   stands for all. A triangle's plane cuts its region off where fragments begin (`raster/supporting_plane.wesl`).
+//! - Lists may hold positions, and a depth test in place of the paper's stencil may drop fragments over empty lists
+//!   (`raster/stencil.wesl`).
+//! - A pass before the first batch opens the light points in front of each receiver's own surface, and one after the last weighs
+//!   those that are still open (`raster/before.wesl`, `raster/after.wesl`).
+//!
+//! The bits are those of the groups, except where planes are made once a triangle (`light_bits/planes.wesl`), which round otherwise.
+//!
+//! # Departures from the paper
+//! *Section 4.3.* Groups are made of listed receivers alone, so empty lists cost nothing. Its other four savings are switches, and
+//! change no bit: `cull_facing`, `cut_by_plane`, `stop_when_occluded`, `penumbra_only`. The last is on in `sample_based:paper` alone: no
+//! built-in scene that was tried is faster with it.
 
 use std::collections::HashMap;
 

@@ -24,13 +24,13 @@ shared_constants! {
     pub(crate) const DRAWN: u32 = 1, as in VIEW_SAMPLES_BEGIN;
     pub(crate) const WALKED: u32 = 2, as in VIEW_SAMPLES_BEGIN;
 
-    /// Entries of the state that `bounds.wesl` gathers.
+    /// Entries of the state that `lists/bounds.wesl` gathers.
     pub(crate) const STATE_LENGTH: u64 = 51, as in VIEW_SAMPLES_BOUNDS;
     /// Words of the work buffer before the groups'.
     pub(crate) const FIRST_GROUP: u32 = 8, as in VIEW_SAMPLES_EVALUATE;
 }
 
-/// Planes and boxes that `count.wesl` leaves.
+/// Planes and boxes that `lists/count.wesl` leaves.
 pub(crate) const SHAFT_LENGTH: u64 = 22;
 /// Cells of the sort of triangles: 64³.
 pub(crate) const CELL_COUNT: u32 = 1 << 18;
