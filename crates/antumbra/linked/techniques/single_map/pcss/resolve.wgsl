@@ -1,319 +1,13 @@
 // Linked from src/techniques/single_map/pcss/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
-struct PcssUniform {
-    search_count: u32,
-    filter_count: u32,
-    rotate: u32,
-    bias_scale: f32,
-    light_extent: vec2f,
-    light_extent_axis: f32,
-    is_ellipse: u32,
-    light_covariance: vec3f,
-    is_flat: u32,
-    light_mean: vec2f,
-    attach_contacts: u32,
-    search_enough: u32
-}
-
-@group(2) @binding(0)
-var<uniform> pcss: PcssUniform;
-
-override MEANS_OF_RANGES: bool = false;
-
-const NEAR_SHARE = 0.7;
-
-const CONTACT_TEXELS = 1.5;
-
-const ENOUGH_BLOCKERS = 4u;
-
-const LEAST_TAPS = 8u;
-
 const PROBES = 40u;
-
-const BEHIND_TAPS = 8u;
 
 const CONTACT_TAPS = 16u;
 
 const LAYER_TAPS = 48u;
 
-const NARROW_TAPS = 12u;
-
-fn part_of(count: u32, part: u32) -> u32 {
-    return select(count, min(count, max(part, part * count / 64u)), light_taps_IS_PROGRESSIVE);
-}
-
-fn comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
-    var plane = receiver_light_biased_plane(receiver, pcss.bias_scale);
-    plane.farthest_depth = plane.depth;
-    if pcss.is_flat == 1u {
-        plane.depth_per_uv = vec2f(0.0);
-    }
-    return plane;
-}
-
-struct Window {
-    at: map_receiver_MapReceiver,
-    surface_step: f32,
-    most_g: f32,
-    scale_shift: f32,
-    search_count: u32
-}
-
-fn search_count(reach: vec2f) -> u32 {
-    let sides = 2.0 * reach + 2.0;
-    return part_of(pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), NARROW_TAPS));
-}
-
-fn window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> Window {
-    let most_g = blocker_range_largest_g(plane, extent);
-    let texels = light_taps_texels_per_offset();
-    return Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
-}
-
-fn blocking_g(window: Window, texel: vec2f, stored: f32) -> f32 {
-    let depth = map_light_view.depth_sign * stored;
-    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
-    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
-}
-
-struct Blockers {
-    g: vec4f,
-    groups: u32,
-    least_g: f32,
-    most_g: f32
-}
-
-struct Sums {
-    g: vec4f,
-    count: vec4f,
-    least_g: f32
-}
-
-const GROUPS = 4.0;
-
-const OVERLAP = 1.25;
-
-fn group_of(g: f32, most_g: f32, layer: u32) -> u32 {
-    if !MEANS_OF_RANGES {
-        return layer;
-    }
-    return u32(clamp(floor(GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, GROUPS - 1.0));
-}
-
-fn range_of_group(group: u32, most_g: f32) -> vec2f {
-    let ends = vec2f(f32(group), f32(group + 1u)) / GROUPS;
-    return ends * ends * vec2f(1.0 / OVERLAP, OVERLAP) * most_g;
-}
-
-fn add(sums: Sums, window: Window, look: map_receiver_Look, stored: f32, layer: u32) -> Sums {
-    let g = blocking_g(window, look.texel, stored);
-    let counts = g > 0.0 && g >= look.hiding_g;
-    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
-    if !MEANS_OF_RANGES && layer == 0u {
-        return Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
-    }
-    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(group_of(g, window.most_g, layer));
-    return Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
-}
-
-fn search(window: Window, light: light_taps_LightPlane) -> Sums {
-    let own = floor(window.at.center);
-    let own_g = blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
-    var sums = Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
-    let least = part_of(pcss.search_count, LEAST_TAPS);
-    let enough = f32(part_of(pcss.search_count, ENOUGH_BLOCKERS));
-    for (var i = 0u; i < min(window.search_count, pcss.search_count); i++) {
-        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
-        sums = add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
-        let found = sum_of(sums.count);
-        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= pcss.search_enough && found > 0.0) {
-            break;
-        }
-    }
-    return sums;
-}
-
-fn search_behind(window: Window, light: light_taps_LightPlane, first: Sums) -> Sums {
-    let own = floor(window.at.center);
-    var sums = first;
-    var found = sum_of(first.count);
-    let count = min(min(window.search_count, part_of(pcss.search_count, BEHIND_TAPS)), pcss.search_count);
-    for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0.0; layer++) {
-        let before = sum_of(sums.count);
-        let own_g = blocking_g(window, own, textureLoad(behind_further_layers, vec2i(own), layer - 1u, 0));
-        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
-        for (var i = 0u; i < count; i++) {
-            let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
-            sums = add(sums, window, look, textureLoad(behind_further_layers, vec2i(look.texel), layer - 1u, 0), layer);
-        }
-        found = sum_of(sums.count) - before;
-    }
-    return sums;
-}
-
-fn sum_of(v: vec4f) -> f32 {
-    return dot(v, vec4f(1.0));
-}
-
-fn blockers_of(sums: Sums, window: Window) -> Blockers {
-    let some = sums.count > vec4f();
-    let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
-}
-
-const ANY_G = vec2f(-map_receiver_NO_G, map_receiver_NO_G);
-
-struct Scale {
-    g: f32,
-    g_range: vec2f,
-    layers: vec2u
-}
-
-const NEAREST = 4u;
-
-struct Scales {
-    blockers: Blockers,
-    near: Scale,
-    some: u32
-}
-
-fn scales_of(blockers: Blockers, extent: vec2f) -> Scales {
-    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
-    let is_contact = max(near_extent.x, near_extent.y) < CONTACT_TEXELS;
-    let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
-    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
-    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < NEAR_SHARE * least_mean;
-    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
-    let near = Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
-    return Scales(blockers, near, blockers.groups | select(0u, 1u << NEAREST, is_near && pcss.attach_contacts == 1u));
-}
-
-fn scale_of(scales: Scales, index: u32) -> Scale {
-    if index == NEAREST {
-        return scales.near;
-    }
-    let g = scales.blockers.g[index];
-    if MEANS_OF_RANGES {
-        return Scale(g, range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
-    }
-    return Scale(g, ANY_G, vec2u(index, index + 1u));
-}
-
-const WIDEST_TANGENT = 0.05;
-
-fn edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
-    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), WIDEST_TANGENT);
-    return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), pcss.attach_contacts == 1u);
-}
-
-struct Quad {
-    corner_uv: vec2f,
-    t: vec2f,
-    at_centers: vec4f,
-    here: f32,
-    is_in_map: bool
-}
-
-fn quad_about(receiver: map_receiver_MapReceiver, offset: vec2f, g: f32) -> Quad {
-    let place = map_receiver_place_in_map(receiver, receiver.center + offset * g, g);
-    let corner = floor(place - 0.5);
-    let t = place - 0.5 - corner;
-    let low = receiver.depth_at_origin + dot(receiver.slope, corner);
-    let lows = vec2f(low, low + receiver.slope.x);
-    let centers = vec4f(lows + receiver.slope.y, lows.yx);
-    let here = low + dot(receiver.slope, t);
-    return Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(receiver.depth)), vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), map_receiver_held(receiver, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
-}
-
-fn occluding(window: Window, quad: Quad, depths: vec4f) -> vec4<bool> {
-    let across = depths.yxwz - depths;
-    let along = depths.wzyx - depths;
-    let from_here = abs(vec4f(quad.t, 1.0 - quad.t));
-    let step = vec4f(window.surface_step);
-    let carried = depths + from_here.xzzx * select(vec4f(), across, abs(across) < step) + from_here.wwyy * select(vec4f(), along, abs(along) < step);
-    return (depths > quad.at_centers) & (carried > vec4f(quad.here));
-}
-
-fn lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
-    return space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
-}
-
-fn lit_at_scale(plane: space_ReceiverPlane, window: Window, texels: vec2f, scale: Scale) -> f32 {
-    let quad = quad_about(window.at, texels, scale.g);
-    let sharpness = edge_sharpness(plane, scale.g);
-    let depths = window.at.depth + scale.g_range / window.at.g_per_depth;
-    var lit = 1.0;
-    var goes_on = quad.is_in_map;
-    for (var layer = scale.layers.x; layer < min(scale.layers.y, behind_LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
-        let stored = map_light_view.depth_sign * gathered(quad, layer);
-        let occluding = occluding(window, quad, stored);
-        let counts = (stored >= vec4f(depths.x)) & (stored <= vec4f(depths.y));
-        lit = min(lit, lit_of(occluding & counts, quad.t, sharpness));
-        goes_on = any(occluding);
-    }
-    return lit;
-}
-
-fn gathered(quad: Quad, layer: u32) -> vec4f {
-    if layer == 0u {
-        return textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
-    }
-    return textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
-}
-
-fn lit_once(window: Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
-    let quad = quad_about(window.at, texels, g);
-    let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
-    return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
-}
-
-fn lit_behind(window: Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
-    let quad = quad_about(window.at, texels, g);
-    let stored = map_light_view.depth_sign * textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
-    return select(1.0, lit_of(occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
-}
-
-fn filter_once(window: Window, light: light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
-    var sums = vec2f();
-    for (var i = begin; i < end; i++) {
-        let place = light_taps_place_of(light, light_taps_taps[pcss.search_count + i].xyz);
-        let lit = select(1.0, lit_once(window, light_taps_texels_of(light, place), g, sharpness), g > 0.0);
-        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
-    }
-    return sums;
-}
-
-fn filter_layers(plane: space_ReceiverPlane, window: Window, light: light_taps_LightPlane, blockers: Blockers, count: u32) -> vec2f {
-    var sums = vec2f();
-    var sharpness = vec4f(edge_sharpness(plane, blockers.g.x), 0.0, 0.0, 0.0);
-    for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
-        sharpness[layer] = edge_sharpness(plane, blockers.g[layer]);
-    }
-    for (var i = 0u; i < min(count, pcss.filter_count); i++) {
-        let place = light_taps_place_of(light, light_taps_taps[pcss.search_count + i].xyz);
-        let texels = light_taps_texels_of(light, place);
-        var lit = lit_once(window, texels, blockers.g.x, sharpness.x);
-        for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
-            let behind = lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
-            lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
-        }
-        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
-    }
-    return sums;
-}
-
-fn filter_scales(plane: space_ReceiverPlane, window: Window, light: light_taps_LightPlane, scales: Scales, count: u32) -> vec2f {
-    var sums = vec2f();
-    for (var i = 0u; i < min(count, pcss.filter_count); i++) {
-        let place = light_taps_place_of(light, light_taps_taps[pcss.search_count + i].xyz);
-        let texels = light_taps_texels_of(light, place);
-        var lit = select(0.0, 1.0, light_taps_is_above_horizon(light, place));
-        for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
-            lit = min(lit, lit_at_scale(plane, window, texels, scale_of(scales, countTrailingZeros(rest))));
-        }
-        sums += light_taps_weight_of(place) * vec2f(1.0, lit);
-    }
-    return sums;
+fn fraction(sums: vec2f) -> f32 {
+    return sums.y / max(sums.x, 1e-20);
 }
 
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
@@ -323,41 +17,39 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached {
         return 0.0;
     }
-    let share = horizon_horizon_share(receiver);
-    if horizon_has_horizon_share() && share <= 0.0 {
+    let above_horizon = horizon_horizon_share(receiver);
+    if horizon_has_horizon_share() && above_horizon <= 0.0 {
         return 0.0;
     }
-    let plane = comparison_plane(receiver);
-    let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let shift = select(vec2f(), noise_shift_of_pixel(pixel), pcss.rotate == 1u);
-    let extent = blocker_range_seen_extent(pcss.light_extent, pcss.light_extent_axis, receiver_in_light);
-    let light = light_taps_light_plane(receiver, receiver_in_light, shift);
-    let window = window_of(plane, extent, shift, receiver_in_light.z);
-    let sums = search(window, light);
-    let nearest = blockers_of(sums, window);
+    let plane = search_comparison_plane(receiver);
+    let pos_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let extent = blocker_range_seen_extent(settings_pcss.light_extent, settings_pcss.light_extent_axis, pos_in_light);
+    let shift = select(vec2f(), noise_shift_of_pixel(pixel), settings_pcss.rotate == 1u);
+    let light = light_taps_light_plane(receiver, pos_in_light, shift);
+    let window = search_window_of(plane, extent, shift, pos_in_light.z);
+    let found = search_search(window, light);
+    let nearest = search_blockers_of(found, window);
     if nearest.groups == 0u && horizon_has_horizon_share() {
-        return share;
+        return above_horizon;
     }
-    let sharpness = edge_sharpness(plane, nearest.g.x);
-    let probes = select(0u, part_of(pcss.filter_count, PROBES), light_taps_IS_PROGRESSIVE && !MEANS_OF_RANGES);
-    let probed = filter_once(window, light, nearest.g.x, sharpness, 0u, probes);
+    let sharpness = comparison_edge_sharpness(plane, nearest.g.x);
+    let probes = select(0u, settings_part_of(settings_pcss.filter_count, PROBES), light_taps_IS_PROGRESSIVE && !settings_MEANS_OF_RANGES);
+    let probed = filter_filter_once(window, light, nearest.g.x, sharpness, 0u, probes);
     if probes > 0u && probed.y <= 0.0 {
         return 0.0;
     }
-    let blockers = blockers_of(search_behind(window, light, sums), window);
-    let scales = scales_of(blockers, extent);
-    if !MEANS_OF_RANGES && scales.some <= 1u {
+    let blockers = search_blockers_of(search_search_behind(window, light, found), window);
+    let scales = scales_scales_of(blockers, extent);
+    if !settings_MEANS_OF_RANGES && scales.some <= 1u {
         let is_lit = probes > 0u && probed.x == probed.y;
-        let rest = filter_once(window, light, nearest.g.x, sharpness, probes, select(pcss.filter_count, 0u, is_lit));
-        return (probed.y + rest.y) / max(probed.x + rest.x, 1e-20);
+        let count = select(settings_pcss.filter_count, 0u, is_lit);
+        return fraction(probed + filter_filter_once(window, light, nearest.g.x, sharpness, probes, count));
     }
-    if !MEANS_OF_RANGES && scales.some < (1u << NEAREST) {
-        let sums = filter_layers(plane, window, light, blockers, part_of(pcss.filter_count, LAYER_TAPS));
-        return sums.y / max(sums.x, 1e-20);
+    if !settings_MEANS_OF_RANGES && scales.some < (1u << scales_NEAREST) {
+        return fraction(filter_filter_layers(plane, window, light, blockers, settings_part_of(settings_pcss.filter_count, LAYER_TAPS)));
     }
-    let count = select(part_of(pcss.filter_count, CONTACT_TAPS), pcss.filter_count, MEANS_OF_RANGES);
-    let all = filter_scales(plane, window, light, scales, count);
-    return all.y / max(all.x, 1e-20);
+    let count = select(settings_part_of(settings_pcss.filter_count, CONTACT_TAPS), settings_pcss.filter_count, settings_MEANS_OF_RANGES);
+    return fraction(filter_filter_scales(plane, window, light, scales, count));
 }
 
 @compute @workgroup_size(8, 8)
@@ -1100,4 +792,314 @@ fn map_receiver_scale_share(index: u32, scale_shift: f32) -> f32 {
 fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
     let scale = map_receiver_scale_share(index, scale_shift);
     return map_receiver_look_at_scale(receiver, light, most_g * (scale * scale), index);
+}
+
+const comparison_WIDEST_TANGENT = 0.05;
+
+fn comparison_edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
+    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), comparison_WIDEST_TANGENT);
+    return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), settings_pcss.attach_contacts == 1u);
+}
+
+struct comparison_Quad {
+    corner_uv: vec2f,
+    t: vec2f,
+    at_centers: vec4f,
+    here: f32,
+    is_in_map: bool
+}
+
+fn comparison_quad_about(receiver: map_receiver_MapReceiver, offset: vec2f, g: f32) -> comparison_Quad {
+    let place = map_receiver_place_in_map(receiver, receiver.center + offset * g, g);
+    let corner = floor(place - 0.5);
+    let t = place - 0.5 - corner;
+    let low = receiver.depth_at_origin + dot(receiver.slope, corner);
+    let lows = vec2f(low, low + receiver.slope.x);
+    let centers = vec4f(lows + receiver.slope.y, lows.yx);
+    let here = low + dot(receiver.slope, t);
+    return comparison_Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(receiver.depth)), vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), map_receiver_held(receiver, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
+}
+
+fn comparison_occluding(window: search_Window, quad: comparison_Quad, depths: vec4f) -> vec4<bool> {
+    let across = depths.yxwz - depths;
+    let along = depths.wzyx - depths;
+    let from_here = abs(vec4f(quad.t, 1.0 - quad.t));
+    let step = vec4f(window.surface_step);
+    let carried = depths + from_here.xzzx * select(vec4f(), across, abs(across) < step) + from_here.wwyy * select(vec4f(), along, abs(along) < step);
+    return (depths > quad.at_centers) & (carried > vec4f(quad.here));
+}
+
+fn comparison_lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
+    return space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
+}
+
+fn comparison_lit_at_scale(plane: space_ReceiverPlane, window: search_Window, texels: vec2f, scale: scales_Scale) -> f32 {
+    let quad = comparison_quad_about(window.at, texels, scale.g);
+    let sharpness = comparison_edge_sharpness(plane, scale.g);
+    let depths = window.at.depth + scale.g_range / window.at.g_per_depth;
+    var lit = 1.0;
+    var goes_on = quad.is_in_map;
+    for (var layer = scale.layers.x; layer < min(scale.layers.y, behind_LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
+        let stored = map_light_view.depth_sign * comparison_gathered(quad, layer);
+        let occluding = comparison_occluding(window, quad, stored);
+        let counts = (stored >= vec4f(depths.x)) & (stored <= vec4f(depths.y));
+        lit = min(lit, comparison_lit_of(occluding & counts, quad.t, sharpness));
+        goes_on = any(occluding);
+    }
+    return lit;
+}
+
+fn comparison_gathered(quad: comparison_Quad, layer: u32) -> vec4f {
+    if layer == 0u {
+        return textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
+    }
+    return textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
+}
+
+fn comparison_lit_once(window: search_Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
+    let quad = comparison_quad_about(window.at, texels, g);
+    let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
+    return select(1.0, comparison_lit_of(comparison_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+}
+
+fn comparison_lit_behind(window: search_Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
+    let quad = comparison_quad_about(window.at, texels, g);
+    let stored = map_light_view.depth_sign * textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
+    return select(1.0, comparison_lit_of(comparison_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+}
+
+fn filter_filter_once(window: search_Window, light: light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
+    var sums = vec2f();
+    for (var i = begin; i < end; i++) {
+        let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
+        let lit = select(1.0, comparison_lit_once(window, light_taps_texels_of(light, place), g, sharpness), g > 0.0);
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
+    }
+    return sums;
+}
+
+fn filter_filter_layers(plane: space_ReceiverPlane, window: search_Window, light: light_taps_LightPlane, blockers: search_Blockers, count: u32) -> vec2f {
+    var sums = vec2f();
+    var sharpness = vec4f(comparison_edge_sharpness(plane, blockers.g.x), 0.0, 0.0, 0.0);
+    for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
+        sharpness[layer] = comparison_edge_sharpness(plane, blockers.g[layer]);
+    }
+    for (var i = 0u; i < min(count, settings_pcss.filter_count); i++) {
+        let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
+        let texels = light_taps_texels_of(light, place);
+        var lit = comparison_lit_once(window, texels, blockers.g.x, sharpness.x);
+        for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
+            let behind = comparison_lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
+            lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
+        }
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
+    }
+    return sums;
+}
+
+fn filter_filter_scales(plane: space_ReceiverPlane, window: search_Window, light: light_taps_LightPlane, scales: scales_Scales, count: u32) -> vec2f {
+    var sums = vec2f();
+    for (var i = 0u; i < min(count, settings_pcss.filter_count); i++) {
+        let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
+        let texels = light_taps_texels_of(light, place);
+        var lit = select(0.0, 1.0, light_taps_is_above_horizon(light, place));
+        for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
+            lit = min(lit, comparison_lit_at_scale(plane, window, texels, scales_scale_of(scales, countTrailingZeros(rest))));
+        }
+        sums += light_taps_weight_of(place) * vec2f(1.0, lit);
+    }
+    return sums;
+}
+
+const scales_NEAR_SHARE = 0.7;
+
+const scales_CONTACT_TEXELS = 1.5;
+
+const scales_ANY_G = vec2f(-map_receiver_NO_G, map_receiver_NO_G);
+
+struct scales_Scale {
+    g: f32,
+    g_range: vec2f,
+    layers: vec2u
+}
+
+const scales_NEAREST = 4u;
+
+struct scales_Scales {
+    blockers: search_Blockers,
+    near: scales_Scale,
+    some: u32
+}
+
+fn scales_scales_of(blockers: search_Blockers, extent: vec2f) -> scales_Scales {
+    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
+    let is_contact = max(near_extent.x, near_extent.y) < scales_CONTACT_TEXELS;
+    let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
+    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
+    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < scales_NEAR_SHARE * least_mean;
+    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
+    let near = scales_Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
+    return scales_Scales(blockers, near, blockers.groups | select(0u, 1u << scales_NEAREST, is_near && settings_pcss.attach_contacts == 1u));
+}
+
+fn scales_scale_of(scales: scales_Scales, index: u32) -> scales_Scale {
+    if index == scales_NEAREST {
+        return scales.near;
+    }
+    let g = scales.blockers.g[index];
+    if settings_MEANS_OF_RANGES {
+        return scales_Scale(g, search_range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
+    }
+    return scales_Scale(g, scales_ANY_G, vec2u(index, index + 1u));
+}
+
+const search_ENOUGH_BLOCKERS = 4u;
+
+const search_LEAST_TAPS = 8u;
+
+const search_BEHIND_TAPS = 8u;
+
+const search_NARROW_TAPS = 12u;
+
+fn search_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
+    var plane = receiver_light_biased_plane(receiver, settings_pcss.bias_scale);
+    plane.farthest_depth = plane.depth;
+    if settings_pcss.is_flat == 1u {
+        plane.depth_per_uv = vec2f(0.0);
+    }
+    return plane;
+}
+
+struct search_Window {
+    at: map_receiver_MapReceiver,
+    surface_step: f32,
+    most_g: f32,
+    scale_shift: f32,
+    search_count: u32
+}
+
+fn search_search_count(reach: vec2f) -> u32 {
+    let sides = 2.0 * reach + 2.0;
+    return settings_part_of(settings_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), search_NARROW_TAPS));
+}
+
+fn search_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> search_Window {
+    let most_g = blocker_range_largest_g(plane, extent);
+    let texels = light_taps_texels_per_offset();
+    return search_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, search_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+}
+
+fn search_blocking_g(window: search_Window, texel: vec2f, stored: f32) -> f32 {
+    let depth = map_light_view.depth_sign * stored;
+    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
+    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
+}
+
+struct search_Blockers {
+    g: vec4f,
+    groups: u32,
+    least_g: f32,
+    most_g: f32
+}
+
+struct search_Sums {
+    g: vec4f,
+    count: vec4f,
+    least_g: f32
+}
+
+const search_GROUPS = 4.0;
+
+const search_OVERLAP = 1.25;
+
+fn search_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
+    if !settings_MEANS_OF_RANGES {
+        return layer;
+    }
+    return u32(clamp(floor(search_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, search_GROUPS - 1.0));
+}
+
+fn search_range_of_group(group: u32, most_g: f32) -> vec2f {
+    let ends = vec2f(f32(group), f32(group + 1u)) / search_GROUPS;
+    return ends * ends * vec2f(1.0 / search_OVERLAP, search_OVERLAP) * most_g;
+}
+
+fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, stored: f32, layer: u32) -> search_Sums {
+    let g = search_blocking_g(window, look.texel, stored);
+    let counts = g > 0.0 && g >= look.hiding_g;
+    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    if !settings_MEANS_OF_RANGES && layer == 0u {
+        return search_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+    }
+    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(search_group_of(g, window.most_g, layer));
+    return search_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+}
+
+fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
+    let own = floor(window.at.center);
+    let own_g = search_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
+    var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
+    let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
+    let enough = f32(settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS));
+    for (var i = 0u; i < min(window.search_count, settings_pcss.search_count); i++) {
+        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+        sums = search_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
+        let found = search_sum_of(sums.count);
+        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= settings_pcss.search_enough && found > 0.0) {
+            break;
+        }
+    }
+    return sums;
+}
+
+fn search_search_behind(window: search_Window, light: light_taps_LightPlane, first: search_Sums) -> search_Sums {
+    let own = floor(window.at.center);
+    var sums = first;
+    var found = search_sum_of(first.count);
+    let count = min(min(window.search_count, settings_part_of(settings_pcss.search_count, search_BEHIND_TAPS)), settings_pcss.search_count);
+    for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0.0; layer++) {
+        let before = search_sum_of(sums.count);
+        let own_g = search_blocking_g(window, own, textureLoad(behind_further_layers, vec2i(own), layer - 1u, 0));
+        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
+        for (var i = 0u; i < count; i++) {
+            let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+            sums = search_add(sums, window, look, textureLoad(behind_further_layers, vec2i(look.texel), layer - 1u, 0), layer);
+        }
+        found = search_sum_of(sums.count) - before;
+    }
+    return sums;
+}
+
+fn search_sum_of(v: vec4f) -> f32 {
+    return dot(v, vec4f(1.0));
+}
+
+fn search_blockers_of(sums: search_Sums, window: search_Window) -> search_Blockers {
+    let some = sums.count > vec4f();
+    let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
+    return search_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
+}
+
+struct settings_PcssUniform {
+    search_count: u32,
+    filter_count: u32,
+    rotate: u32,
+    bias_scale: f32,
+    light_extent: vec2f,
+    light_extent_axis: f32,
+    is_ellipse: u32,
+    light_covariance: vec3f,
+    is_flat: u32,
+    light_mean: vec2f,
+    attach_contacts: u32,
+    search_enough: u32
+}
+
+@group(2) @binding(0)
+var<uniform> settings_pcss: settings_PcssUniform;
+
+override settings_MEANS_OF_RANGES: bool = false;
+
+fn settings_part_of(count: u32, part: u32) -> u32 {
+    return select(count, min(count, max(part, part * count / 64u)), light_taps_IS_PROGRESSIVE);
 }

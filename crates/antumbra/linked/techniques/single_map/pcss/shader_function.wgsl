@@ -630,7 +630,345 @@ fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_Li
     return map_receiver_look_at_scale(receiver, light, most_g * (scale * scale), index);
 }
 
-struct resolve_PcssUniform {
+const comparison_WIDEST_TANGENT = 0.05;
+
+fn comparison_edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
+    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), comparison_WIDEST_TANGENT);
+    return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), settings_pcss.attach_contacts == 1u);
+}
+
+struct comparison_Quad {
+    corner_uv: vec2f,
+    t: vec2f,
+    at_centers: vec4f,
+    here: f32,
+    is_in_map: bool
+}
+
+fn comparison_quad_about(receiver: map_receiver_MapReceiver, offset: vec2f, g: f32) -> comparison_Quad {
+    let place = map_receiver_place_in_map(receiver, receiver.center + offset * g, g);
+    let corner = floor(place - 0.5);
+    let t = place - 0.5 - corner;
+    let low = receiver.depth_at_origin + dot(receiver.slope, corner);
+    let lows = vec2f(low, low + receiver.slope.x);
+    let centers = vec4f(lows + receiver.slope.y, lows.yx);
+    let here = low + dot(receiver.slope, t);
+    return comparison_Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(receiver.depth)), vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), map_receiver_held(receiver, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
+}
+
+fn comparison_occluding(window: search_Window, quad: comparison_Quad, depths: vec4f) -> vec4<bool> {
+    let across = depths.yxwz - depths;
+    let along = depths.wzyx - depths;
+    let from_here = abs(vec4f(quad.t, 1.0 - quad.t));
+    let step = vec4f(window.surface_step);
+    let carried = depths + from_here.xzzx * select(vec4f(), across, abs(across) < step) + from_here.wwyy * select(vec4f(), along, abs(along) < step);
+    return (depths > quad.at_centers) & (carried > vec4f(quad.here));
+}
+
+fn comparison_lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
+    return space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
+}
+
+fn comparison_lit_at_scale(plane: space_ReceiverPlane, window: search_Window, texels: vec2f, scale: scales_Scale) -> f32 {
+    let quad = comparison_quad_about(window.at, texels, scale.g);
+    let sharpness = comparison_edge_sharpness(plane, scale.g);
+    let depths = window.at.depth + scale.g_range / window.at.g_per_depth;
+    var lit = 1.0;
+    var goes_on = quad.is_in_map;
+    for (var layer = scale.layers.x; layer < min(scale.layers.y, behind_LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
+        let stored = map_light_view.depth_sign * comparison_gathered(quad, layer);
+        let occluding = comparison_occluding(window, quad, stored);
+        let counts = (stored >= vec4f(depths.x)) & (stored <= vec4f(depths.y));
+        lit = min(lit, comparison_lit_of(occluding & counts, quad.t, sharpness));
+        goes_on = any(occluding);
+    }
+    return lit;
+}
+
+fn comparison_gathered(quad: comparison_Quad, layer: u32) -> vec4f {
+    if layer == 0u {
+        return textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
+    }
+    return textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
+}
+
+fn comparison_lit_once(window: search_Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
+    let quad = comparison_quad_about(window.at, texels, g);
+    let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
+    return select(1.0, comparison_lit_of(comparison_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+}
+
+fn comparison_lit_behind(window: search_Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
+    let quad = comparison_quad_about(window.at, texels, g);
+    let stored = map_light_view.depth_sign * textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
+    return select(1.0, comparison_lit_of(comparison_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+}
+
+fn filter_filter_once(window: search_Window, light: light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
+    var sums = vec2f();
+    for (var i = begin; i < end; i++) {
+        let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
+        let lit = select(1.0, comparison_lit_once(window, light_taps_texels_of(light, place), g, sharpness), g > 0.0);
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
+    }
+    return sums;
+}
+
+fn filter_filter_layers(plane: space_ReceiverPlane, window: search_Window, light: light_taps_LightPlane, blockers: search_Blockers, count: u32) -> vec2f {
+    var sums = vec2f();
+    var sharpness = vec4f(comparison_edge_sharpness(plane, blockers.g.x), 0.0, 0.0, 0.0);
+    for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
+        sharpness[layer] = comparison_edge_sharpness(plane, blockers.g[layer]);
+    }
+    for (var i = 0u; i < min(count, settings_pcss.filter_count); i++) {
+        let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
+        let texels = light_taps_texels_of(light, place);
+        var lit = comparison_lit_once(window, texels, blockers.g.x, sharpness.x);
+        for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
+            let behind = comparison_lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
+            lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
+        }
+        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
+    }
+    return sums;
+}
+
+fn filter_filter_scales(plane: space_ReceiverPlane, window: search_Window, light: light_taps_LightPlane, scales: scales_Scales, count: u32) -> vec2f {
+    var sums = vec2f();
+    for (var i = 0u; i < min(count, settings_pcss.filter_count); i++) {
+        let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
+        let texels = light_taps_texels_of(light, place);
+        var lit = select(0.0, 1.0, light_taps_is_above_horizon(light, place));
+        for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
+            lit = min(lit, comparison_lit_at_scale(plane, window, texels, scales_scale_of(scales, countTrailingZeros(rest))));
+        }
+        sums += light_taps_weight_of(place) * vec2f(1.0, lit);
+    }
+    return sums;
+}
+
+const resolve_PROBES = 40u;
+
+const resolve_CONTACT_TAPS = 16u;
+
+const resolve_LAYER_TAPS = 48u;
+
+fn resolve_fraction(sums: vec2f) -> f32 {
+    return sums.y / max(sums.x, 1e-20);
+}
+
+fn resolve_visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
+    if receiver.is_background {
+        return 1.0;
+    }
+    if !receiver.is_reached {
+        return 0.0;
+    }
+    let above_horizon = horizon_horizon_share(receiver);
+    if horizon_has_horizon_share() && above_horizon <= 0.0 {
+        return 0.0;
+    }
+    let plane = search_comparison_plane(receiver);
+    let pos_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
+    let extent = blocker_range_seen_extent(settings_pcss.light_extent, settings_pcss.light_extent_axis, pos_in_light);
+    let shift = select(vec2f(), noise_shift_of_pixel(pixel), settings_pcss.rotate == 1u);
+    let light = light_taps_light_plane(receiver, pos_in_light, shift);
+    let window = search_window_of(plane, extent, shift, pos_in_light.z);
+    let found = search_search(window, light);
+    let nearest = search_blockers_of(found, window);
+    if nearest.groups == 0u && horizon_has_horizon_share() {
+        return above_horizon;
+    }
+    let sharpness = comparison_edge_sharpness(plane, nearest.g.x);
+    let probes = select(0u, settings_part_of(settings_pcss.filter_count, resolve_PROBES), light_taps_IS_PROGRESSIVE && !settings_MEANS_OF_RANGES);
+    let probed = filter_filter_once(window, light, nearest.g.x, sharpness, 0u, probes);
+    if probes > 0u && probed.y <= 0.0 {
+        return 0.0;
+    }
+    let blockers = search_blockers_of(search_search_behind(window, light, found), window);
+    let scales = scales_scales_of(blockers, extent);
+    if !settings_MEANS_OF_RANGES && scales.some <= 1u {
+        let is_lit = probes > 0u && probed.x == probed.y;
+        let count = select(settings_pcss.filter_count, 0u, is_lit);
+        return resolve_fraction(probed + filter_filter_once(window, light, nearest.g.x, sharpness, probes, count));
+    }
+    if !settings_MEANS_OF_RANGES && scales.some < (1u << scales_NEAREST) {
+        return resolve_fraction(filter_filter_layers(plane, window, light, blockers, settings_part_of(settings_pcss.filter_count, resolve_LAYER_TAPS)));
+    }
+    let count = select(settings_part_of(settings_pcss.filter_count, resolve_CONTACT_TAPS), settings_pcss.filter_count, settings_MEANS_OF_RANGES);
+    return resolve_fraction(filter_filter_scales(plane, window, light, scales, count));
+}
+
+const scales_NEAR_SHARE = 0.7;
+
+const scales_CONTACT_TEXELS = 1.5;
+
+const scales_ANY_G = vec2f(-map_receiver_NO_G, map_receiver_NO_G);
+
+struct scales_Scale {
+    g: f32,
+    g_range: vec2f,
+    layers: vec2u
+}
+
+const scales_NEAREST = 4u;
+
+struct scales_Scales {
+    blockers: search_Blockers,
+    near: scales_Scale,
+    some: u32
+}
+
+fn scales_scales_of(blockers: search_Blockers, extent: vec2f) -> scales_Scales {
+    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
+    let is_contact = max(near_extent.x, near_extent.y) < scales_CONTACT_TEXELS;
+    let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
+    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
+    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < scales_NEAR_SHARE * least_mean;
+    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
+    let near = scales_Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
+    return scales_Scales(blockers, near, blockers.groups | select(0u, 1u << scales_NEAREST, is_near && settings_pcss.attach_contacts == 1u));
+}
+
+fn scales_scale_of(scales: scales_Scales, index: u32) -> scales_Scale {
+    if index == scales_NEAREST {
+        return scales.near;
+    }
+    let g = scales.blockers.g[index];
+    if settings_MEANS_OF_RANGES {
+        return scales_Scale(g, search_range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
+    }
+    return scales_Scale(g, scales_ANY_G, vec2u(index, index + 1u));
+}
+
+const search_ENOUGH_BLOCKERS = 4u;
+
+const search_LEAST_TAPS = 8u;
+
+const search_BEHIND_TAPS = 8u;
+
+const search_NARROW_TAPS = 12u;
+
+fn search_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
+    var plane = receiver_light_biased_plane(receiver, settings_pcss.bias_scale);
+    plane.farthest_depth = plane.depth;
+    if settings_pcss.is_flat == 1u {
+        plane.depth_per_uv = vec2f(0.0);
+    }
+    return plane;
+}
+
+struct search_Window {
+    at: map_receiver_MapReceiver,
+    surface_step: f32,
+    most_g: f32,
+    scale_shift: f32,
+    search_count: u32
+}
+
+fn search_search_count(reach: vec2f) -> u32 {
+    let sides = 2.0 * reach + 2.0;
+    return settings_part_of(settings_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), search_NARROW_TAPS));
+}
+
+fn search_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> search_Window {
+    let most_g = blocker_range_largest_g(plane, extent);
+    let texels = light_taps_texels_per_offset();
+    return search_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, search_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+}
+
+fn search_blocking_g(window: search_Window, texel: vec2f, stored: f32) -> f32 {
+    let depth = map_light_view.depth_sign * stored;
+    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
+    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
+}
+
+struct search_Blockers {
+    g: vec4f,
+    groups: u32,
+    least_g: f32,
+    most_g: f32
+}
+
+struct search_Sums {
+    g: vec4f,
+    count: vec4f,
+    least_g: f32
+}
+
+const search_GROUPS = 4.0;
+
+const search_OVERLAP = 1.25;
+
+fn search_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
+    if !settings_MEANS_OF_RANGES {
+        return layer;
+    }
+    return u32(clamp(floor(search_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, search_GROUPS - 1.0));
+}
+
+fn search_range_of_group(group: u32, most_g: f32) -> vec2f {
+    let ends = vec2f(f32(group), f32(group + 1u)) / search_GROUPS;
+    return ends * ends * vec2f(1.0 / search_OVERLAP, search_OVERLAP) * most_g;
+}
+
+fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, stored: f32, layer: u32) -> search_Sums {
+    let g = search_blocking_g(window, look.texel, stored);
+    let counts = g > 0.0 && g >= look.hiding_g;
+    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    if !settings_MEANS_OF_RANGES && layer == 0u {
+        return search_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+    }
+    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(search_group_of(g, window.most_g, layer));
+    return search_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+}
+
+fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
+    let own = floor(window.at.center);
+    let own_g = search_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
+    var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
+    let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
+    let enough = f32(settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS));
+    for (var i = 0u; i < min(window.search_count, settings_pcss.search_count); i++) {
+        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+        sums = search_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
+        let found = search_sum_of(sums.count);
+        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= settings_pcss.search_enough && found > 0.0) {
+            break;
+        }
+    }
+    return sums;
+}
+
+fn search_search_behind(window: search_Window, light: light_taps_LightPlane, first: search_Sums) -> search_Sums {
+    let own = floor(window.at.center);
+    var sums = first;
+    var found = search_sum_of(first.count);
+    let count = min(min(window.search_count, settings_part_of(settings_pcss.search_count, search_BEHIND_TAPS)), settings_pcss.search_count);
+    for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0.0; layer++) {
+        let before = search_sum_of(sums.count);
+        let own_g = search_blocking_g(window, own, textureLoad(behind_further_layers, vec2i(own), layer - 1u, 0));
+        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
+        for (var i = 0u; i < count; i++) {
+            let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+            sums = search_add(sums, window, look, textureLoad(behind_further_layers, vec2i(look.texel), layer - 1u, 0), layer);
+        }
+        found = search_sum_of(sums.count) - before;
+    }
+    return sums;
+}
+
+fn search_sum_of(v: vec4f) -> f32 {
+    return dot(v, vec4f(1.0));
+}
+
+fn search_blockers_of(sums: search_Sums, window: search_Window) -> search_Blockers {
+    let some = sums.count > vec4f();
+    let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
+    return search_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
+}
+
+struct settings_PcssUniform {
     search_count: u32,
     filter_count: u32,
     rotate: u32,
@@ -646,346 +984,10 @@ struct resolve_PcssUniform {
 }
 
 @group(2) @binding(0)
-var<uniform> resolve_pcss: resolve_PcssUniform;
+var<uniform> settings_pcss: settings_PcssUniform;
 
-override resolve_MEANS_OF_RANGES: bool = false;
+override settings_MEANS_OF_RANGES: bool = false;
 
-const resolve_NEAR_SHARE = 0.7;
-
-const resolve_CONTACT_TEXELS = 1.5;
-
-const resolve_ENOUGH_BLOCKERS = 4u;
-
-const resolve_LEAST_TAPS = 8u;
-
-const resolve_PROBES = 40u;
-
-const resolve_BEHIND_TAPS = 8u;
-
-const resolve_CONTACT_TAPS = 16u;
-
-const resolve_LAYER_TAPS = 48u;
-
-const resolve_NARROW_TAPS = 12u;
-
-fn resolve_part_of(count: u32, part: u32) -> u32 {
+fn settings_part_of(count: u32, part: u32) -> u32 {
     return select(count, min(count, max(part, part * count / 64u)), light_taps_IS_PROGRESSIVE);
-}
-
-fn resolve_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
-    var plane = receiver_light_biased_plane(receiver, resolve_pcss.bias_scale);
-    plane.farthest_depth = plane.depth;
-    if resolve_pcss.is_flat == 1u {
-        plane.depth_per_uv = vec2f(0.0);
-    }
-    return plane;
-}
-
-struct resolve_Window {
-    at: map_receiver_MapReceiver,
-    surface_step: f32,
-    most_g: f32,
-    scale_shift: f32,
-    search_count: u32
-}
-
-fn resolve_search_count(reach: vec2f) -> u32 {
-    let sides = 2.0 * reach + 2.0;
-    return resolve_part_of(resolve_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), resolve_NARROW_TAPS));
-}
-
-fn resolve_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> resolve_Window {
-    let most_g = blocker_range_largest_g(plane, extent);
-    let texels = light_taps_texels_per_offset();
-    return resolve_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, resolve_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
-}
-
-fn resolve_blocking_g(window: resolve_Window, texel: vec2f, stored: f32) -> f32 {
-    let depth = map_light_view.depth_sign * stored;
-    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
-    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
-}
-
-struct resolve_Blockers {
-    g: vec4f,
-    groups: u32,
-    least_g: f32,
-    most_g: f32
-}
-
-struct resolve_Sums {
-    g: vec4f,
-    count: vec4f,
-    least_g: f32
-}
-
-const resolve_GROUPS = 4.0;
-
-const resolve_OVERLAP = 1.25;
-
-fn resolve_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
-    if !resolve_MEANS_OF_RANGES {
-        return layer;
-    }
-    return u32(clamp(floor(resolve_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, resolve_GROUPS - 1.0));
-}
-
-fn resolve_range_of_group(group: u32, most_g: f32) -> vec2f {
-    let ends = vec2f(f32(group), f32(group + 1u)) / resolve_GROUPS;
-    return ends * ends * vec2f(1.0 / resolve_OVERLAP, resolve_OVERLAP) * most_g;
-}
-
-fn resolve_add(sums: resolve_Sums, window: resolve_Window, look: map_receiver_Look, stored: f32, layer: u32) -> resolve_Sums {
-    let g = resolve_blocking_g(window, look.texel, stored);
-    let counts = g > 0.0 && g >= look.hiding_g;
-    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
-    if !resolve_MEANS_OF_RANGES && layer == 0u {
-        return resolve_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
-    }
-    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(resolve_group_of(g, window.most_g, layer));
-    return resolve_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
-}
-
-fn resolve_search(window: resolve_Window, light: light_taps_LightPlane) -> resolve_Sums {
-    let own = floor(window.at.center);
-    let own_g = resolve_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
-    var sums = resolve_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
-    let least = resolve_part_of(resolve_pcss.search_count, resolve_LEAST_TAPS);
-    let enough = f32(resolve_part_of(resolve_pcss.search_count, resolve_ENOUGH_BLOCKERS));
-    for (var i = 0u; i < min(window.search_count, resolve_pcss.search_count); i++) {
-        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
-        sums = resolve_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
-        let found = resolve_sum_of(sums.count);
-        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= resolve_pcss.search_enough && found > 0.0) {
-            break;
-        }
-    }
-    return sums;
-}
-
-fn resolve_search_behind(window: resolve_Window, light: light_taps_LightPlane, first: resolve_Sums) -> resolve_Sums {
-    let own = floor(window.at.center);
-    var sums = first;
-    var found = resolve_sum_of(first.count);
-    let count = min(min(window.search_count, resolve_part_of(resolve_pcss.search_count, resolve_BEHIND_TAPS)), resolve_pcss.search_count);
-    for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0.0; layer++) {
-        let before = resolve_sum_of(sums.count);
-        let own_g = resolve_blocking_g(window, own, textureLoad(behind_further_layers, vec2i(own), layer - 1u, 0));
-        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
-        for (var i = 0u; i < count; i++) {
-            let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
-            sums = resolve_add(sums, window, look, textureLoad(behind_further_layers, vec2i(look.texel), layer - 1u, 0), layer);
-        }
-        found = resolve_sum_of(sums.count) - before;
-    }
-    return sums;
-}
-
-fn resolve_sum_of(v: vec4f) -> f32 {
-    return dot(v, vec4f(1.0));
-}
-
-fn resolve_blockers_of(sums: resolve_Sums, window: resolve_Window) -> resolve_Blockers {
-    let some = sums.count > vec4f();
-    let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return resolve_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
-}
-
-const resolve_ANY_G = vec2f(-map_receiver_NO_G, map_receiver_NO_G);
-
-struct resolve_Scale {
-    g: f32,
-    g_range: vec2f,
-    layers: vec2u
-}
-
-const resolve_NEAREST = 4u;
-
-struct resolve_Scales {
-    blockers: resolve_Blockers,
-    near: resolve_Scale,
-    some: u32
-}
-
-fn resolve_scales_of(blockers: resolve_Blockers, extent: vec2f) -> resolve_Scales {
-    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
-    let is_contact = max(near_extent.x, near_extent.y) < resolve_CONTACT_TEXELS;
-    let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
-    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
-    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < resolve_NEAR_SHARE * least_mean;
-    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
-    let near = resolve_Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
-    return resolve_Scales(blockers, near, blockers.groups | select(0u, 1u << resolve_NEAREST, is_near && resolve_pcss.attach_contacts == 1u));
-}
-
-fn resolve_scale_of(scales: resolve_Scales, index: u32) -> resolve_Scale {
-    if index == resolve_NEAREST {
-        return scales.near;
-    }
-    let g = scales.blockers.g[index];
-    if resolve_MEANS_OF_RANGES {
-        return resolve_Scale(g, resolve_range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
-    }
-    return resolve_Scale(g, resolve_ANY_G, vec2u(index, index + 1u));
-}
-
-const resolve_WIDEST_TANGENT = 0.05;
-
-fn resolve_edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
-    let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), resolve_WIDEST_TANGENT);
-    return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), resolve_pcss.attach_contacts == 1u);
-}
-
-struct resolve_Quad {
-    corner_uv: vec2f,
-    t: vec2f,
-    at_centers: vec4f,
-    here: f32,
-    is_in_map: bool
-}
-
-fn resolve_quad_about(receiver: map_receiver_MapReceiver, offset: vec2f, g: f32) -> resolve_Quad {
-    let place = map_receiver_place_in_map(receiver, receiver.center + offset * g, g);
-    let corner = floor(place - 0.5);
-    let t = place - 0.5 - corner;
-    let low = receiver.depth_at_origin + dot(receiver.slope, corner);
-    let lows = vec2f(low, low + receiver.slope.x);
-    let centers = vec4f(lows + receiver.slope.y, lows.yx);
-    let here = low + dot(receiver.slope, t);
-    return resolve_Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(receiver.depth)), vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), map_receiver_held(receiver, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
-}
-
-fn resolve_occluding(window: resolve_Window, quad: resolve_Quad, depths: vec4f) -> vec4<bool> {
-    let across = depths.yxwz - depths;
-    let along = depths.wzyx - depths;
-    let from_here = abs(vec4f(quad.t, 1.0 - quad.t));
-    let step = vec4f(window.surface_step);
-    let carried = depths + from_here.xzzx * select(vec4f(), across, abs(across) < step) + from_here.wwyy * select(vec4f(), along, abs(along) < step);
-    return (depths > quad.at_centers) & (carried > vec4f(quad.here));
-}
-
-fn resolve_lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
-    return space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
-}
-
-fn resolve_lit_at_scale(plane: space_ReceiverPlane, window: resolve_Window, texels: vec2f, scale: resolve_Scale) -> f32 {
-    let quad = resolve_quad_about(window.at, texels, scale.g);
-    let sharpness = resolve_edge_sharpness(plane, scale.g);
-    let depths = window.at.depth + scale.g_range / window.at.g_per_depth;
-    var lit = 1.0;
-    var goes_on = quad.is_in_map;
-    for (var layer = scale.layers.x; layer < min(scale.layers.y, behind_LAYER_COUNT) && goes_on && lit > 0.0; layer++) {
-        let stored = map_light_view.depth_sign * resolve_gathered(quad, layer);
-        let occluding = resolve_occluding(window, quad, stored);
-        let counts = (stored >= vec4f(depths.x)) & (stored <= vec4f(depths.y));
-        lit = min(lit, resolve_lit_of(occluding & counts, quad.t, sharpness));
-        goes_on = any(occluding);
-    }
-    return lit;
-}
-
-fn resolve_gathered(quad: resolve_Quad, layer: u32) -> vec4f {
-    if layer == 0u {
-        return textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
-    }
-    return textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
-}
-
-fn resolve_lit_once(window: resolve_Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
-    let quad = resolve_quad_about(window.at, texels, g);
-    let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
-    return select(1.0, resolve_lit_of(resolve_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
-}
-
-fn resolve_lit_behind(window: resolve_Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
-    let quad = resolve_quad_about(window.at, texels, g);
-    let stored = map_light_view.depth_sign * textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
-    return select(1.0, resolve_lit_of(resolve_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
-}
-
-fn resolve_filter_once(window: resolve_Window, light: light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
-    var sums = vec2f();
-    for (var i = begin; i < end; i++) {
-        let place = light_taps_place_of(light, light_taps_taps[resolve_pcss.search_count + i].xyz);
-        let lit = select(1.0, resolve_lit_once(window, light_taps_texels_of(light, place), g, sharpness), g > 0.0);
-        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
-    }
-    return sums;
-}
-
-fn resolve_filter_layers(plane: space_ReceiverPlane, window: resolve_Window, light: light_taps_LightPlane, blockers: resolve_Blockers, count: u32) -> vec2f {
-    var sums = vec2f();
-    var sharpness = vec4f(resolve_edge_sharpness(plane, blockers.g.x), 0.0, 0.0, 0.0);
-    for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
-        sharpness[layer] = resolve_edge_sharpness(plane, blockers.g[layer]);
-    }
-    for (var i = 0u; i < min(count, resolve_pcss.filter_count); i++) {
-        let place = light_taps_place_of(light, light_taps_taps[resolve_pcss.search_count + i].xyz);
-        let texels = light_taps_texels_of(light, place);
-        var lit = resolve_lit_once(window, texels, blockers.g.x, sharpness.x);
-        for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
-            let behind = resolve_lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
-            lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
-        }
-        sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
-    }
-    return sums;
-}
-
-fn resolve_filter_scales(plane: space_ReceiverPlane, window: resolve_Window, light: light_taps_LightPlane, scales: resolve_Scales, count: u32) -> vec2f {
-    var sums = vec2f();
-    for (var i = 0u; i < min(count, resolve_pcss.filter_count); i++) {
-        let place = light_taps_place_of(light, light_taps_taps[resolve_pcss.search_count + i].xyz);
-        let texels = light_taps_texels_of(light, place);
-        var lit = select(0.0, 1.0, light_taps_is_above_horizon(light, place));
-        for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
-            lit = min(lit, resolve_lit_at_scale(plane, window, texels, resolve_scale_of(scales, countTrailingZeros(rest))));
-        }
-        sums += light_taps_weight_of(place) * vec2f(1.0, lit);
-    }
-    return sums;
-}
-
-fn resolve_visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
-    if receiver.is_background {
-        return 1.0;
-    }
-    if !receiver.is_reached {
-        return 0.0;
-    }
-    let share = horizon_horizon_share(receiver);
-    if horizon_has_horizon_share() && share <= 0.0 {
-        return 0.0;
-    }
-    let plane = resolve_comparison_plane(receiver);
-    let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let shift = select(vec2f(), noise_shift_of_pixel(pixel), resolve_pcss.rotate == 1u);
-    let extent = blocker_range_seen_extent(resolve_pcss.light_extent, resolve_pcss.light_extent_axis, receiver_in_light);
-    let light = light_taps_light_plane(receiver, receiver_in_light, shift);
-    let window = resolve_window_of(plane, extent, shift, receiver_in_light.z);
-    let sums = resolve_search(window, light);
-    let nearest = resolve_blockers_of(sums, window);
-    if nearest.groups == 0u && horizon_has_horizon_share() {
-        return share;
-    }
-    let sharpness = resolve_edge_sharpness(plane, nearest.g.x);
-    let probes = select(0u, resolve_part_of(resolve_pcss.filter_count, resolve_PROBES), light_taps_IS_PROGRESSIVE && !resolve_MEANS_OF_RANGES);
-    let probed = resolve_filter_once(window, light, nearest.g.x, sharpness, 0u, probes);
-    if probes > 0u && probed.y <= 0.0 {
-        return 0.0;
-    }
-    let blockers = resolve_blockers_of(resolve_search_behind(window, light, sums), window);
-    let scales = resolve_scales_of(blockers, extent);
-    if !resolve_MEANS_OF_RANGES && scales.some <= 1u {
-        let is_lit = probes > 0u && probed.x == probed.y;
-        let rest = resolve_filter_once(window, light, nearest.g.x, sharpness, probes, select(resolve_pcss.filter_count, 0u, is_lit));
-        return (probed.y + rest.y) / max(probed.x + rest.x, 1e-20);
-    }
-    if !resolve_MEANS_OF_RANGES && scales.some < (1u << resolve_NEAREST) {
-        let sums = resolve_filter_layers(plane, window, light, blockers, resolve_part_of(resolve_pcss.filter_count, resolve_LAYER_TAPS));
-        return sums.y / max(sums.x, 1e-20);
-    }
-    let count = select(resolve_part_of(resolve_pcss.filter_count, resolve_CONTACT_TAPS), resolve_pcss.filter_count, resolve_MEANS_OF_RANGES);
-    let all = resolve_filter_scales(plane, window, light, scales, count);
-    return all.y / max(all.x, 1e-20);
 }

@@ -11,24 +11,24 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if above <= 0.0 {
         return 0.0;
     }
-    let plane = resolve_comparison_plane(receiver);
+    let plane = search_comparison_plane(receiver);
     let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let shift = select(vec2f(), noise_shift_of_pixel(pixel), resolve_pcss.rotate == 1u);
-    let extent = blocker_range_seen_extent(resolve_pcss.light_extent, resolve_pcss.light_extent_axis, receiver_in_light);
-    let window = resolve_window_of(plane, extent, shift, receiver_in_light.z);
-    let mean_g = resolve_blockers_of(resolve_search(window, light_taps_light_plane(receiver, receiver_in_light, shift)), window).g.x;
-    let grown = extent / max(resolve_pcss.light_extent, vec2f(1e-20));
-    let on_plane = resolve_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
+    let shift = select(vec2f(), noise_shift_of_pixel(pixel), settings_pcss.rotate == 1u);
+    let extent = blocker_range_seen_extent(settings_pcss.light_extent, settings_pcss.light_extent_axis, receiver_in_light);
+    let window = search_window_of(plane, extent, shift, receiver_in_light.z);
+    let mean_g = search_blockers_of(search_search(window, light_taps_light_plane(receiver, receiver_in_light, shift)), window).g.x;
+    let grown = extent / max(settings_pcss.light_extent, vec2f(1e-20));
+    let on_plane = settings_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
     let covariance = soft_kernel_light_covariance_texels(on_plane, plane.uv, mean_g) + soft_kernel_ending_footprint_covariance(receiver, plane.uv, pixel);
-    let center = (plane.uv + space_uv_step_of_plane(map_light_view, resolve_pcss.light_mean * mean_g)) * map_light_view.map_size;
-    let kernel = soft_kernel_kernel_of_covariance(center, covariance, resolve_pcss.is_ellipse == 1u);
+    let center = (plane.uv + space_uv_step_of_plane(map_light_view, settings_pcss.light_mean * mean_g)) * map_light_view.map_size;
+    let kernel = soft_kernel_kernel_of_covariance(center, covariance, settings_pcss.is_ellipse == 1u);
     var lit = 0.0;
-    for (var i = 0u; i < resolve_pcss.filter_count; i++) {
-        let u = fract(light_taps_taps[resolve_pcss.search_count + i].xy + shift);
+    for (var i = 0u; i < settings_pcss.filter_count; i++) {
+        let u = fract(light_taps_taps[settings_pcss.search_count + i].xy + shift);
         let place = select(2.0 * u - 1.0, light_disk_from_square(u), kernel.is_ellipse) * kernel.half_size;
         lit += map_lit_bilinear(plane, (center + vec2f(place.x + kernel.shear * place.y, place.y)) / map_light_view.map_size);
     }
-    return above * lit / f32(resolve_pcss.filter_count);
+    return above * lit / f32(settings_pcss.filter_count);
 }
 
 @compute @workgroup_size(8, 8)
@@ -902,7 +902,107 @@ fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_Li
     return map_receiver_look_at_scale(receiver, light, most_g * (scale * scale), index);
 }
 
-struct resolve_PcssUniform {
+const search_ENOUGH_BLOCKERS = 4u;
+
+const search_LEAST_TAPS = 8u;
+
+const search_NARROW_TAPS = 12u;
+
+fn search_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
+    var plane = receiver_light_biased_plane(receiver, settings_pcss.bias_scale);
+    plane.farthest_depth = plane.depth;
+    if settings_pcss.is_flat == 1u {
+        plane.depth_per_uv = vec2f(0.0);
+    }
+    return plane;
+}
+
+struct search_Window {
+    at: map_receiver_MapReceiver,
+    surface_step: f32,
+    most_g: f32,
+    scale_shift: f32,
+    search_count: u32
+}
+
+fn search_search_count(reach: vec2f) -> u32 {
+    let sides = 2.0 * reach + 2.0;
+    return settings_part_of(settings_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), search_NARROW_TAPS));
+}
+
+fn search_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> search_Window {
+    let most_g = blocker_range_largest_g(plane, extent);
+    let texels = light_taps_texels_per_offset();
+    return search_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, search_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+}
+
+fn search_blocking_g(window: search_Window, texel: vec2f, stored: f32) -> f32 {
+    let depth = map_light_view.depth_sign * stored;
+    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
+    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
+}
+
+struct search_Blockers {
+    g: vec4f,
+    groups: u32,
+    least_g: f32,
+    most_g: f32
+}
+
+struct search_Sums {
+    g: vec4f,
+    count: vec4f,
+    least_g: f32
+}
+
+const search_GROUPS = 4.0;
+
+fn search_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
+    if !settings_MEANS_OF_RANGES {
+        return layer;
+    }
+    return u32(clamp(floor(search_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, search_GROUPS - 1.0));
+}
+
+fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, stored: f32, layer: u32) -> search_Sums {
+    let g = search_blocking_g(window, look.texel, stored);
+    let counts = g > 0.0 && g >= look.hiding_g;
+    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    if !settings_MEANS_OF_RANGES && layer == 0u {
+        return search_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+    }
+    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(search_group_of(g, window.most_g, layer));
+    return search_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+}
+
+fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
+    let own = floor(window.at.center);
+    let own_g = search_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
+    var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
+    let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
+    let enough = f32(settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS));
+    for (var i = 0u; i < min(window.search_count, settings_pcss.search_count); i++) {
+        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+        sums = search_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
+        let found = search_sum_of(sums.count);
+        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= settings_pcss.search_enough && found > 0.0) {
+            break;
+        }
+    }
+    return sums;
+}
+
+fn search_sum_of(v: vec4f) -> f32 {
+    return dot(v, vec4f(1.0));
+}
+
+fn search_blockers_of(sums: search_Sums, window: search_Window) -> search_Blockers {
+    let some = sums.count > vec4f();
+    let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
+    return search_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
+}
+
+struct settings_PcssUniform {
     search_count: u32,
     filter_count: u32,
     rotate: u32,
@@ -918,110 +1018,10 @@ struct resolve_PcssUniform {
 }
 
 @group(2) @binding(0)
-var<uniform> resolve_pcss: resolve_PcssUniform;
+var<uniform> settings_pcss: settings_PcssUniform;
 
-override resolve_MEANS_OF_RANGES: bool = false;
+override settings_MEANS_OF_RANGES: bool = false;
 
-const resolve_ENOUGH_BLOCKERS = 4u;
-
-const resolve_LEAST_TAPS = 8u;
-
-const resolve_NARROW_TAPS = 12u;
-
-fn resolve_part_of(count: u32, part: u32) -> u32 {
+fn settings_part_of(count: u32, part: u32) -> u32 {
     return select(count, min(count, max(part, part * count / 64u)), light_taps_IS_PROGRESSIVE);
-}
-
-fn resolve_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
-    var plane = receiver_light_biased_plane(receiver, resolve_pcss.bias_scale);
-    plane.farthest_depth = plane.depth;
-    if resolve_pcss.is_flat == 1u {
-        plane.depth_per_uv = vec2f(0.0);
-    }
-    return plane;
-}
-
-struct resolve_Window {
-    at: map_receiver_MapReceiver,
-    surface_step: f32,
-    most_g: f32,
-    scale_shift: f32,
-    search_count: u32
-}
-
-fn resolve_search_count(reach: vec2f) -> u32 {
-    let sides = 2.0 * reach + 2.0;
-    return resolve_part_of(resolve_pcss.search_count, max(u32(min(sides.x * sides.y, 64.0)), resolve_NARROW_TAPS));
-}
-
-fn resolve_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> resolve_Window {
-    let most_g = blocker_range_largest_g(plane, extent);
-    let texels = light_taps_texels_per_offset();
-    return resolve_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, resolve_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
-}
-
-fn resolve_blocking_g(window: resolve_Window, texel: vec2f, stored: f32) -> f32 {
-    let depth = map_light_view.depth_sign * stored;
-    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
-    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
-}
-
-struct resolve_Blockers {
-    g: vec4f,
-    groups: u32,
-    least_g: f32,
-    most_g: f32
-}
-
-struct resolve_Sums {
-    g: vec4f,
-    count: vec4f,
-    least_g: f32
-}
-
-const resolve_GROUPS = 4.0;
-
-fn resolve_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
-    if !resolve_MEANS_OF_RANGES {
-        return layer;
-    }
-    return u32(clamp(floor(resolve_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, resolve_GROUPS - 1.0));
-}
-
-fn resolve_add(sums: resolve_Sums, window: resolve_Window, look: map_receiver_Look, stored: f32, layer: u32) -> resolve_Sums {
-    let g = resolve_blocking_g(window, look.texel, stored);
-    let counts = g > 0.0 && g >= look.hiding_g;
-    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
-    if !resolve_MEANS_OF_RANGES && layer == 0u {
-        return resolve_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
-    }
-    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(resolve_group_of(g, window.most_g, layer));
-    return resolve_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
-}
-
-fn resolve_search(window: resolve_Window, light: light_taps_LightPlane) -> resolve_Sums {
-    let own = floor(window.at.center);
-    let own_g = resolve_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
-    var sums = resolve_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
-    let least = resolve_part_of(resolve_pcss.search_count, resolve_LEAST_TAPS);
-    let enough = f32(resolve_part_of(resolve_pcss.search_count, resolve_ENOUGH_BLOCKERS));
-    for (var i = 0u; i < min(window.search_count, resolve_pcss.search_count); i++) {
-        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
-        sums = resolve_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
-        let found = resolve_sum_of(sums.count);
-        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= resolve_pcss.search_enough && found > 0.0) {
-            break;
-        }
-    }
-    return sums;
-}
-
-fn resolve_sum_of(v: vec4f) -> f32 {
-    return dot(v, vec4f(1.0));
-}
-
-fn resolve_blockers_of(sums: resolve_Sums, window: resolve_Window) -> resolve_Blockers {
-    let some = sums.count > vec4f();
-    let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return resolve_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
 }

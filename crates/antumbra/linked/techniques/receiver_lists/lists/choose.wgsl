@@ -1,29 +1,29 @@
-// Linked from src/techniques/receiver_lists/choose.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/lists/choose.wesl by `cargo xtask shaders`: edit that, not this.
 
 const CROWDED_PART = 4u;
 
 @compute @workgroup_size(256)
 fn choose(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let crowded = settings_CROWD * atomicLoad(&lists_state[settings_STATE_CROWDED]);
-    if crowded <= atomicLoad(&lists_state[settings_STATE_LISTED]) / CROWDED_PART {
+    let crowded = settings_CROWD * atomicLoad(&bindings_state[settings_STATE_CROWDED]);
+    if crowded <= atomicLoad(&bindings_state[settings_STATE_LISTED]) / CROWDED_PART {
         return;
     }
-    for (var i = id.x; i <= lists_settings.list_count; i += 256u * group_counts.x) {
-        atomicStore(&lists_counts[i], 0u);
+    for (var i = id.x; i <= bindings_settings.list_count; i += 256u * group_counts.x) {
+        atomicStore(&bindings_counts[i], 0u);
     }
     if id.x == 0u {
-        atomicStore(&lists_counts[lists_settings.list_count + 1u], 1u);
+        atomicStore(&bindings_counts[bindings_settings.list_count + 1u], 1u);
     }
 }
 
 @group(1) @binding(0)
-var<uniform> lists_settings: settings_SampleSettings;
+var<uniform> bindings_settings: settings_SampleSettings;
 
 @group(1) @binding(1)
-var<storage, read_write> lists_state: array<atomic<u32>>;
+var<storage, read_write> bindings_state: array<atomic<u32>>;
 
 @group(1) @binding(2)
-var<storage, read_write> lists_counts: array<atomic<u32>>;
+var<storage, read_write> bindings_counts: array<atomic<u32>>;
 
 struct settings_SampleSettings {
     light_min: vec3f,

@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/raster_after.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/raster/after.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(1) @binding(1)
 var<storage, read> list: array<u32>;
@@ -13,12 +13,12 @@ fn raster_after(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
         return;
     }
     let pixel_index = list[slot];
-    let first_word = light_bits_first_word_of(pixel_index);
+    let first_word = bits_first_word_of(pixel_index);
     var seen = 0.0;
-    for (var word = 0u; word < light_bits_settings.word_count; word++) {
-        seen += light_bits_weight_of(word, open_bits_bits[first_word + word]);
+    for (var word = 0u; word < bits_settings.word_count; word++) {
+        seen += bits_weight_of(word, open_bits_bits[first_word + word]);
     }
-    open_bits_write_open(light_bits_pixel_of(pixel_index), pixel_index, seen);
+    open_bits_write_open(bits_pixel_of(pixel_index), pixel_index, seen);
 }
 
 struct inputs_ReceiverView {
@@ -93,48 +93,48 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
 }
 
 @group(1) @binding(0)
-var<uniform> light_bits_settings: settings_SampleSettings;
+var<uniform> bits_settings: settings_SampleSettings;
 
 @group(1) @binding(4)
-var<uniform> light_bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
+var<uniform> bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
 
-fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
+fn bits_pixel_of(pixel_index: u32) -> vec2u {
     return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
 }
 
-fn light_bits_first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
+fn bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * bits_settings.pixel_words + bits_settings.first_word;
 }
 
-fn light_bits_weight_of(word: u32, points: u32) -> f32 {
-    if light_bits_settings.is_weighted == 0u {
+fn bits_weight_of(word: u32, points: u32) -> f32 {
+    if bits_settings.is_weighted == 0u {
         return f32(countOneBits(points));
     }
     let at = settings_FIRST_POINT + 32u * word + 3u;
-    return light_bits_weight_of_four(at, points) + light_bits_weight_of_four(at + 4u, points >> 4u) + light_bits_weight_of_four(at + 8u, points >> 8u) + light_bits_weight_of_four(at + 12u, points >> 12u) + light_bits_weight_of_four(at + 16u, points >> 16u) + light_bits_weight_of_four(at + 20u, points >> 20u) + light_bits_weight_of_four(at + 24u, points >> 24u) + light_bits_weight_of_four(at + 28u, points >> 28u);
+    return bits_weight_of_four(at, points) + bits_weight_of_four(at + 4u, points >> 4u) + bits_weight_of_four(at + 8u, points >> 8u) + bits_weight_of_four(at + 12u, points >> 12u) + bits_weight_of_four(at + 16u, points >> 16u) + bits_weight_of_four(at + 20u, points >> 20u) + bits_weight_of_four(at + 24u, points >> 24u) + bits_weight_of_four(at + 28u, points >> 28u);
 }
 
-fn light_bits_weight_of_four(at: u32, points: u32) -> f32 {
+fn bits_weight_of_four(at: u32, points: u32) -> f32 {
     let is_in = (vec4u(points) & vec4u(1u, 2u, 4u, 8u)) != vec4u(0u);
-    return dot(light_bits_light_words[at], select(vec4f(0.0), vec4f(1.0), is_in));
+    return dot(bits_light_words[at], select(vec4f(0.0), vec4f(1.0), is_in));
 }
 
 @group(1) @binding(5)
 var<storage, read_write> open_bits_bits: array<u32>;
 
 fn open_bits_store_passed(pixel_index: u32, passed: vec3f) {
-    let at = light_bits_settings.first_passed + 3u * pixel_index;
+    let at = bits_settings.first_passed + 3u * pixel_index;
     open_bits_bits[at] = bitcast<u32>(passed.x);
     open_bits_bits[at + 1u] = bitcast<u32>(passed.y);
     open_bits_bits[at + 2u] = bitcast<u32>(passed.z);
 }
 
 fn open_bits_write_open(pixel: vec2u, pixel_index: u32, seen: f32) {
-    if light_bits_settings.first_passed > 0u {
+    if bits_settings.first_passed > 0u {
         open_bits_store_passed(pixel_index, vec3f(1.0));
     }
-    let visibility = seen / light_bits_settings.total_weight;
-    if settings_is_on(light_bits_settings, settings_FIRST_POINTS) {
+    let visibility = seen / bits_settings.total_weight;
+    if settings_is_on(bits_settings, settings_FIRST_POINTS) {
         inputs_write_visibility(pixel, min(visibility, 1.0));
     }
     else {

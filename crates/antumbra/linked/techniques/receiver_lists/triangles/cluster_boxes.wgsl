@@ -1,38 +1,26 @@
-// Linked from src/techniques/receiver_lists/cluster_boxes.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/triangles/cluster_boxes.wesl by `cargo xtask shaders`: edit that, not this.
 
 @compute @workgroup_size(64)
 fn cluster_boxes(@builtin(global_invocation_id) id: vec3u) {
-    let triangle_count = boxes_of_totals[settings_TOTAL_TRIANGLES];
+    let triangle_count = bindings_totals[settings_TOTAL_TRIANGLES];
     let first = 64u * id.x;
     if first >= triangle_count {
         return;
     }
-    var low = boxes_of_triangles[boxes_of_settings.triangle_stride * first].xyz;
+    var low = bindings_triangles[bindings_settings.triangle_stride * first].xyz;
     var high = low;
     var flags = 0u;
     for (var i = first; i < min(first + 64u, triangle_count); i++) {
-        let at = boxes_of_settings.triangle_stride * i;
-        flags |= u32(boxes_of_triangles[at].w);
+        let at = bindings_settings.triangle_stride * i;
+        flags |= u32(bindings_triangles[at].w);
         for (var k = 0u; k < 3u; k++) {
-            low = min(low, boxes_of_triangles[at + k].xyz);
-            high = max(high, boxes_of_triangles[at + k].xyz);
+            low = min(low, bindings_triangles[at + k].xyz);
+            high = max(high, bindings_triangles[at + k].xyz);
         }
     }
-    boxes_of_boxes[2u * id.x] = vec4f(low, f32(flags));
-    boxes_of_boxes[2u * id.x + 1u] = vec4f(high, 0.0);
+    bindings_boxes[2u * id.x] = vec4f(low, f32(flags));
+    bindings_boxes[2u * id.x + 1u] = vec4f(high, 0.0);
 }
-
-@group(0) @binding(0)
-var<uniform> boxes_of_settings: settings_SampleSettings;
-
-@group(0) @binding(1)
-var<storage, read> boxes_of_totals: array<u32>;
-
-@group(0) @binding(2)
-var<storage, read> boxes_of_triangles: array<vec4f>;
-
-@group(0) @binding(3)
-var<storage, read_write> boxes_of_boxes: array<vec4f>;
 
 struct settings_SampleSettings {
     light_min: vec3f,
@@ -82,3 +70,15 @@ struct settings_SampleSettings {
 }
 
 const settings_TOTAL_TRIANGLES = 1u;
+
+@group(0) @binding(0)
+var<uniform> bindings_settings: settings_SampleSettings;
+
+@group(0) @binding(1)
+var<storage, read> bindings_totals: array<u32>;
+
+@group(0) @binding(2)
+var<storage, read> bindings_triangles: array<vec4f>;
+
+@group(0) @binding(3)
+var<storage, read_write> bindings_boxes: array<vec4f>;

@@ -1,33 +1,33 @@
-// Linked from src/techniques/receiver_lists/count.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/lists/count.wesl by `cargo xtask shaders`: edit that, not this.
 
 fn make_shaft() {
     var low = vec3f();
     var high = vec3f();
     for (var axis = 0u; axis < 3u; axis++) {
-        low[axis] = settings_unsortable(~atomicLoad(&lists_state[settings_STATE_WORLD_MIN + axis]));
-        high[axis] = settings_unsortable(atomicLoad(&lists_state[settings_STATE_WORLD_MAX + axis]));
+        low[axis] = settings_unsortable(~atomicLoad(&bindings_state[settings_STATE_WORLD_MIN + axis]));
+        high[axis] = settings_unsortable(atomicLoad(&bindings_state[settings_STATE_WORLD_MAX + axis]));
     }
-    if atomicLoad(&lists_state[settings_STATE_WORLD_MAX]) == 0u {
+    if atomicLoad(&bindings_state[settings_STATE_WORLD_MAX]) == 0u {
         for (var i = 0u; i < shaft_SHAFT_PLANES; i++) {
-            lists_shaft[i] = vec4f(0.0, 0.0, 0.0, -1.0);
+            bindings_shaft[i] = vec4f(0.0, 0.0, 0.0, -1.0);
         }
         return;
     }
-    let room = 4.0 * ray_offset_most_ray_offset_m(lists_settings, low, high);
+    let room = 4.0 * ray_offset_most_ray_offset_m(bindings_settings, low, high);
     let asked = shaft_Box(low - room, high + room);
-    var light = shaft_Box(lists_settings.light_min, lists_settings.light_max);
+    var light = shaft_Box(bindings_settings.light_min, bindings_settings.light_max);
     if inputs_light_source.kind == light_KIND_SUN {
-        let all = shaft_union_of(asked, shaft_Box(lists_settings.casters_min, lists_settings.casters_max));
+        let all = shaft_union_of(asked, shaft_Box(bindings_settings.casters_min, bindings_settings.casters_max));
         let far = 1.01 * distance(all.low, all.high);
         light = shaft_Box(asked.low + far * light.low, asked.high + far * light.high);
     }
     for (var i = 0u; i < shaft_SHAFT_PLANES; i++) {
-        lists_shaft[i] = shaft_shaft_plane(i, asked, light);
+        bindings_shaft[i] = shaft_shaft_plane(i, asked, light);
     }
-    lists_shaft[shaft_SHAFT_PLANES] = vec4f(asked.low, 0.0);
-    lists_shaft[shaft_SHAFT_PLANES + 1u] = vec4f(asked.high, 0.0);
-    lists_shaft[shaft_SHAFT_PLANES + 2u] = vec4f(light.low, 0.0);
-    lists_shaft[shaft_SHAFT_PLANES + 3u] = vec4f(light.high, 0.0);
+    bindings_shaft[shaft_SHAFT_PLANES] = vec4f(asked.low, 0.0);
+    bindings_shaft[shaft_SHAFT_PLANES + 1u] = vec4f(asked.high, 0.0);
+    bindings_shaft[shaft_SHAFT_PLANES + 2u] = vec4f(light.low, 0.0);
+    bindings_shaft[shaft_SHAFT_PLANES + 3u] = vec4f(light.high, 0.0);
 }
 
 override IS_AGAIN: bool = false;
@@ -35,7 +35,7 @@ override IS_AGAIN: bool = false;
 @compute @workgroup_size(8, 8)
 fn count(@builtin(global_invocation_id) id: vec3u) {
     if IS_AGAIN {
-        if !lists_is_by_cells() {
+        if !bindings_is_by_cells() {
             return;
         }
     }
@@ -47,17 +47,17 @@ fn count(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel_index = id.y * inputs_receiver_view.size_px.x + id.x;
     let receiver = inputs_load_receiver(id.xy);
-    if !lists_is_listed(receiver) {
-        lists_places[pixel_index] = vec2u(settings_NOWHERE, 0u);
+    if !bindings_is_listed(receiver) {
+        bindings_places[pixel_index] = vec2u(settings_NOWHERE, 0u);
         return;
     }
-    let list = lists_list_of(receiver.pos_in_world);
-    let place = atomicAdd(&lists_counts[list], 1u);
-    lists_places[pixel_index] = vec2u(list, place);
-    if !IS_AGAIN && lists_settings.window_count > 0u {
-        atomicMax(&lists_state[settings_STATE_LONGEST], place + 1u);
-        if settings_is_on(lists_settings, settings_CHOOSES) && place % settings_CROWD == settings_CROWD - 1u {
-            atomicAdd(&lists_state[settings_STATE_CROWDED], 1u);
+    let list = bindings_list_of(receiver.pos_in_world);
+    let place = atomicAdd(&bindings_counts[list], 1u);
+    bindings_places[pixel_index] = vec2u(list, place);
+    if !IS_AGAIN && bindings_settings.window_count > 0u {
+        atomicMax(&bindings_state[settings_STATE_LONGEST], place + 1u);
+        if settings_is_on(bindings_settings, settings_CHOOSES) && place % settings_CROWD == settings_CROWD - 1u {
+            atomicAdd(&bindings_state[settings_STATE_CROWDED], 1u);
         }
     }
 }
@@ -248,9 +248,9 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
 
 const ray_offset_ROUNDING = 3.814697265625e-6;
 
-const light_points_END_MARGIN = 9.5367431640625e-7;
+const points_END_MARGIN = 9.5367431640625e-7;
 
-struct light_points_Rays {
+struct points_Rays {
     to_center: vec3f,
     right: vec3f,
     up: vec3f,
@@ -258,7 +258,7 @@ struct light_points_Rays {
     inverse_end: f32
 }
 
-fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
+fn points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
     var part = noise;
     if settings.rotations > 1u {
         part = floor(noise * f32(settings.rotations)) / f32(settings.rotations);
@@ -267,8 +267,8 @@ fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
-fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> light_points_Rays {
-    var rays = light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + light_points_END_MARGIN);
+fn points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> points_Rays {
+    var rays = points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + points_END_MARGIN);
     if light.kind == light_KIND_SUN {
         rays.to_center = -light.axis_in_world;
         rays.inverse_end = 0.0;
@@ -282,84 +282,95 @@ fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightS
         rays.axis = -towards;
     }
     if settings.rotations > 0u {
-        let frame = light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
+        let frame = points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
         rays.right = frame[0];
         rays.up = frame[1];
     }
     return rays;
 }
 
-fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
+fn points_plane_for(rays: points_Rays, normal: vec3f) -> vec4f {
     return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
 }
 
-fn light_points_at_point(plane: vec4f, point: vec3f) -> f32 {
+fn points_at_point(plane: vec4f, point: vec3f) -> f32 {
     return plane.x + plane.y * point.x + plane.z * point.y + plane.w * point.z;
 }
 
-fn light_points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
+fn points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
     return abs(plane.y) * half_box.x + abs(plane.z) * half_box.y + abs(plane.w) * half_box.z;
 }
 
+@group(1) @binding(14)
+var<uniform> ray_offset_snapped_texels: f32;
+
+fn ray_offset_most_ray_offset_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
+    let across = distance(low, high);
+    let distances = length(max(abs(low), abs(high))) + across + inputs_eye_distance_m(low);
+    let row = inputs_receiver_view.clip_w_row;
+    let most_w = abs(dot(row, vec4f(low, 1.0))) + length(row.xyz) * across;
+    return max(settings.hair_scale, 1.0) * (ray_offset_ROUNDING * distances + inputs_OFFSET_SNAPS * inputs_snapped_at_w(ray_offset_snapped_texels, most_w) + settings.matrix_rounding_m);
+}
+
 @group(1) @binding(0)
-var<uniform> lists_settings: settings_SampleSettings;
+var<uniform> bindings_settings: settings_SampleSettings;
 
 @group(1) @binding(1)
-var<storage, read_write> lists_state: array<atomic<u32>>;
+var<storage, read_write> bindings_state: array<atomic<u32>>;
 
 @group(1) @binding(2)
-var<storage, read_write> lists_counts: array<atomic<u32>>;
+var<storage, read_write> bindings_counts: array<atomic<u32>>;
 
 @group(1) @binding(3)
-var<storage, read_write> lists_places: array<vec2u>;
+var<storage, read_write> bindings_places: array<vec2u>;
 
 @group(1) @binding(5)
-var<storage, read_write> lists_shaft: array<vec4f>;
+var<storage, read_write> bindings_shaft: array<vec4f>;
 
 @group(1) @binding(6)
-var<storage, read> lists_light_points: array<vec4f>;
+var<storage, read> bindings_light_points: array<vec4f>;
 
-fn lists_is_listed(receiver: inputs_Receiver) -> bool {
+fn bindings_is_listed(receiver: inputs_Receiver) -> bool {
     if receiver.is_background || !receiver.is_reached {
         return false;
     }
     let x = receiver.pos_in_world;
-    let rays = light_points_rays_from(lists_settings, inputs_light_source, x, x, 0.0);
-    let plane = light_points_plane_for(rays, receiver.normal_in_world);
-    var half_box = lists_light_points[1].xyz;
-    if lists_settings.rotations > 0u {
+    let rays = points_rays_from(bindings_settings, inputs_light_source, x, x, 0.0);
+    let plane = points_plane_for(rays, receiver.normal_in_world);
+    var half_box = bindings_light_points[1].xyz;
+    if bindings_settings.rotations > 0u {
         half_box = vec3f(vec2f(length(half_box.xy)), half_box.z);
     }
-    return light_points_at_point(plane, lists_light_points[0].xyz) + light_points_reach_over(plane, half_box) > 0.0;
+    return points_at_point(plane, bindings_light_points[0].xyz) + points_reach_over(plane, half_box) > 0.0;
 }
 
-fn lists_is_by_cells() -> bool {
-    return lists_settings.window_count == 0u || atomicLoad(&lists_counts[lists_settings.list_count + 1u]) == 1u;
+fn bindings_is_by_cells() -> bool {
+    return bindings_settings.window_count == 0u || atomicLoad(&bindings_counts[bindings_settings.list_count + 1u]) == 1u;
 }
 
-fn lists_list_of(x: vec3f) -> u32 {
-    if !lists_is_by_cells() {
-        return lists_list_in_windows(x);
+fn bindings_list_of(x: vec3f) -> u32 {
+    if !bindings_is_by_cells() {
+        return bindings_list_in_windows(x);
     }
     var low = vec3f();
     var high = vec3f();
     for (var axis = 0u; axis < 3u; axis++) {
-        low[axis] = settings_unsortable(~atomicLoad(&lists_state[settings_STATE_LIGHT_MIN + axis]));
-        high[axis] = settings_unsortable(atomicLoad(&lists_state[settings_STATE_LIGHT_MAX + axis]));
+        low[axis] = settings_unsortable(~atomicLoad(&bindings_state[settings_STATE_LIGHT_MIN + axis]));
+        high[axis] = settings_unsortable(atomicLoad(&bindings_state[settings_STATE_LIGHT_MAX + axis]));
     }
-    return projection_cell_in(projection_project(lists_settings, inputs_light_source, x), low, high, lists_settings.list_bits);
+    return projection_cell_in(projection_project(bindings_settings, inputs_light_source, x), low, high, bindings_settings.list_bits);
 }
 
-fn lists_list_in_windows(x: vec3f) -> u32 {
-    let p = windows_to_windows(lists_settings, inputs_light_source, x);
-    let index = windows_window_of(lists_settings, p);
+fn bindings_list_in_windows(x: vec3f) -> u32 {
+    let p = windows_to_windows(bindings_settings, inputs_light_source, x);
+    let index = windows_window_of(bindings_settings, p);
     let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * index;
-    let high = vec2f(settings_unsortable(atomicLoad(&lists_state[first])), settings_unsortable(atomicLoad(&lists_state[first + 1u])));
-    let low = vec2f(settings_unsortable(~atomicLoad(&lists_state[first + 2u])), settings_unsortable(~atomicLoad(&lists_state[first + 3u])));
-    let window = windows_window_from(lists_settings.window_side, low, high, 0.0, 0.0);
-    let at = windows_texel_at(window, windows_direction_to(lists_settings, windows_along_axes_of(index, p)));
-    let texel = vec2u(clamp(at, vec2f(0.0), vec2f(f32(lists_settings.window_side) - 1.0)));
-    return (index * lists_settings.window_side + texel.y) * lists_settings.window_side + texel.x;
+    let high = vec2f(settings_unsortable(atomicLoad(&bindings_state[first])), settings_unsortable(atomicLoad(&bindings_state[first + 1u])));
+    let low = vec2f(settings_unsortable(~atomicLoad(&bindings_state[first + 2u])), settings_unsortable(~atomicLoad(&bindings_state[first + 3u])));
+    let window = windows_window_from(bindings_settings.window_side, low, high, 0.0, 0.0);
+    let at = windows_texel_at(window, windows_direction_to(bindings_settings, windows_along_axes_of(index, p)));
+    let texel = vec2u(clamp(at, vec2f(0.0), vec2f(f32(bindings_settings.window_side) - 1.0)));
+    return (index * bindings_settings.window_side + texel.y) * bindings_settings.window_side + texel.x;
 }
 
 const projection_RADIANS_OF_MAP = 1.7724538509055159;
@@ -397,15 +408,59 @@ fn projection_cell_in(point: vec3f, low: vec3f, high: vec3f, bits: u32) -> u32 {
     return cell;
 }
 
-@group(1) @binding(14)
-var<uniform> ray_offset_snapped_texels: f32;
+struct windows_Window {
+    low: vec2f,
+    scale: vec2f,
+    depth: f32,
+    hair: f32,
+    reach: f32
+}
 
-fn ray_offset_most_ray_offset_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
-    let across = distance(low, high);
-    let distances = length(max(abs(low), abs(high))) + across + inputs_eye_distance_m(low);
-    let row = inputs_receiver_view.clip_w_row;
-    let most_w = abs(dot(row, vec4f(low, 1.0))) + length(row.xyz) * across;
-    return max(settings.hair_scale, 1.0) * (ray_offset_ROUNDING * distances + inputs_OFFSET_SNAPS * inputs_snapped_at_w(ray_offset_snapped_texels, most_w) + settings.matrix_rounding_m);
+fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
+    return windows_vector_to_windows(settings, x - light.center_in_world);
+}
+
+fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
+    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
+}
+
+fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
+    var turned = p;
+    if window / 2u == 1u {
+        turned = p.yzx;
+    }
+    else if window / 2u == 2u {
+        turned = p.zxy;
+    }
+    return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
+}
+
+fn windows_window_of(settings: settings_SampleSettings, p: vec3f) -> u32 {
+    if settings.window_count == 1u {
+        return 0u;
+    }
+    let size = abs(p);
+    if size.z >= max(size.x, size.y) {
+        return select(0u, 1u, p.z < 0.0);
+    }
+    if size.x >= size.y {
+        return select(2u, 3u, p.x < 0.0);
+    }
+    return select(4u, 5u, p.y < 0.0);
+}
+
+fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
+    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
+}
+
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
+    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
+    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
+    return windows_Window(low, f32(side) / size, depth, hair, reach);
+}
+
+fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
+    return (direction - window.low) * window.scale;
 }
 
 struct settings_SampleSettings {
@@ -522,59 +577,4 @@ fn shaft_shaft_plane(index: u32, a: shaft_Box, b: shaft_Box) -> vec4f {
     let corner_b = select(b.low, b.high, normal > vec3f(0.0));
     let terms = dot(abs(normal), max(abs(corner_a), abs(corner_b)));
     return vec4f(normal, max(dot(normal, corner_a), dot(normal, corner_b)) + shaft_SHAFT_SLACK * terms);
-}
-
-struct windows_Window {
-    low: vec2f,
-    scale: vec2f,
-    depth: f32,
-    hair: f32,
-    reach: f32
-}
-
-fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
-    return windows_vector_to_windows(settings, x - light.center_in_world);
-}
-
-fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
-    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
-}
-
-fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
-    var turned = p;
-    if window / 2u == 1u {
-        turned = p.yzx;
-    }
-    else if window / 2u == 2u {
-        turned = p.zxy;
-    }
-    return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
-}
-
-fn windows_window_of(settings: settings_SampleSettings, p: vec3f) -> u32 {
-    if settings.window_count == 1u {
-        return 0u;
-    }
-    let size = abs(p);
-    if size.z >= max(size.x, size.y) {
-        return select(0u, 1u, p.z < 0.0);
-    }
-    if size.x >= size.y {
-        return select(2u, 3u, p.x < 0.0);
-    }
-    return select(4u, 5u, p.y < 0.0);
-}
-
-fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
-    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
-}
-
-fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
-    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
-    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return windows_Window(low, f32(side) / size, depth, hair, reach);
-}
-
-fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
-    return (direction - window.low) * window.scale;
 }

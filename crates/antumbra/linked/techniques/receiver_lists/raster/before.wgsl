@@ -1,57 +1,35 @@
-// Linked from src/techniques/receiver_lists/bounds.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/raster/before.wesl by `cargo xtask shaders`: edit that, not this.
 
-var<workgroup> group_state: array<atomic<u32>, settings_STATE_LENGTH>;
+@group(1) @binding(1)
+var<storage, read> list: array<u32>;
 
-fn bound_window(x: vec3f) {
-    let p = windows_to_windows(lists_settings, inputs_light_source, x);
-    let index = windows_window_of(lists_settings, p);
-    let along = windows_along_axes_of(index, p);
-    let direction = windows_direction_to(lists_settings, along);
-    let hair = ray_offset_ray_offset_m(lists_settings, x);
-    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * index;
-    for (var axis = 0u; axis < 2u; axis++) {
-        atomicMax(&group_state[first + axis], settings_sortable(direction[axis]));
-        atomicMax(&group_state[first + 2u + axis], ~settings_sortable(direction[axis]));
+@group(1) @binding(6)
+var<storage, read> totals: array<u32>;
+
+@compute @workgroup_size(64)
+fn raster_before(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
+    let slot = runs_thread_index(id, group_counts);
+    if slot >= totals[settings_TOTAL_LISTED] {
+        return;
     }
-    atomicMax(&group_state[first + 4u], settings_sortable(along.z + hair));
-    atomicMax(&group_state[first + 5u], settings_sortable(select(hair / max(along.z, 1e-30), hair, lists_settings.projection == settings_PROJECT_PARALLEL)));
+    let pixel_index = list[slot];
+    let pixel = bits_pixel_of(pixel_index);
+    let receiver = inputs_load_receiver(pixel);
+    let sight = sight_sight_of(bits_settings, inputs_light_source, pixel, receiver);
+    let plane = points_plane_for(sight.rays, receiver.normal_in_world);
+    let first_word = bits_first_word_of(pixel_index);
+    for (var word = 0u; word < bits_settings.word_count; word++) {
+        open_bits_bits[first_word + word] = open_bits_in_front_of(plane, word);
+    }
 }
 
-@compute @workgroup_size(8, 8)
-fn bounds(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) lane: u32) {
-    if lane < settings_STATE_LENGTH {
-        atomicStore(&group_state[lane], 0u);
-    }
-    workgroupBarrier();
-    if inputs_is_inside(id.xy) {
-        let receiver = inputs_load_receiver(id.xy);
-        if lists_is_listed(receiver) {
-            let x = receiver.pos_in_world;
-            let as_seen = projection_project(lists_settings, inputs_light_source, x);
-            for (var axis = 0u; axis < 3u; axis++) {
-                atomicMax(&group_state[settings_STATE_LIGHT_MAX + axis], settings_sortable(as_seen[axis]));
-                atomicMax(&group_state[settings_STATE_LIGHT_MIN + axis], ~settings_sortable(as_seen[axis]));
-                atomicMax(&group_state[settings_STATE_WORLD_MAX + axis], settings_sortable(x[axis]));
-                atomicMax(&group_state[settings_STATE_WORLD_MIN + axis], ~settings_sortable(x[axis]));
-            }
-            if lists_settings.window_count > 0u {
-                bound_window(x);
-            }
-            if settings_is_on(lists_settings, settings_CHOOSES) {
-                atomicAdd(&group_state[settings_STATE_LISTED], 1u);
-            }
-        }
-        else {
-            inputs_write_visibility(id.xy, select(0.0, 1.0, receiver.is_background));
-        }
-    }
-    workgroupBarrier();
-    if lane == settings_STATE_LISTED {
-        atomicAdd(&lists_state[lane], atomicLoad(&group_state[lane]));
-    }
-    else if lane < settings_STATE_LENGTH {
-        atomicMax(&lists_state[lane], atomicLoad(&group_state[lane]));
-    }
+const depth_error_ROUNDING = 4.76837158203125e-7;
+
+fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
+    let at = vec2f(dot(clip_z_row, vec4f(pos_in_world, 1.0)), dot(clip_w_row, vec4f(pos_in_world, 1.0)));
+    let step = vec2f(dot(clip_z_row.xyz, along), dot(clip_w_row.xyz, along));
+    let depth_per_step = (step.x * at.y - at.x * step.y) / (at.y * at.y);
+    return along * (depth_error_ROUNDING / max(abs(depth_per_step), 1e-30));
 }
 
 struct inputs_ReceiverView {
@@ -90,31 +68,11 @@ var inputs_receiver_depth: texture_2d<f32>;
 @group(0) @binding(3)
 var inputs_receiver_normals: texture_2d<f32>;
 
-@group(0) @binding(4)
-var inputs_mask: texture_storage_2d_array<r32float, read_write>;
-
 struct inputs_Receiver {
     pos_in_world: vec3f,
     normal_in_world: vec3f,
     is_background: bool,
     is_reached: bool
-}
-
-const inputs_QUOTIENT_ROUNDING = 1e-5;
-
-fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    let is_one = visibility > 1.0 && visibility < 1.0 + inputs_QUOTIENT_ROUNDING;
-    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(select(visibility, 1.0, is_one)));
-}
-
-fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
-        inputs_store_mask(pixel, layer, visibility);
-    }
-}
-
-fn inputs_is_inside(pixel: vec2u) -> bool {
-    return all(pixel < inputs_receiver_view.size_px);
 }
 
 fn inputs_are_points() -> bool {
@@ -144,6 +102,15 @@ fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
 }
 
 const inputs_OFFSET_SNAPS = 1.5;
+
+fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
+    if inputs_are_points() {
+        return vec3f();
+    }
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+    return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
+}
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
@@ -258,6 +225,21 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
+@group(0) @binding(6)
+var noise_noise_tile: texture_2d<f32>;
+
+const noise_TILE_SIDE: u32 = 64;
+
+fn noise_blue_noise(pixel: vec2u) -> f32 {
+    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
+}
+
+const noise_GOLDEN = 0.618033989;
+
+fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
+}
+
 const ray_offset_ROUNDING = 3.814697265625e-6;
 
 fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
@@ -265,9 +247,58 @@ fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_r
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
 }
 
-const light_points_END_MARGIN = 9.5367431640625e-7;
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
 
-struct light_points_Rays {
+@group(1) @binding(0)
+var<uniform> bits_settings: settings_SampleSettings;
+
+@group(1) @binding(4)
+var<uniform> bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
+
+override bits_IS_FLAT: bool = false;
+
+fn bits_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+}
+
+fn bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * bits_settings.pixel_words + bits_settings.first_word;
+}
+
+fn bits_at_four(plane: vec4f, at: u32) -> vec4f {
+    let across = plane.x + plane.y * bits_light_words[at] + plane.z * bits_light_words[at + 1u];
+    if bits_IS_FLAT {
+        return across;
+    }
+    return across + plane.w * bits_light_words[at + 2u];
+}
+
+fn bits_bits_of_four(is_set: vec4<bool>) -> u32 {
+    let bits = select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_set);
+    return bits.x | bits.y | bits.z | bits.w;
+}
+
+fn bits_in_front_of_four(plane: vec4f, at: u32) -> u32 {
+    return bits_bits_of_four(bits_at_four(plane, at) > vec4f(0.0));
+}
+
+@group(1) @binding(5)
+var<storage, read_write> open_bits_bits: array<u32>;
+
+fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
+    var in_front = 0u;
+    for (var four = 0u; four < 8u; four++) {
+        in_front |= bits_in_front_of_four(plane, settings_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
+    }
+    let count = min(32u, bits_settings.point_count - 32u * word);
+    return in_front & (4294967295u >> (32u - count));
+}
+
+const points_END_MARGIN = 9.5367431640625e-7;
+
+struct points_Rays {
     to_center: vec3f,
     right: vec3f,
     up: vec3f,
@@ -275,7 +306,7 @@ struct light_points_Rays {
     inverse_end: f32
 }
 
-fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
+fn points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
     var part = noise;
     if settings.rotations > 1u {
         part = floor(noise * f32(settings.rotations)) / f32(settings.rotations);
@@ -284,8 +315,8 @@ fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
-fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> light_points_Rays {
-    var rays = light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + light_points_END_MARGIN);
+fn points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> points_Rays {
+    var rays = points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + points_END_MARGIN);
     if light.kind == light_KIND_SUN {
         rays.to_center = -light.axis_in_world;
         rays.inverse_end = 0.0;
@@ -299,65 +330,15 @@ fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightS
         rays.axis = -towards;
     }
     if settings.rotations > 0u {
-        let frame = light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
+        let frame = points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
         rays.right = frame[0];
         rays.up = frame[1];
     }
     return rays;
 }
 
-fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
+fn points_plane_for(rays: points_Rays, normal: vec3f) -> vec4f {
     return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
-}
-
-fn light_points_at_point(plane: vec4f, point: vec3f) -> f32 {
-    return plane.x + plane.y * point.x + plane.z * point.y + plane.w * point.z;
-}
-
-fn light_points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
-    return abs(plane.y) * half_box.x + abs(plane.z) * half_box.y + abs(plane.w) * half_box.z;
-}
-
-@group(1) @binding(0)
-var<uniform> lists_settings: settings_SampleSettings;
-
-@group(1) @binding(1)
-var<storage, read_write> lists_state: array<atomic<u32>>;
-
-@group(1) @binding(6)
-var<storage, read> lists_light_points: array<vec4f>;
-
-fn lists_is_listed(receiver: inputs_Receiver) -> bool {
-    if receiver.is_background || !receiver.is_reached {
-        return false;
-    }
-    let x = receiver.pos_in_world;
-    let rays = light_points_rays_from(lists_settings, inputs_light_source, x, x, 0.0);
-    let plane = light_points_plane_for(rays, receiver.normal_in_world);
-    var half_box = lists_light_points[1].xyz;
-    if lists_settings.rotations > 0u {
-        half_box = vec3f(vec2f(length(half_box.xy)), half_box.z);
-    }
-    return light_points_at_point(plane, lists_light_points[0].xyz) + light_points_reach_over(plane, half_box) > 0.0;
-}
-
-const projection_RADIANS_OF_MAP = 1.7724538509055159;
-
-fn projection_to_light(light: light_LightSource, x: vec3f) -> vec3f {
-    let p = x - light.center_in_world;
-    return vec3f(dot(p, light.right_in_world), dot(p, light.up_in_world), dot(p, light.axis_in_world));
-}
-
-fn projection_project(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
-    let p = projection_to_light(light, x);
-    if settings.projection == settings_PROJECT_SPHERE {
-        let on_octahedron = p / max(abs(p.x) + abs(p.y) + abs(p.z), 1e-30);
-        let signs = select(vec2f(-1.0), vec2f(1.0), on_octahedron.xy >= vec2f(0.0));
-        let folded = (1.0 - abs(on_octahedron.yx)) * signs;
-        let plane = select(folded, on_octahedron.xy, on_octahedron.z >= 0.0);
-        return vec3f(projection_RADIANS_OF_MAP * plane, log(max(length(p), 1e-12)));
-    }
-    return p;
 }
 
 @group(1) @binding(14)
@@ -365,6 +346,24 @@ var<uniform> ray_offset_snapped_texels: f32;
 
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
     return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
+}
+
+struct sight_Sight {
+    rays: points_Rays,
+    x: vec3f,
+    x_open: vec3f,
+    to_center_open: vec3f,
+    depth_error_m: vec3f
+}
+
+fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+    let noise = noise_noise_of_pixel(pixel);
+    return sight_Sight(points_rays_from(settings, light, x, x, noise), x, x_open, points_rays_from(settings, light, x_open, x, noise).to_center, inputs_depth_error_m(x));
+}
+
+fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
+    let x = receiver.pos_in_world;
+    return sight_sight_from(settings, light, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
 }
 
 struct settings_SampleSettings {
@@ -414,70 +413,8 @@ struct settings_SampleSettings {
     clip_w_row: vec4f
 }
 
-const settings_PROJECT_SPHERE = 0u;
+const settings_FIRST_POINT = 66u;
 
-const settings_PROJECT_PARALLEL = 1u;
+const settings_LIGHT_WORDS_LENGTH = 1090u;
 
-const settings_CHOOSES = 256u;
-
-fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
-    return (settings.switches & bit) != 0u;
-}
-
-const settings_STATE_LIGHT_MAX = 0u;
-
-const settings_STATE_LIGHT_MIN = 3u;
-
-const settings_STATE_WORLD_MAX = 6u;
-
-const settings_STATE_WORLD_MIN = 9u;
-
-const settings_STATE_WINDOWS = 12u;
-
-const settings_STATE_WINDOW_LENGTH = 6u;
-
-const settings_STATE_LISTED = 49u;
-
-const settings_STATE_LENGTH = 51u;
-
-fn settings_sortable(value: f32) -> u32 {
-    let bits = bitcast<u32>(value);
-    return select(bits | 2147483648u, ~bits, bits >= 2147483648u);
-}
-
-fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
-    return windows_vector_to_windows(settings, x - light.center_in_world);
-}
-
-fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
-    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
-}
-
-fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
-    var turned = p;
-    if window / 2u == 1u {
-        turned = p.yzx;
-    }
-    else if window / 2u == 2u {
-        turned = p.zxy;
-    }
-    return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
-}
-
-fn windows_window_of(settings: settings_SampleSettings, p: vec3f) -> u32 {
-    if settings.window_count == 1u {
-        return 0u;
-    }
-    let size = abs(p);
-    if size.z >= max(size.x, size.y) {
-        return select(0u, 1u, p.z < 0.0);
-    }
-    if size.x >= size.y {
-        return select(2u, 3u, p.x < 0.0);
-    }
-    return select(4u, 5u, p.y < 0.0);
-}
-
-fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
-    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
-}
+const settings_TOTAL_LISTED = 0u;

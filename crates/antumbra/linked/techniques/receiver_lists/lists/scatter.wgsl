@@ -1,35 +1,26 @@
-// Linked from src/techniques/receiver_lists/raster_before.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/lists/scatter.wesl by `cargo xtask shaders`: edit that, not this.
 
-@group(1) @binding(1)
-var<storage, read> list: array<u32>;
+override STORED_POSITIONS: bool = false;
 
-@group(1) @binding(6)
-var<storage, read> totals: array<u32>;
-
-@compute @workgroup_size(64)
-fn raster_before(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
-    let slot = runs_thread_index(id, group_counts);
-    if slot >= totals[settings_TOTAL_LISTED] {
+@compute @workgroup_size(8, 8)
+fn scatter(@builtin(global_invocation_id) id: vec3u) {
+    if !inputs_is_inside(id.xy) {
         return;
     }
-    let pixel_index = list[slot];
-    let pixel = light_bits_pixel_of(pixel_index);
-    let receiver = inputs_load_receiver(pixel);
-    let sight = sight_sight_of(light_bits_settings, inputs_light_source, pixel, receiver);
-    let plane = light_points_plane_for(sight.rays, receiver.normal_in_world);
-    let first_word = light_bits_first_word_of(pixel_index);
-    for (var word = 0u; word < light_bits_settings.word_count; word++) {
-        open_bits_bits[first_word + word] = open_bits_in_front_of(plane, word);
+    let pixel_index = id.y * inputs_receiver_view.size_px.x + id.x;
+    let place = bindings_places[pixel_index];
+    if place.x == settings_NOWHERE {
+        return;
     }
-}
-
-const depth_error_ROUNDING = 4.76837158203125e-7;
-
-fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
-    let at = vec2f(dot(clip_z_row, vec4f(pos_in_world, 1.0)), dot(clip_w_row, vec4f(pos_in_world, 1.0)));
-    let step = vec2f(dot(clip_z_row.xyz, along), dot(clip_w_row.xyz, along));
-    let depth_per_step = (step.x * at.y - at.x * step.y) / (at.y * at.y);
-    return along * (depth_error_ROUNDING / max(abs(depth_per_step), 1e-30));
+    let slot = atomicLoad(&bindings_counts[place.x]) + place.y;
+    bindings_list[slot] = pixel_index;
+    if STORED_POSITIONS {
+        let receiver = inputs_load_receiver(id.xy);
+        let x = receiver.pos_in_world;
+        bindings_positions[2u * slot] = vec4f(x, 1.0);
+        let hair = ray_offset_ray_offset_m(bindings_settings, x);
+        bindings_positions[2u * slot + 1u] = vec4f(x + hair * receiver.normal_in_world, 1.0);
+    }
 }
 
 struct inputs_ReceiverView {
@@ -75,6 +66,10 @@ struct inputs_Receiver {
     is_reached: bool
 }
 
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
+}
+
 fn inputs_are_points() -> bool {
     return inputs_receiver_view.are_points == 1u;
 }
@@ -102,15 +97,6 @@ fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
 }
 
 const inputs_OFFSET_SNAPS = 1.5;
-
-fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
-    if inputs_are_points() {
-        return vec3f();
-    }
-    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
-    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
-    return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
-}
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
@@ -184,11 +170,7 @@ const light_KIND_RECTANGLE = 0u;
 
 const light_KIND_DISK = 1u;
 
-const light_KIND_SPHERE = 2u;
-
 const light_KIND_SUN = 4u;
-
-const light_PI = 3.141592653589793;
 
 struct light_LightSource {
     center_in_world: vec3f,
@@ -225,120 +207,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
-@group(0) @binding(6)
-var noise_noise_tile: texture_2d<f32>;
-
-const noise_TILE_SIDE: u32 = 64;
-
-fn noise_blue_noise(pixel: vec2u) -> f32 {
-    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
-}
-
-const noise_GOLDEN = 0.618033989;
-
-fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
-    return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
-}
-
 const ray_offset_ROUNDING = 3.814697265625e-6;
 
 fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
     let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + inputs_eye_distance_m(pos_in_world));
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
-}
-
-fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
-    return id.y * group_counts.x * 64u + id.x;
-}
-
-@group(1) @binding(0)
-var<uniform> light_bits_settings: settings_SampleSettings;
-
-@group(1) @binding(4)
-var<uniform> light_bits_light_words: array<vec4f, settings_LIGHT_WORDS_LENGTH>;
-
-override light_bits_IS_FLAT: bool = false;
-
-fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
-    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
-}
-
-fn light_bits_first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
-}
-
-fn light_bits_at_four(plane: vec4f, at: u32) -> vec4f {
-    let across = plane.x + plane.y * light_bits_light_words[at] + plane.z * light_bits_light_words[at + 1u];
-    if light_bits_IS_FLAT {
-        return across;
-    }
-    return across + plane.w * light_bits_light_words[at + 2u];
-}
-
-fn light_bits_bits_of_four(is_set: vec4<bool>) -> u32 {
-    let bits = select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_set);
-    return bits.x | bits.y | bits.z | bits.w;
-}
-
-fn light_bits_in_front_of_four(plane: vec4f, at: u32) -> u32 {
-    return light_bits_bits_of_four(light_bits_at_four(plane, at) > vec4f(0.0));
-}
-
-const light_points_END_MARGIN = 9.5367431640625e-7;
-
-struct light_points_Rays {
-    to_center: vec3f,
-    right: vec3f,
-    up: vec3f,
-    axis: vec3f,
-    inverse_end: f32
-}
-
-fn light_points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up: vec3f) -> mat2x3f {
-    var part = noise;
-    if settings.rotations > 1u {
-        part = floor(noise * f32(settings.rotations)) / f32(settings.rotations);
-    }
-    let angle = 2.0 * light_PI * part;
-    return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
-}
-
-fn light_points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> light_points_Rays {
-    var rays = light_points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + light_points_END_MARGIN);
-    if light.kind == light_KIND_SUN {
-        rays.to_center = -light.axis_in_world;
-        rays.inverse_end = 0.0;
-    }
-    if light.kind == light_KIND_SPHERE {
-        let towards = normalize(light.center_in_world - position);
-        let across = cross(light.up_in_world, towards);
-        let across_length = length(across);
-        rays.right = select(light.right_in_world, across / max(across_length, 1e-20), across_length > 1e-6);
-        rays.up = cross(towards, rays.right);
-        rays.axis = -towards;
-    }
-    if settings.rotations > 0u {
-        let frame = light_points_turned(settings, fract(noise + settings.turn), rays.right, rays.up);
-        rays.right = frame[0];
-        rays.up = frame[1];
-    }
-    return rays;
-}
-
-fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
-    return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
-}
-
-@group(1) @binding(5)
-var<storage, read_write> open_bits_bits: array<u32>;
-
-fn open_bits_in_front_of(plane: vec4f, word: u32) -> u32 {
-    var in_front = 0u;
-    for (var four = 0u; four < 8u; four++) {
-        in_front |= light_bits_in_front_of_four(plane, settings_FIRST_POINT + 32u * word + 4u * four) << (4u * four);
-    }
-    let count = min(32u, light_bits_settings.point_count - 32u * word);
-    return in_front & (4294967295u >> (32u - count));
 }
 
 @group(1) @binding(14)
@@ -347,6 +220,21 @@ var<uniform> ray_offset_snapped_texels: f32;
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
     return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
+
+@group(1) @binding(0)
+var<uniform> bindings_settings: settings_SampleSettings;
+
+@group(1) @binding(2)
+var<storage, read_write> bindings_counts: array<atomic<u32>>;
+
+@group(1) @binding(3)
+var<storage, read_write> bindings_places: array<vec2u>;
+
+@group(1) @binding(4)
+var<storage, read_write> bindings_list: array<u32>;
+
+@group(1) @binding(7)
+var<storage, read_write> bindings_positions: array<vec4f>;
 
 struct settings_SampleSettings {
     light_min: vec3f,
@@ -395,26 +283,4 @@ struct settings_SampleSettings {
     clip_w_row: vec4f
 }
 
-const settings_FIRST_POINT = 66u;
-
-const settings_LIGHT_WORDS_LENGTH = 1090u;
-
-const settings_TOTAL_LISTED = 0u;
-
-struct sight_Sight {
-    rays: light_points_Rays,
-    x: vec3f,
-    x_open: vec3f,
-    to_center_open: vec3f,
-    depth_error_m: vec3f
-}
-
-fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
-    let noise = noise_noise_of_pixel(pixel);
-    return sight_Sight(light_points_rays_from(settings, light, x, x, noise), x, x_open, light_points_rays_from(settings, light, x_open, x, noise).to_center, inputs_depth_error_m(x));
-}
-
-fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
-    let x = receiver.pos_in_world;
-    return sight_sight_from(settings, light, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
-}
+const settings_NOWHERE = 4294967295u;

@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/raster_arguments.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/raster/arguments.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(0)
 var<uniform> settings: settings_SampleSettings;

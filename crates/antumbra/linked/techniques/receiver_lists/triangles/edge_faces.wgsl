@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/edge_faces.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/triangles/edge_faces.wesl by `cargo xtask shaders`: edit that, not this.
 
 @compute @workgroup_size(64)
 fn edge_faces(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
@@ -101,6 +101,25 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
+const settings_FLAG_CLOSED = 1u;
+
+const shaft_SHAFT_PLANES = 18u;
+
+const shaft_SHAFT_SLACK = 2e-6;
+
+struct shaft_Box {
+    low: vec3f,
+    high: vec3f
+}
+
+fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
+    let middle = 0.5 * (box.low + box.high) - a;
+    let distance = dot(normal, middle);
+    let terms = dot(abs(normal), abs(middle));
+    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
+    return select(0.0, sign(distance), abs(distance) > reach);
+}
+
 @group(0) @binding(1)
 var<uniform> casters_shaft: array<vec4f, 22>;
 
@@ -121,23 +140,4 @@ fn edges_face_of(triangle: runs_Triangle, light: shaft_Box) -> u32 {
     let a = triangle.corners[0];
     let side = shaft_side_of_box(cross(triangle.corners[1] - a, triangle.corners[2] - a), a, light);
     return select(select(edges_FACE_BOTH, edges_FACE_BACK, side < 0.0), edges_FACE_FRONT, side > 0.0);
-}
-
-const settings_FLAG_CLOSED = 1u;
-
-const shaft_SHAFT_PLANES = 18u;
-
-const shaft_SHAFT_SLACK = 2e-6;
-
-struct shaft_Box {
-    low: vec3f,
-    high: vec3f
-}
-
-fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
-    let middle = 0.5 * (box.low + box.high) - a;
-    let distance = dot(normal, middle);
-    let terms = dot(abs(normal), abs(middle));
-    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
-    return select(0.0, sign(distance), abs(distance) > reach);
 }

@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/region_probe.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/raster/probe.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(0)
 var<storage, read> cases: array<vec4f>;
@@ -34,6 +34,20 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
+struct windows_Window {
+    low: vec2f,
+    scale: vec2f,
+    depth: f32,
+    hair: f32,
+    reach: f32
+}
+
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
+    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
+    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
+    return windows_Window(low, f32(side) / size, depth, hair, reach);
+}
+
 struct region_Region {
     low: vec2f,
     high: vec2f,
@@ -48,70 +62,6 @@ struct region_LightSpan {
 
 fn region_shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
     return v.xy + d / d_z * (z - v.z);
-}
-
-struct settings_SampleSettings {
-    light_min: vec3f,
-    point_count: u32,
-    light_max: vec3f,
-    word_count: u32,
-    casters_min: vec3f,
-    list_bits: u32,
-    casters_max: vec3f,
-    projection: u32,
-    total_weight: f32,
-    switches: u32,
-    cell_count: u32,
-    list_count: u32,
-    super_first: u32,
-    is_weighted: u32,
-    triangle_stride: u32,
-    lookup_size: u32,
-    first_word: u32,
-    pixel_words: u32,
-    rotations: u32,
-    turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
-    cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
-    first_passed: u32,
-    window_count: u32,
-    window: u32,
-    window_side: u32,
-    receivers_per_instance: u32,
-    padding_0: u32,
-    window_right: vec3f,
-    region_corners: u32,
-    window_up: vec3f,
-    matrix_rounding_m: f32,
-    window_axis: vec3f,
-    padding_1: u32,
-    window_light_min: vec3f,
-    padding_2: u32,
-    window_light_max: vec3f,
-    padding_3: u32,
-    clip_z_row: vec4f,
-    clip_w_row: vec4f
-}
-
-const settings_PROJECT_PARALLEL = 1u;
-
-const shaft_SHAFT_SLACK = 2e-6;
-
-struct shaft_Box {
-    low: vec3f,
-    high: vec3f
-}
-
-fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
-    let middle = 0.5 * (box.low + box.high) - a;
-    let distance = dot(normal, middle);
-    let terms = dot(abs(normal), abs(middle));
-    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
-    return select(0.0, sign(distance), abs(distance) > reach);
 }
 
 const six_vertices_SHORTEST_EDGE = 0.0078125;
@@ -187,16 +137,66 @@ fn supporting_plane_cut_of(settings: settings_SampleSettings, window: windows_Wi
     return vec3f(-per_texel, slack - at_low + 0.5 * (abs(per_texel.x) + abs(per_texel.y)));
 }
 
-struct windows_Window {
-    low: vec2f,
-    scale: vec2f,
-    depth: f32,
-    hair: f32,
-    reach: f32
+struct settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    padding_0: u32,
+    window_right: vec3f,
+    region_corners: u32,
+    window_up: vec3f,
+    matrix_rounding_m: f32,
+    window_axis: vec3f,
+    padding_1: u32,
+    window_light_min: vec3f,
+    padding_2: u32,
+    window_light_max: vec3f,
+    padding_3: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
-fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
-    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
-    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return windows_Window(low, f32(side) / size, depth, hair, reach);
+const settings_PROJECT_PARALLEL = 1u;
+
+const shaft_SHAFT_SLACK = 2e-6;
+
+struct shaft_Box {
+    low: vec3f,
+    high: vec3f
+}
+
+fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
+    let middle = 0.5 * (box.low + box.high) - a;
+    let distance = dot(normal, middle);
+    let terms = dot(abs(normal), abs(middle));
+    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
+    return select(0.0, sign(distance), abs(distance) > reach);
 }

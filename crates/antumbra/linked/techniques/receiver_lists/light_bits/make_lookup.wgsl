@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/make_lookup.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/light_bits/make_lookup.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(0)
 var<uniform> settings: settings_SampleSettings;

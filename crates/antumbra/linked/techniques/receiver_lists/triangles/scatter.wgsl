@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/triangle_scatter.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/triangles/scatter.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(1) @binding(5)
 var<storage, read> mesh_uvs: array<f32>;
@@ -147,23 +147,6 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
-@group(0) @binding(0)
-var<uniform> casters_settings: settings_SampleSettings;
-
-@group(0) @binding(2)
-var<storage, read_write> casters_cells: array<atomic<u32>>;
-
-@group(0) @binding(3)
-var<storage, read_write> casters_triangle_places: array<vec2u>;
-
-@group(0) @binding(4)
-var<storage, read_write> casters_triangles: array<vec4f>;
-
-@group(0) @binding(5)
-var<storage, read_write> casters_edges: array<atomic<u32>>;
-
-const edges_FACE_BOTH = 3u;
-
 struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
@@ -222,3 +205,20 @@ const settings_NOWHERE = 4294967295u;
 const settings_FLAG_CLOSED = 1u;
 
 const settings_FLAG_SILHOUETTE = 2u;
+
+@group(0) @binding(0)
+var<uniform> casters_settings: settings_SampleSettings;
+
+@group(0) @binding(2)
+var<storage, read_write> casters_cells: array<atomic<u32>>;
+
+@group(0) @binding(3)
+var<storage, read_write> casters_triangle_places: array<vec2u>;
+
+@group(0) @binding(4)
+var<storage, read_write> casters_triangles: array<vec4f>;
+
+@group(0) @binding(5)
+var<storage, read_write> casters_edges: array<atomic<u32>>;
+
+const edges_FACE_BOTH = 3u;

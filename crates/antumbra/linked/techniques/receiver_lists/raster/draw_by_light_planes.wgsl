@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/raster_light_planes.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/raster/draw_by_light_planes.wesl by `cargo xtask shaders`: edit that, not this.
 
 override HAS_HOLES: bool = false;
 
@@ -28,9 +28,9 @@ struct Fragment {
 @vertex
 fn vertex(@builtin(vertex_index) vertex_index: u32, @builtin(instance_index) instance: u32) -> Fragment {
     let influence = influence_influence_of(vertex_index, instance, 0u);
-    let source = light_bits_settings.triangle_stride * influence.triangle;
+    let source = bits_settings.triangle_stride * influence.triangle;
     let is_closed = (influence_flags_of(influence.triangle) & settings_FLAG_CLOSED) != 0u;
-    let planes = light_planes_light_planes_of(inputs_light_source, light_bits_triangles[source].xyz, light_bits_triangles[source + 1u].xyz, light_bits_triangles[source + 2u].xyz, is_closed);
+    let planes = planes_light_planes_of(inputs_light_source, bits_triangles[source].xyz, bits_triangles[source + 1u].xyz, bits_triangles[source + 2u].xyz, is_closed);
     return Fragment(select(influence.corner, vec4f(2.0, 2.0, 0.0, 1.0), planes.is_missed), influence.triangle, influence.first_place, influence.cut, planes.edge_a, planes.edge_b, planes.edge_c, planes.support, planes.corner_a);
 }
 
@@ -40,23 +40,23 @@ fn fragment(fragment: Fragment) {
     if part.count == 0u || supporting_plane_is_cut_off(fragment.cut, fragment.position.xy) {
         return;
     }
-    let planes = light_planes_LightPlanes(fragment.edge_a, fragment.edge_b, fragment.edge_c, fragment.support, fragment.corner_a, false);
+    let planes = planes_LightPlanes(fragment.edge_a, fragment.edge_b, fragment.edge_c, fragment.support, fragment.corner_a, false);
     let is_closed = (influence_flags_of(fragment.triangle) & settings_FLAG_CLOSED) != 0u;
-    let largest_depth = light_bits_triangles[light_bits_settings.triangle_stride * fragment.triangle + 1u].w;
-    for (var i = 0u; i < min(part.count, light_bits_settings.receivers_per_instance); i++) {
+    let largest_depth = bits_triangles[bits_settings.triangle_stride * fragment.triangle + 1u].w;
+    for (var i = 0u; i < min(part.count, bits_settings.receivers_per_instance); i++) {
         let pixel_index = texel_receivers_list[part.first + i];
-        let first_word = light_bits_first_word_of(pixel_index);
-        if settings_is_on(light_bits_settings, settings_STOP_WHEN_OCCLUDED) && atomicLoad(&texel_receivers_bits[first_word]) == 0u {
+        let first_word = bits_first_word_of(pixel_index);
+        if settings_is_on(bits_settings, settings_STOP_WHEN_OCCLUDED) && atomicLoad(&texel_receivers_bits[first_word]) == 0u {
             continue;
         }
         let place = texel_receivers_place_of(part.first + i, pixel_index, STORED_POSITIONS);
         let p = select(place.x_open, place.x, is_closed) - inputs_light_source.center_in_world;
-        let values = light_planes_edge_values(planes, p);
+        let values = planes_edge_values(planes, p);
         let error_m = largest_depth * inputs_depth_error_m(place.x);
-        if min(min(values.x, values.y), values.z) < 0.0 || !light_planes_is_between(planes, p, error_m) {
+        if min(min(values.x, values.y), values.z) < 0.0 || !planes_is_between(planes, p, error_m) {
             continue;
         }
-        if HAS_HOLES && !light_bits_is_solid(values, light_bits_settings.triangle_stride * fragment.triangle) {
+        if HAS_HOLES && !bits_is_solid(values, bits_settings.triangle_stride * fragment.triangle) {
             continue;
         }
         atomicStore(&texel_receivers_bits[first_word], 0u);
@@ -290,6 +290,142 @@ fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec
     return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
 }
 
+@group(1) @binding(0)
+var<uniform> bits_settings: settings_SampleSettings;
+
+@group(1) @binding(2)
+var<storage, read> bits_triangles: array<vec4f>;
+
+struct bits_SampleSurface {
+    factor: vec4f,
+    cutoff: f32,
+    coverage: u32,
+    padding_0: u32,
+    padding_1: u32
+}
+
+@group(2) @binding(0)
+var<uniform> bits_surface: bits_SampleSurface;
+
+@group(2) @binding(1)
+var bits_surface_texture: texture_2d<f32>;
+
+@group(2) @binding(2)
+var bits_surface_sampler: sampler;
+
+fn bits_pixel_of(pixel_index: u32) -> vec2u {
+    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
+}
+
+fn bits_first_word_of(pixel_index: u32) -> u32 {
+    return pixel_index * bits_settings.pixel_words + bits_settings.first_word;
+}
+
+fn bits_surface_from(values: vec3f, source: u32) -> vec4f {
+    let weights = values / max(values.x + values.y + values.z, 1e-37);
+    let uv_ab = bits_triangles[source + 3u];
+    let uv_c = bits_triangles[source + 4u].xy;
+    let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
+    return bits_surface.factor * textureSampleLevel(bits_surface_texture, bits_surface_sampler, uv, 0.0);
+}
+
+fn bits_stopped_white(value: vec4f) -> f32 {
+    return caster_surface_stopped_light(bits_surface.coverage, bits_surface.cutoff, value).x;
+}
+
+fn bits_is_solid(values: vec3f, source: u32) -> bool {
+    return bits_stopped_white(bits_surface_from(values, source)) >= 0.5;
+}
+
+struct planes_LightPlanes {
+    edge_a: vec4f,
+    edge_b: vec4f,
+    edge_c: vec4f,
+    support: vec4f,
+    corner_a: vec3f,
+    is_missed: bool
+}
+
+fn planes_edge_plane(light: light_LightSource, side: f32, b: vec3f, c: vec3f) -> vec4f {
+    if light.kind == light_KIND_SUN {
+        let normal = side * cross(light.axis_in_world, c - b);
+        return vec4f(normal, -dot(normal, 0.5 * (b + c)));
+    }
+    return vec4f(side * cross(b - c, b + c), 0.0);
+}
+
+fn planes_light_planes_of(light: light_LightSource, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool) -> planes_LightPlanes {
+    let a = corner_a - light.center_in_world;
+    let b = corner_b - light.center_in_world;
+    let c = corner_c - light.center_in_world;
+    let normal = cross(corner_b - corner_a, corner_c - corner_a);
+    let is_sun = light.kind == light_KIND_SUN;
+    let height = dot(normal, select(a, light.axis_in_world, is_sun));
+    let side = sign(height);
+    return planes_LightPlanes(planes_edge_plane(light, side, b, c), planes_edge_plane(light, side, c, a), planes_edge_plane(light, side, a, b), vec4f(side * normal, select(abs(height), 1e30, is_sun)), a, height == 0.0 || (is_closed && height < 0.0));
+}
+
+fn planes_edge_values(planes: planes_LightPlanes, p: vec3f) -> vec3f {
+    return vec3f(dot(planes.edge_a.xyz, p) + planes.edge_a.w, dot(planes.edge_b.xyz, p) + planes.edge_b.w, dot(planes.edge_c.xyz, p) + planes.edge_c.w);
+}
+
+fn planes_is_between(planes: planes_LightPlanes, p: vec3f, depth_error_m: vec3f) -> bool {
+    let behind = dot(planes.support.xyz, p - planes.corner_a);
+    let away = dot(planes.support.xyz, depth_error_m);
+    let is_beyond = select(behind > 0.0, away < 0.0, abs(behind) <= abs(away));
+    return is_beyond && planes.support.w * (1.0 + points_END_MARGIN) > points_END_MARGIN * dot(planes.support.xyz, p);
+}
+
+const points_END_MARGIN = 9.5367431640625e-7;
+
+@group(1) @binding(14)
+var<uniform> ray_offset_snapped_texels: f32;
+
+fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
+    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
+}
+
+struct windows_Window {
+    low: vec2f,
+    scale: vec2f,
+    depth: f32,
+    hair: f32,
+    reach: f32
+}
+
+fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
+    return windows_vector_to_windows(settings, x - light.center_in_world);
+}
+
+fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
+    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
+}
+
+fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
+    var turned = p;
+    if window / 2u == 1u {
+        turned = p.yzx;
+    }
+    else if window / 2u == 2u {
+        turned = p.zxy;
+    }
+    return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
+}
+
+fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
+    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
+}
+
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
+    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
+    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
+    return windows_Window(low, f32(side) / size, depth, hair, reach);
+}
+
+fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
+    return (direction - window.low) * window.scale;
+}
+
 @group(1) @binding(3)
 var<storage, read> influence_state: array<u32>;
 
@@ -311,14 +447,14 @@ struct influence_Influence {
 }
 
 fn influence_drawn_window() -> windows_Window {
-    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * light_bits_settings.window;
+    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * bits_settings.window;
     let high = vec2f(settings_unsortable(influence_state[first]), settings_unsortable(influence_state[first + 1u]));
     let low = vec2f(settings_unsortable(~influence_state[first + 2u]), settings_unsortable(~influence_state[first + 3u]));
-    return windows_window_from(light_bits_settings.window_side, low, high, settings_unsortable(influence_state[first + 4u]), settings_unsortable(influence_state[first + 5u]));
+    return windows_window_from(bits_settings.window_side, low, high, settings_unsortable(influence_state[first + 4u]), settings_unsortable(influence_state[first + 5u]));
 }
 
 fn influence_flags_of(triangle: u32) -> u32 {
-    return u32(light_bits_triangles[light_bits_settings.triangle_stride * triangle].w);
+    return u32(bits_triangles[bits_settings.triangle_stride * triangle].w);
 }
 
 fn influence_corner_of_region(window: windows_Window, light: region_LightSpan, given: array<vec3f, 3>, index: u32) -> vec3f {
@@ -328,7 +464,7 @@ fn influence_corner_of_region(window: windows_Window, light: region_LightSpan, g
     var is_unbounded = false;
     var nearest = 1e38;
     for (var k = 0u; k < 3u; k++) {
-        regions[k] = region_region_of(light_bits_settings, window, light, corners[k]);
+        regions[k] = region_region_of(bits_settings, window, light, corners[k]);
         is_behind &= regions[k].is_behind;
         is_unbounded |= regions[k].is_unbounded;
         nearest = min(nearest, corners[k].z);
@@ -339,10 +475,10 @@ fn influence_corner_of_region(window: windows_Window, light: region_LightSpan, g
     if is_unbounded {
         for (var k = 0u; k < 3u; k++) {
             regions[k].low = vec2f(-1.0);
-            regions[k].high = vec2f(f32(light_bits_settings.window_side) + 1.0);
+            regions[k].high = vec2f(f32(bits_settings.window_side) + 1.0);
         }
     }
-    if light_bits_settings.region_corners == influence_SIX_VERTICES {
+    if bits_settings.region_corners == influence_SIX_VERTICES {
         return vec3f(six_vertices_six_vertex(regions, index), 1.0);
     }
     return vec3f(region_hull_corner(regions, index), 1.0);
@@ -351,26 +487,26 @@ fn influence_corner_of_region(window: windows_Window, light: region_LightSpan, g
 fn influence_influence_of(vertex_index: u32, instance: u32, required: u32) -> influence_Influence {
     let triangle_count = influence_totals[settings_TOTAL_TRIANGLES];
     let triangle = instance % triangle_count;
-    let first_place = instance / triangle_count * light_bits_settings.receivers_per_instance;
+    let first_place = instance / triangle_count * bits_settings.receivers_per_instance;
     var influence = influence_Influence(vec4f(2.0, 2.0, 0.0, 1.0), triangle, first_place, supporting_plane_NOTHING_CUT);
     let flags = influence_flags_of(triangle);
-    if influence_state[settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * light_bits_settings.window] == 0u || (flags & required) != required {
+    if influence_state[settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * bits_settings.window] == 0u || (flags & required) != required {
         return influence;
     }
     let window = influence_drawn_window();
-    let light = region_light_span(light_bits_settings, light_bits_settings.window);
-    let source = light_bits_settings.triangle_stride * triangle;
+    let light = region_light_span(bits_settings, bits_settings.window);
+    let source = bits_settings.triangle_stride * triangle;
     var corners: array<vec3f, 3>;
     for (var k = 0u; k < 3u; k++) {
-        corners[k] = windows_along_axes_of(light_bits_settings.window, windows_to_windows(light_bits_settings, inputs_light_source, light_bits_triangles[source + k].xyz));
+        corners[k] = windows_along_axes_of(bits_settings.window, windows_to_windows(bits_settings, inputs_light_source, bits_triangles[source + k].xyz));
     }
-    if settings_is_on(light_bits_settings, settings_CUT_BY_PLANE) {
-        let a = light_bits_triangles[source].xyz;
-        let normal_in_world = cross(light_bits_triangles[source + 1u].xyz - a, light_bits_triangles[source + 2u].xyz - a);
-        let normal = windows_along_axes_of(light_bits_settings.window, windows_vector_to_windows(light_bits_settings, normal_in_world));
-        influence.cut = supporting_plane_cut_of(light_bits_settings, window, light, corners[0], normal, (flags & settings_FLAG_CLOSED) != 0u);
+    if settings_is_on(bits_settings, settings_CUT_BY_PLANE) {
+        let a = bits_triangles[source].xyz;
+        let normal_in_world = cross(bits_triangles[source + 1u].xyz - a, bits_triangles[source + 2u].xyz - a);
+        let normal = windows_along_axes_of(bits_settings.window, windows_vector_to_windows(bits_settings, normal_in_world));
+        influence.cut = supporting_plane_cut_of(bits_settings, window, light, corners[0], normal, (flags & settings_FLAG_CLOSED) != 0u);
     }
-    let count = light_bits_settings.region_corners;
+    let count = bits_settings.region_corners;
     let index = select((count - vertex_index / 2u) % count, (vertex_index + 1u) / 2u, (vertex_index & 1u) == 1u);
     var at: vec3f;
     if count == influence_HULL_CORNERS {
@@ -380,105 +516,10 @@ fn influence_influence_of(vertex_index: u32, instance: u32, required: u32) -> in
         at = influence_corner_of_region(window, light, corners, index);
     }
     if at.z == 1.0 {
-        let part = at.xy / f32(light_bits_settings.window_side);
+        let part = at.xy / f32(bits_settings.window_side);
         influence.corner = vec4f(2.0 * part.x - 1.0, 1.0 - 2.0 * part.y, 0.5, 1.0);
     }
     return influence;
-}
-
-@group(1) @binding(0)
-var<uniform> light_bits_settings: settings_SampleSettings;
-
-@group(1) @binding(2)
-var<storage, read> light_bits_triangles: array<vec4f>;
-
-struct light_bits_SampleSurface {
-    factor: vec4f,
-    cutoff: f32,
-    coverage: u32,
-    padding_0: u32,
-    padding_1: u32
-}
-
-@group(2) @binding(0)
-var<uniform> light_bits_surface: light_bits_SampleSurface;
-
-@group(2) @binding(1)
-var light_bits_surface_texture: texture_2d<f32>;
-
-@group(2) @binding(2)
-var light_bits_surface_sampler: sampler;
-
-fn light_bits_pixel_of(pixel_index: u32) -> vec2u {
-    return vec2u(pixel_index % inputs_receiver_view.size_px.x, pixel_index / inputs_receiver_view.size_px.x);
-}
-
-fn light_bits_first_word_of(pixel_index: u32) -> u32 {
-    return pixel_index * light_bits_settings.pixel_words + light_bits_settings.first_word;
-}
-
-fn light_bits_surface_from(values: vec3f, source: u32) -> vec4f {
-    let weights = values / max(values.x + values.y + values.z, 1e-37);
-    let uv_ab = light_bits_triangles[source + 3u];
-    let uv_c = light_bits_triangles[source + 4u].xy;
-    let uv = weights.x * uv_ab.xy + weights.y * uv_ab.zw + weights.z * uv_c;
-    return light_bits_surface.factor * textureSampleLevel(light_bits_surface_texture, light_bits_surface_sampler, uv, 0.0);
-}
-
-fn light_bits_stopped_white(value: vec4f) -> f32 {
-    return caster_surface_stopped_light(light_bits_surface.coverage, light_bits_surface.cutoff, value).x;
-}
-
-fn light_bits_is_solid(values: vec3f, source: u32) -> bool {
-    return light_bits_stopped_white(light_bits_surface_from(values, source)) >= 0.5;
-}
-
-struct light_planes_LightPlanes {
-    edge_a: vec4f,
-    edge_b: vec4f,
-    edge_c: vec4f,
-    support: vec4f,
-    corner_a: vec3f,
-    is_missed: bool
-}
-
-fn light_planes_edge_plane(light: light_LightSource, side: f32, b: vec3f, c: vec3f) -> vec4f {
-    if light.kind == light_KIND_SUN {
-        let normal = side * cross(light.axis_in_world, c - b);
-        return vec4f(normal, -dot(normal, 0.5 * (b + c)));
-    }
-    return vec4f(side * cross(b - c, b + c), 0.0);
-}
-
-fn light_planes_light_planes_of(light: light_LightSource, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool) -> light_planes_LightPlanes {
-    let a = corner_a - light.center_in_world;
-    let b = corner_b - light.center_in_world;
-    let c = corner_c - light.center_in_world;
-    let normal = cross(corner_b - corner_a, corner_c - corner_a);
-    let is_sun = light.kind == light_KIND_SUN;
-    let height = dot(normal, select(a, light.axis_in_world, is_sun));
-    let side = sign(height);
-    return light_planes_LightPlanes(light_planes_edge_plane(light, side, b, c), light_planes_edge_plane(light, side, c, a), light_planes_edge_plane(light, side, a, b), vec4f(side * normal, select(abs(height), 1e30, is_sun)), a, height == 0.0 || (is_closed && height < 0.0));
-}
-
-fn light_planes_edge_values(planes: light_planes_LightPlanes, p: vec3f) -> vec3f {
-    return vec3f(dot(planes.edge_a.xyz, p) + planes.edge_a.w, dot(planes.edge_b.xyz, p) + planes.edge_b.w, dot(planes.edge_c.xyz, p) + planes.edge_c.w);
-}
-
-fn light_planes_is_between(planes: light_planes_LightPlanes, p: vec3f, depth_error_m: vec3f) -> bool {
-    let behind = dot(planes.support.xyz, p - planes.corner_a);
-    let away = dot(planes.support.xyz, depth_error_m);
-    let is_beyond = select(behind > 0.0, away < 0.0, abs(behind) <= abs(away));
-    return is_beyond && planes.support.w * (1.0 + light_points_END_MARGIN) > light_points_END_MARGIN * dot(planes.support.xyz, p);
-}
-
-const light_points_END_MARGIN = 9.5367431640625e-7;
-
-@group(1) @binding(14)
-var<uniform> ray_offset_snapped_texels: f32;
-
-fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
-    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 struct region_Region {
@@ -591,90 +632,6 @@ fn region_is_farther(a: vec2f, b: vec2f, axis: vec2f, next_axis: vec2f) -> bool 
     return more > 0.0 || (more == 0.0 && dot(a - b, next_axis) > 0.0);
 }
 
-struct settings_SampleSettings {
-    light_min: vec3f,
-    point_count: u32,
-    light_max: vec3f,
-    word_count: u32,
-    casters_min: vec3f,
-    list_bits: u32,
-    casters_max: vec3f,
-    projection: u32,
-    total_weight: f32,
-    switches: u32,
-    cell_count: u32,
-    list_count: u32,
-    super_first: u32,
-    is_weighted: u32,
-    triangle_stride: u32,
-    lookup_size: u32,
-    first_word: u32,
-    pixel_words: u32,
-    rotations: u32,
-    turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
-    cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
-    first_passed: u32,
-    window_count: u32,
-    window: u32,
-    window_side: u32,
-    receivers_per_instance: u32,
-    padding_0: u32,
-    window_right: vec3f,
-    region_corners: u32,
-    window_up: vec3f,
-    matrix_rounding_m: f32,
-    window_axis: vec3f,
-    padding_1: u32,
-    window_light_min: vec3f,
-    padding_2: u32,
-    window_light_max: vec3f,
-    padding_3: u32,
-    clip_z_row: vec4f,
-    clip_w_row: vec4f
-}
-
-const settings_PROJECT_PARALLEL = 1u;
-
-const settings_STOP_WHEN_OCCLUDED = 1u;
-
-const settings_CUT_BY_PLANE = 4u;
-
-fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
-    return (settings.switches & bit) != 0u;
-}
-
-const settings_STATE_WINDOWS = 12u;
-
-const settings_STATE_WINDOW_LENGTH = 6u;
-
-const settings_TOTAL_TRIANGLES = 1u;
-
-const settings_FLAG_CLOSED = 1u;
-
-fn settings_unsortable(bits: u32) -> f32 {
-    return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
-}
-
-const shaft_SHAFT_SLACK = 2e-6;
-
-struct shaft_Box {
-    low: vec3f,
-    high: vec3f
-}
-
-fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
-    let middle = 0.5 * (box.low + box.high) - a;
-    let distance = dot(normal, middle);
-    let terms = dot(abs(normal), abs(middle));
-    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
-    return select(0.0, sign(distance), abs(distance) > reach);
-}
-
 const six_vertices_SHORTEST_EDGE = 0.0078125;
 
 fn six_vertices_quadrant_of_normal(along: vec2f) -> u32 {
@@ -766,7 +723,7 @@ var<storage, read> texel_receivers_positions: array<vec4f>;
 
 fn texel_receivers_cell_of_texel(position: vec2f) -> u32 {
     let texel = vec2u(position);
-    return (light_bits_settings.window * light_bits_settings.window_side + texel.y) * light_bits_settings.window_side + texel.x;
+    return (bits_settings.window * bits_settings.window_side + texel.y) * bits_settings.window_side + texel.x;
 }
 
 struct texel_receivers_Part {
@@ -776,7 +733,7 @@ struct texel_receivers_Part {
 
 fn texel_receivers_part_of_list(cell: u32, first_place: u32) -> texel_receivers_Part {
     let first = texel_receivers_firsts[cell] + first_place;
-    return texel_receivers_Part(first, min(max(texel_receivers_firsts[cell + 1u], first) - first, light_bits_settings.receivers_per_instance));
+    return texel_receivers_Part(first, min(max(texel_receivers_firsts[cell + 1u], first) - first, bits_settings.receivers_per_instance));
 }
 
 struct texel_receivers_Place {
@@ -788,48 +745,91 @@ fn texel_receivers_place_of(slot: u32, pixel_index: u32, is_stored: bool) -> tex
     if is_stored {
         return texel_receivers_Place(texel_receivers_positions[2u * slot].xyz, texel_receivers_positions[2u * slot + 1u].xyz);
     }
-    let receiver = inputs_load_receiver(light_bits_pixel_of(pixel_index));
+    let receiver = inputs_load_receiver(bits_pixel_of(pixel_index));
     let x = receiver.pos_in_world;
-    return texel_receivers_Place(x, x + ray_offset_ray_offset_m(light_bits_settings, x) * receiver.normal_in_world);
+    return texel_receivers_Place(x, x + ray_offset_ray_offset_m(bits_settings, x) * receiver.normal_in_world);
 }
 
-struct windows_Window {
-    low: vec2f,
-    scale: vec2f,
-    depth: f32,
-    hair: f32,
-    reach: f32
+struct settings_SampleSettings {
+    light_min: vec3f,
+    point_count: u32,
+    light_max: vec3f,
+    word_count: u32,
+    casters_min: vec3f,
+    list_bits: u32,
+    casters_max: vec3f,
+    projection: u32,
+    total_weight: f32,
+    switches: u32,
+    cell_count: u32,
+    list_count: u32,
+    super_first: u32,
+    is_weighted: u32,
+    triangle_stride: u32,
+    lookup_size: u32,
+    first_word: u32,
+    pixel_words: u32,
+    rotations: u32,
+    turn: f32,
+    hair_scale: f32,
+    most_groups: u32,
+    cells_across: u32,
+    most_cells: u32,
+    turns_per_triangle: u32,
+    most_turns: u32,
+    first_passed: u32,
+    window_count: u32,
+    window: u32,
+    window_side: u32,
+    receivers_per_instance: u32,
+    padding_0: u32,
+    window_right: vec3f,
+    region_corners: u32,
+    window_up: vec3f,
+    matrix_rounding_m: f32,
+    window_axis: vec3f,
+    padding_1: u32,
+    window_light_min: vec3f,
+    padding_2: u32,
+    window_light_max: vec3f,
+    padding_3: u32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f
 }
 
-fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
-    return windows_vector_to_windows(settings, x - light.center_in_world);
+const settings_PROJECT_PARALLEL = 1u;
+
+const settings_STOP_WHEN_OCCLUDED = 1u;
+
+const settings_CUT_BY_PLANE = 4u;
+
+fn settings_is_on(settings: settings_SampleSettings, bit: u32) -> bool {
+    return (settings.switches & bit) != 0u;
 }
 
-fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
-    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
+const settings_STATE_WINDOWS = 12u;
+
+const settings_STATE_WINDOW_LENGTH = 6u;
+
+const settings_TOTAL_TRIANGLES = 1u;
+
+const settings_FLAG_CLOSED = 1u;
+
+fn settings_unsortable(bits: u32) -> f32 {
+    return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
 }
 
-fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
-    var turned = p;
-    if window / 2u == 1u {
-        turned = p.yzx;
-    }
-    else if window / 2u == 2u {
-        turned = p.zxy;
-    }
-    return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
+const shaft_SHAFT_SLACK = 2e-6;
+
+struct shaft_Box {
+    low: vec3f,
+    high: vec3f
 }
 
-fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
-    return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
-}
-
-fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
-    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
-    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return windows_Window(low, f32(side) / size, depth, hair, reach);
-}
-
-fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
-    return (direction - window.low) * window.scale;
+fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
+    let middle = 0.5 * (box.low + box.high) - a;
+    let distance = dot(normal, middle);
+    let terms = dot(abs(normal), abs(middle));
+    let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
+    return select(0.0, sign(distance), abs(distance) > reach);
 }

@@ -1,33 +1,24 @@
-// Linked from src/techniques/receiver_lists/super_boxes.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/triangles/super_boxes.wesl by `cargo xtask shaders`: edit that, not this.
 
 @compute @workgroup_size(64)
 fn super_boxes(@builtin(global_invocation_id) id: vec3u) {
-    let cluster_count = (boxes_of_totals[settings_TOTAL_TRIANGLES] + 63u) / 64u;
+    let cluster_count = (bindings_totals[settings_TOTAL_TRIANGLES] + 63u) / 64u;
     let first = 32u * id.x;
     if first >= cluster_count {
         return;
     }
-    var low = boxes_of_boxes[2u * first].xyz;
-    var high = boxes_of_boxes[2u * first + 1u].xyz;
+    var low = bindings_boxes[2u * first].xyz;
+    var high = bindings_boxes[2u * first + 1u].xyz;
     var flags = 0u;
     for (var i = first; i < min(first + 32u, cluster_count); i++) {
-        flags |= u32(boxes_of_boxes[2u * i].w);
-        low = min(low, boxes_of_boxes[2u * i].xyz);
-        high = max(high, boxes_of_boxes[2u * i + 1u].xyz);
+        flags |= u32(bindings_boxes[2u * i].w);
+        low = min(low, bindings_boxes[2u * i].xyz);
+        high = max(high, bindings_boxes[2u * i + 1u].xyz);
     }
-    let at = boxes_of_settings.super_first + id.x;
-    boxes_of_boxes[2u * at] = vec4f(low, f32(flags));
-    boxes_of_boxes[2u * at + 1u] = vec4f(high, 0.0);
+    let at = bindings_settings.super_first + id.x;
+    bindings_boxes[2u * at] = vec4f(low, f32(flags));
+    bindings_boxes[2u * at + 1u] = vec4f(high, 0.0);
 }
-
-@group(0) @binding(0)
-var<uniform> boxes_of_settings: settings_SampleSettings;
-
-@group(0) @binding(1)
-var<storage, read> boxes_of_totals: array<u32>;
-
-@group(0) @binding(3)
-var<storage, read_write> boxes_of_boxes: array<vec4f>;
 
 struct settings_SampleSettings {
     light_min: vec3f,
@@ -77,3 +68,12 @@ struct settings_SampleSettings {
 }
 
 const settings_TOTAL_TRIANGLES = 1u;
+
+@group(0) @binding(0)
+var<uniform> bindings_settings: settings_SampleSettings;
+
+@group(0) @binding(1)
+var<storage, read> bindings_totals: array<u32>;
+
+@group(0) @binding(3)
+var<storage, read_write> bindings_boxes: array<vec4f>;

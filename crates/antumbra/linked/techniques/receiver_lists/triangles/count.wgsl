@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/triangle_count.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/triangles/count.wesl by `cargo xtask shaders`: edit that, not this.
 
 @compute @workgroup_size(64)
 fn triangle_count(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) group_counts: vec3u) {
@@ -86,59 +86,6 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
-@group(0) @binding(0)
-var<uniform> casters_settings: settings_SampleSettings;
-
-@group(0) @binding(1)
-var<uniform> casters_shaft: array<vec4f, 22>;
-
-@group(0) @binding(2)
-var<storage, read_write> casters_cells: array<atomic<u32>>;
-
-@group(0) @binding(3)
-var<storage, read_write> casters_triangle_places: array<vec2u>;
-
-fn casters_light_box() -> shaft_Box {
-    return shaft_Box(casters_shaft[shaft_SHAFT_PLANES + 2u].xyz, casters_shaft[shaft_SHAFT_PLANES + 3u].xyz);
-}
-
-fn casters_matters(run: runs_TriangleRun, triangle: runs_Triangle) -> bool {
-    let a = triangle.corners[0];
-    let b = triangle.corners[1];
-    let c = triangle.corners[2];
-    let normal = cross(b - a, c - a);
-    if !(dot(normal, normal) > 0.0) {
-        return false;
-    }
-    for (var i = 0u; i < shaft_SHAFT_PLANES; i++) {
-        if shaft_triangle_is_outside(casters_shaft[i], a, b, c) {
-            return false;
-        }
-    }
-    if settings_is_on(casters_settings, settings_CULL_FACING) && (run.flags & settings_FLAG_CLOSED) != 0u && shaft_side_of_box(normal, a, casters_light_box()) > 0.0 {
-        return false;
-    }
-    return true;
-}
-
-fn casters_spread(value: u32) -> u32 {
-    var v = value & 1023u;
-    v = (v | (v << 16u)) & 50331903u;
-    v = (v | (v << 8u)) & 50393103u;
-    v = (v | (v << 4u)) & 51130563u;
-    return (v | (v << 2u)) & 153391689u;
-}
-
-fn casters_cell_of(triangle: runs_Triangle) -> u32 {
-    let middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
-    let extent = max(casters_settings.casters_max - casters_settings.casters_min, vec3f(1e-30));
-    let part = clamp((middle - casters_settings.casters_min) / extent, vec3f(0.0), vec3f(0.999999));
-    let cell = vec3u(part * casters_CELLS_PER_SIDE);
-    return casters_spread(cell.x) | (casters_spread(cell.y) << 1u) | (casters_spread(cell.z) << 2u);
-}
-
-const casters_CELLS_PER_SIDE = 64.0;
-
 struct settings_SampleSettings {
     light_min: vec3f,
     point_count: u32,
@@ -216,3 +163,56 @@ fn shaft_side_of_box(normal: vec3f, a: vec3f, box: shaft_Box) -> f32 {
     let reach = dot(abs(normal), 0.5 * (box.high - box.low)) + shaft_SHAFT_SLACK * terms;
     return select(0.0, sign(distance), abs(distance) > reach);
 }
+
+@group(0) @binding(0)
+var<uniform> casters_settings: settings_SampleSettings;
+
+@group(0) @binding(1)
+var<uniform> casters_shaft: array<vec4f, 22>;
+
+@group(0) @binding(2)
+var<storage, read_write> casters_cells: array<atomic<u32>>;
+
+@group(0) @binding(3)
+var<storage, read_write> casters_triangle_places: array<vec2u>;
+
+fn casters_light_box() -> shaft_Box {
+    return shaft_Box(casters_shaft[shaft_SHAFT_PLANES + 2u].xyz, casters_shaft[shaft_SHAFT_PLANES + 3u].xyz);
+}
+
+fn casters_matters(run: runs_TriangleRun, triangle: runs_Triangle) -> bool {
+    let a = triangle.corners[0];
+    let b = triangle.corners[1];
+    let c = triangle.corners[2];
+    let normal = cross(b - a, c - a);
+    if !(dot(normal, normal) > 0.0) {
+        return false;
+    }
+    for (var i = 0u; i < shaft_SHAFT_PLANES; i++) {
+        if shaft_triangle_is_outside(casters_shaft[i], a, b, c) {
+            return false;
+        }
+    }
+    if settings_is_on(casters_settings, settings_CULL_FACING) && (run.flags & settings_FLAG_CLOSED) != 0u && shaft_side_of_box(normal, a, casters_light_box()) > 0.0 {
+        return false;
+    }
+    return true;
+}
+
+fn casters_spread(value: u32) -> u32 {
+    var v = value & 1023u;
+    v = (v | (v << 16u)) & 50331903u;
+    v = (v | (v << 8u)) & 50393103u;
+    v = (v | (v << 4u)) & 51130563u;
+    return (v | (v << 2u)) & 153391689u;
+}
+
+fn casters_cell_of(triangle: runs_Triangle) -> u32 {
+    let middle = (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
+    let extent = max(casters_settings.casters_max - casters_settings.casters_min, vec3f(1e-30));
+    let part = clamp((middle - casters_settings.casters_min) / extent, vec3f(0.0), vec3f(0.999999));
+    let cell = vec3u(part * casters_CELLS_PER_SIDE);
+    return casters_spread(cell.x) | (casters_spread(cell.y) << 1u) | (casters_spread(cell.z) << 2u);
+}
+
+const casters_CELLS_PER_SIDE = 64.0;

@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/region_hulls.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/raster/hulls.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(1) @binding(9)
 var<storage, read> totals: array<u32>;
@@ -26,7 +26,7 @@ const LEAST_TURN = 0.01;
 fn silhouette_corner(v: vec3f, corner: u32) -> vec4f {
     let along = cos(SIXTH_OF_TURN_RAD * f32(corner));
     let across = sin(SIXTH_OF_TURN_RAD * f32(corner));
-    if light_bits_settings.projection == settings_PROJECT_PARALLEL {
+    if bits_settings.projection == settings_PROJECT_PARALLEL {
         let offset = HEXAGON_SCALE * (along * ellipsoid[1].xyz + across * ellipsoid[2].xyz);
         return vec4f(ellipsoid[0].xyz + offset, 1.0);
     }
@@ -56,19 +56,19 @@ struct Points {
 }
 
 fn points_of(triangle: u32, window: windows_Window) -> Points {
-    let is_parallel = light_bits_settings.projection == settings_PROJECT_PARALLEL;
-    let light = region_light_span(light_bits_settings, light_bits_settings.window);
-    let side = f32(light_bits_settings.window_side);
+    let is_parallel = bits_settings.projection == settings_PROJECT_PARALLEL;
+    let light = region_light_span(bits_settings, bits_settings.window);
+    let side = f32(bits_settings.window_side);
     var points: Points;
     var nearest = 1e38;
     var slack = 0.0;
     points.is_behind = !is_parallel;
     for (var i = 0u; i < POINTS; i++) {
-        let corner = light_bits_triangles[light_bits_settings.triangle_stride * triangle + i / HEXAGON].xyz;
-        let v_first = windows_to_windows(light_bits_settings, inputs_light_source, corner);
+        let corner = bits_triangles[bits_settings.triangle_stride * triangle + i / HEXAGON].xyz;
+        let v_first = windows_to_windows(bits_settings, inputs_light_source, corner);
         let silhouette = silhouette_corner(v_first, i % HEXAGON);
-        let v = windows_along_axes_of(light_bits_settings.window, v_first);
-        let l = windows_along_axes_of(light_bits_settings.window, silhouette.xyz);
+        let v = windows_along_axes_of(bits_settings.window, v_first);
+        let l = windows_along_axes_of(bits_settings.window, silhouette.xyz);
         nearest = min(nearest, v.z);
         points.is_behind &= v.z < light.low.z;
         let beyond = v.z - l.z;
@@ -205,7 +205,7 @@ fn region_hulls(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     let first = influence_HULL_CORNERS * triangle;
     let window = influence_drawn_window();
     var points = points_of(triangle, window);
-    let side = f32(light_bits_settings.window_side);
+    let side = f32(bits_settings.window_side);
     if points.is_behind {
         write_box(first, vec2f(-2.0 * side), vec2f(-2.0 * side));
         return;
@@ -255,23 +255,60 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
+@group(1) @binding(0)
+var<uniform> bits_settings: settings_SampleSettings;
+
+@group(1) @binding(2)
+var<storage, read> bits_triangles: array<vec4f>;
+
+struct windows_Window {
+    low: vec2f,
+    scale: vec2f,
+    depth: f32,
+    hair: f32,
+    reach: f32
+}
+
+fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
+    return windows_vector_to_windows(settings, x - light.center_in_world);
+}
+
+fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
+    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
+}
+
+fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
+    var turned = p;
+    if window / 2u == 1u {
+        turned = p.yzx;
+    }
+    else if window / 2u == 2u {
+        turned = p.zxy;
+    }
+    return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
+}
+
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
+    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
+    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
+    return windows_Window(low, f32(side) / size, depth, hair, reach);
+}
+
+fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
+    return (direction - window.low) * window.scale;
+}
+
 @group(1) @binding(3)
 var<storage, read> influence_state: array<u32>;
 
 const influence_HULL_CORNERS: u32 = 22u;
 
 fn influence_drawn_window() -> windows_Window {
-    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * light_bits_settings.window;
+    let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * bits_settings.window;
     let high = vec2f(settings_unsortable(influence_state[first]), settings_unsortable(influence_state[first + 1u]));
     let low = vec2f(settings_unsortable(~influence_state[first + 2u]), settings_unsortable(~influence_state[first + 3u]));
-    return windows_window_from(light_bits_settings.window_side, low, high, settings_unsortable(influence_state[first + 4u]), settings_unsortable(influence_state[first + 5u]));
+    return windows_window_from(bits_settings.window_side, low, high, settings_unsortable(influence_state[first + 4u]), settings_unsortable(influence_state[first + 5u]));
 }
-
-@group(1) @binding(0)
-var<uniform> light_bits_settings: settings_SampleSettings;
-
-@group(1) @binding(2)
-var<storage, read> light_bits_triangles: array<vec4f>;
 
 const region_MOST_SIDES = 16.0;
 
@@ -298,6 +335,18 @@ fn region_shadow_direction(v: vec3f, l: vec2f, l_z: f32, z: f32) -> vec2f {
 
 fn region_shadow_place(v: vec3f, d: vec2f, d_z: f32, z: f32) -> vec2f {
     return v.xy + d / d_z * (z - v.z);
+}
+
+fn six_vertices_quadrant_of_normal(along: vec2f) -> u32 {
+    let normal = vec2f(along.y, -along.x);
+    let is_right = normal.x > 0.0 || (normal.x == 0.0 && along.x > 0.0);
+    let is_upper = normal.y > 0.0 || (normal.y == 0.0 && along.y > 0.0);
+    return select(select(2u, 3u, is_right), select(1u, 0u, is_right), is_upper);
+}
+
+fn six_vertices_corner_in(quadrant: u32) -> vec2f {
+    let is_right = quadrant == 0u || quadrant == 3u;
+    return vec2f(select(-1.0, 1.0, is_right), select(-1.0, 1.0, quadrant < 2u));
 }
 
 struct settings_SampleSettings {
@@ -359,53 +408,4 @@ const settings_TOTAL_CELLS = 4u;
 
 fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));
-}
-
-fn six_vertices_quadrant_of_normal(along: vec2f) -> u32 {
-    let normal = vec2f(along.y, -along.x);
-    let is_right = normal.x > 0.0 || (normal.x == 0.0 && along.x > 0.0);
-    let is_upper = normal.y > 0.0 || (normal.y == 0.0 && along.y > 0.0);
-    return select(select(2u, 3u, is_right), select(1u, 0u, is_right), is_upper);
-}
-
-fn six_vertices_corner_in(quadrant: u32) -> vec2f {
-    let is_right = quadrant == 0u || quadrant == 3u;
-    return vec2f(select(-1.0, 1.0, is_right), select(-1.0, 1.0, quadrant < 2u));
-}
-
-struct windows_Window {
-    low: vec2f,
-    scale: vec2f,
-    depth: f32,
-    hair: f32,
-    reach: f32
-}
-
-fn windows_to_windows(settings: settings_SampleSettings, light: light_LightSource, x: vec3f) -> vec3f {
-    return windows_vector_to_windows(settings, x - light.center_in_world);
-}
-
-fn windows_vector_to_windows(settings: settings_SampleSettings, v: vec3f) -> vec3f {
-    return vec3f(dot(v, settings.window_right), dot(v, settings.window_up), dot(v, settings.window_axis));
-}
-
-fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
-    var turned = p;
-    if window / 2u == 1u {
-        turned = p.yzx;
-    }
-    else if window / 2u == 2u {
-        turned = p.zxy;
-    }
-    return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
-}
-
-fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
-    let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
-    let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return windows_Window(low, f32(side) / size, depth, hair, reach);
-}
-
-fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
-    return (direction - window.low) * window.scale;
 }

@@ -1,21 +1,23 @@
-// Linked from src/techniques/receiver_lists/raster_stencil.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/lists/arguments.wesl by `cargo xtask shaders`: edit that, not this.
 
-@vertex
-fn vertex(@builtin(vertex_index) vertex_index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(vertex_index & 1u), f32(vertex_index / 2u));
-    return vec4f(4.0 * corner - 1.0, 1.0, 1.0);
+@group(0) @binding(0)
+var<uniform> settings: settings_SampleSettings;
+
+@group(0) @binding(1)
+var<storage, read> counts: array<u32>;
+
+@group(0) @binding(2)
+var<storage, read> cells: array<u32>;
+
+@group(0) @binding(3)
+var<storage, read_write> totals: array<u32>;
+
+@compute @workgroup_size(1)
+fn arguments() {
+    totals[settings_TOTAL_LISTED] = counts[settings.list_count];
+    totals[settings_TOTAL_TRIANGLES] = cells[settings.cell_count];
+    totals[settings_TOTAL_CELLS] = counts[settings.list_count + 1u];
 }
-
-@fragment
-fn fragment(@builtin(position) position: vec4f) {
-    let cell = texel_receivers_cell_of_texel(position.xy);
-    if texel_receivers_firsts[cell] == texel_receivers_firsts[cell + 1u] {
-        discard;
-    }
-}
-
-@group(1) @binding(0)
-var<uniform> light_bits_settings: settings_SampleSettings;
 
 struct settings_SampleSettings {
     light_min: vec3f,
@@ -64,10 +66,8 @@ struct settings_SampleSettings {
     clip_w_row: vec4f
 }
 
-@group(1) @binding(6)
-var<storage, read> texel_receivers_firsts: array<u32>;
+const settings_TOTAL_LISTED = 0u;
 
-fn texel_receivers_cell_of_texel(position: vec2f) -> u32 {
-    let texel = vec2u(position);
-    return (light_bits_settings.window * light_bits_settings.window_side + texel.y) * light_bits_settings.window_side + texel.x;
-}
+const settings_TOTAL_TRIANGLES = 1u;
+
+const settings_TOTAL_CELLS = 4u;

@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/triangle_probe.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/light_bits/triangle_probe.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(0) @binding(0)
 var<storage, read> cases: array<vec4f>;
@@ -15,15 +15,15 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     let a = cases[first];
     let b = cases[first + 1u];
     let c = cases[first + 2u].xyz;
-    let rays = light_points_Rays(cases[first + 3u].xyz, vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, 1.0), b.w);
+    let rays = points_Rays(cases[first + 3u].xyz, vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, 1.0), b.w);
     let middle = cases[first + 4u].xyz;
     let half_box = cases[first + 5u].xyz;
     let planes = triangle_test_planes_of(rays, vec3f(), a.xyz, b.xyz, c, a.w == 1.0, vec3f(), middle, half_box);
     let cover = select(triangle_test_box_cover(planes, middle, half_box), 0u, planes.is_missed);
-    answers[id.x] = vec4f(f32(planes.is_missed), f32(cover), light_points_at_point(planes.support, middle), planes.slack.w);
+    answers[id.x] = vec4f(f32(planes.is_missed), f32(cover), points_at_point(planes.support, middle), planes.slack.w);
 }
 
-struct light_points_Rays {
+struct points_Rays {
     to_center: vec3f,
     right: vec3f,
     up: vec3f,
@@ -31,15 +31,15 @@ struct light_points_Rays {
     inverse_end: f32
 }
 
-fn light_points_plane_for(rays: light_points_Rays, normal: vec3f) -> vec4f {
+fn points_plane_for(rays: points_Rays, normal: vec3f) -> vec4f {
     return vec4f(dot(normal, rays.to_center), dot(normal, rays.right), dot(normal, rays.up), dot(normal, rays.axis));
 }
 
-fn light_points_at_point(plane: vec4f, point: vec3f) -> f32 {
+fn points_at_point(plane: vec4f, point: vec3f) -> f32 {
     return plane.x + plane.y * point.x + plane.z * point.y + plane.w * point.z;
 }
 
-fn light_points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
+fn points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
     return abs(plane.y) * half_box.x + abs(plane.z) * half_box.y + abs(plane.w) * half_box.z;
 }
 
@@ -58,7 +58,7 @@ fn triangle_test_slack_of(plane: vec4f, largest: vec3f) -> f32 {
     return triangle_test_PLANE_SLACK * (abs(plane.x) + dot(abs(plane.yzw), largest));
 }
 
-fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, depth_error_m: vec3f, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
+fn triangle_test_planes_of(rays: points_Rays, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f, is_closed: bool, depth_error_m: vec3f, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
     var planes: triangle_test_Planes;
     planes.is_missed = true;
     let a = corner_a - x;
@@ -72,35 +72,35 @@ fn triangle_test_planes_of(rays: light_points_Rays, x: vec3f, corner_a: vec3f, c
         return planes;
     }
     let largest = abs(middle) + half_box;
-    let through = light_points_plane_for(rays, side * n);
+    let through = points_plane_for(rays, side * n);
     planes.support = vec4f(abs(height) * rays.inverse_end - through.x, -through.yzw);
     planes.slack.w = triangle_test_slack_of(planes.support, largest) + triangle_test_PLANE_SLACK * abs(height);
-    if light_points_at_point(planes.support, middle) - light_points_reach_over(planes.support, half_box) > planes.slack.w {
+    if points_at_point(planes.support, middle) - points_reach_over(planes.support, half_box) > planes.slack.w {
         return planes;
     }
-    planes.edge_a = light_points_plane_for(rays, side * cross(corner_b - corner_c, b + c));
+    planes.edge_a = points_plane_for(rays, side * cross(corner_b - corner_c, b + c));
     planes.slack.x = triangle_test_slack_of(planes.edge_a, largest);
-    if light_points_at_point(planes.edge_a, middle) + light_points_reach_over(planes.edge_a, half_box) < -planes.slack.x {
+    if points_at_point(planes.edge_a, middle) + points_reach_over(planes.edge_a, half_box) < -planes.slack.x {
         return planes;
     }
-    planes.edge_b = light_points_plane_for(rays, side * cross(corner_c - corner_a, c + a));
+    planes.edge_b = points_plane_for(rays, side * cross(corner_c - corner_a, c + a));
     planes.slack.y = triangle_test_slack_of(planes.edge_b, largest);
-    if light_points_at_point(planes.edge_b, middle) + light_points_reach_over(planes.edge_b, half_box) < -planes.slack.y {
+    if points_at_point(planes.edge_b, middle) + points_reach_over(planes.edge_b, half_box) < -planes.slack.y {
         return planes;
     }
-    planes.edge_c = light_points_plane_for(rays, side * cross(corner_a - corner_b, a + b));
+    planes.edge_c = points_plane_for(rays, side * cross(corner_a - corner_b, a + b));
     planes.slack.z = triangle_test_slack_of(planes.edge_c, largest);
-    planes.is_missed = light_points_at_point(planes.edge_c, middle) + light_points_reach_over(planes.edge_c, half_box) < -planes.slack.z;
+    planes.is_missed = points_at_point(planes.edge_c, middle) + points_reach_over(planes.edge_c, half_box) < -planes.slack.z;
     return planes;
 }
 
 fn triangle_test_values_at(planes: triangle_test_Planes, point: vec3f) -> vec4f {
-    return vec4f(light_points_at_point(planes.edge_a, point), light_points_at_point(planes.edge_b, point), light_points_at_point(planes.edge_c, point), light_points_at_point(planes.support, point));
+    return vec4f(points_at_point(planes.edge_a, point), points_at_point(planes.edge_b, point), points_at_point(planes.edge_c, point), points_at_point(planes.support, point));
 }
 
 fn triangle_test_box_cover(planes: triangle_test_Planes, middle: vec3f, half_box: vec3f) -> u32 {
     let at_middle = triangle_test_values_at(planes, middle);
-    let reach = vec4f(light_points_reach_over(planes.edge_a, half_box), light_points_reach_over(planes.edge_b, half_box), light_points_reach_over(planes.edge_c, half_box), light_points_reach_over(planes.support, half_box));
+    let reach = vec4f(points_reach_over(planes.edge_a, half_box), points_reach_over(planes.edge_b, half_box), points_reach_over(planes.edge_c, half_box), points_reach_over(planes.support, half_box));
     let inside = at_middle * vec4f(1.0, 1.0, 1.0, -1.0);
     let most = inside + reach + planes.slack;
     let least = inside - reach - planes.slack;

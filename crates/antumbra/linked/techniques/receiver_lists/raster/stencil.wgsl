@@ -1,22 +1,28 @@
-// Linked from src/techniques/receiver_lists/arguments.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/raster/stencil.wesl by `cargo xtask shaders`: edit that, not this.
 
-@group(0) @binding(0)
-var<uniform> settings: settings_SampleSettings;
+@vertex
+fn vertex(@builtin(vertex_index) vertex_index: u32) -> @builtin(position) vec4f {
+    let corner = vec2f(f32(vertex_index & 1u), f32(vertex_index / 2u));
+    return vec4f(4.0 * corner - 1.0, 1.0, 1.0);
+}
 
-@group(0) @binding(1)
-var<storage, read> counts: array<u32>;
+@fragment
+fn fragment(@builtin(position) position: vec4f) {
+    let cell = texel_receivers_cell_of_texel(position.xy);
+    if texel_receivers_firsts[cell] == texel_receivers_firsts[cell + 1u] {
+        discard;
+    }
+}
 
-@group(0) @binding(2)
-var<storage, read> cells: array<u32>;
+@group(1) @binding(0)
+var<uniform> bits_settings: settings_SampleSettings;
 
-@group(0) @binding(3)
-var<storage, read_write> totals: array<u32>;
+@group(1) @binding(6)
+var<storage, read> texel_receivers_firsts: array<u32>;
 
-@compute @workgroup_size(1)
-fn arguments() {
-    totals[settings_TOTAL_LISTED] = counts[settings.list_count];
-    totals[settings_TOTAL_TRIANGLES] = cells[settings.cell_count];
-    totals[settings_TOTAL_CELLS] = counts[settings.list_count + 1u];
+fn texel_receivers_cell_of_texel(position: vec2f) -> u32 {
+    let texel = vec2u(position);
+    return (bits_settings.window * bits_settings.window_side + texel.y) * bits_settings.window_side + texel.x;
 }
 
 struct settings_SampleSettings {
@@ -65,9 +71,3 @@ struct settings_SampleSettings {
     clip_z_row: vec4f,
     clip_w_row: vec4f
 }
-
-const settings_TOTAL_LISTED = 0u;
-
-const settings_TOTAL_TRIANGLES = 1u;
-
-const settings_TOTAL_CELLS = 4u;
