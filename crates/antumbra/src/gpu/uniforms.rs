@@ -73,8 +73,8 @@ const NUMBERS: [Numbers; 5] = [
     Numbers { layout: "antumbra splat", binding: 1, name: "group_views" },
     Numbers { layout: "antumbra multi_layer lookup", binding: 5, name: "ladder" },
     Numbers { layout: "antumbra view-sample table", binding: 1, name: "light_words" },
-    Numbers { layout: "antumbra view-sample evaluate", binding: 4, name: "light_bits_light_words" },
-    Numbers { layout: "antumbra view-sample raster", binding: 4, name: "light_bits_light_words" },
+    Numbers { layout: "antumbra view-sample evaluate", binding: 4, name: "bits_light_words" },
+    Numbers { layout: "antumbra view-sample raster", binding: 4, name: "bits_light_words" },
 ];
 
 /// Whether a shader's uniform is of numbers.
