@@ -23,26 +23,30 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use antumbra_light::Aabb;
-use glam::{Mat4, Vec3};
+use glam::Mat4;
 use slotmap::SlotMap;
 
-use crate::contract::{
-    CastersKey, Error, MaskChannels, MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture, tints,
-};
-use crate::gpu::{Commands, Gpu, Keep, Recorder, Span, Stage, ViewKind};
+use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, MeshVersion};
+use crate::gpu::{Commands, Gpu, Keep};
 
 mod arena;
 mod mesh;
 pub(crate) mod pack;
+mod placed_instances;
+mod surface;
 #[cfg(test)]
 pub(crate) mod tests;
+mod update;
 
 use arena::Arena;
 pub use mesh::{
     Indices, InstanceBuffer, InstanceLayout, Instances, Mesh, PositionFormat, Positions, TextureCoordinateFormat,
     TextureCoordinates,
 };
-use pack::{InstanceSource, MeshSource, PackDispatch, PackTargets, Packer};
+use pack::{InstanceSource, MeshSource, Packer};
+use placed_instances::{PlacedInstances, world_bounds};
+pub use surface::{Surface, Texture};
+use surface::{check_surface, opacity_of};
 
 slotmap::new_key_type! {
     /// Handle of a mesh in a [`CasterSet`].
@@ -70,56 +74,6 @@ impl<'a> Caster<'a> {
     pub fn new(mesh: MeshId, instances: Instances<'a>) -> Self {
         Self { mesh, instances, surface: Surface::Opaque, layers: u32::MAX }
     }
-}
-
-/// Effect of a caster's surface on light. Textures belong to the host; the set keeps handles.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Surface {
-    /// Blocks all.
-    Opaque,
-    /// Blocks all where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, nothing elsewhere.
-    Masked {
-        /// With alpha.
-        texture: Texture,
-        /// Multiplies the texture's alpha.
-        alpha_factor: f32,
-        /// Coverage threshold, 0 to 1.
-        cutoff: f32,
-    },
-    /// Lets pass `(1 − coverage) + coverage · transmitted` of each colour.
-    Translucent {
-        /// How much of the surface is there.
-        coverage: SurfaceCoverage,
-        /// What passes where it is, linear, 0 to 1: transmission × tint. [`Vec3::ZERO`] for surfaces that are blended by
-        /// their alpha and transmit nothing: they cover, and never tint.
-        transmitted: Vec3,
-        /// Its RGB multiplies `transmitted`, its alpha the coverage's.
-        texture: Option<Texture>,
-    },
-}
-
-impl Surface {
-    fn texture(&self) -> Option<&Texture> {
-        match self {
-            Self::Opaque => None,
-            Self::Masked { texture, .. } => Some(texture),
-            Self::Translucent { texture, .. } => texture.as_ref(),
-        }
-    }
-
-    fn tints(&self) -> bool {
-        matches!(self, Self::Translucent { transmitted, texture, .. } if tints(*transmitted, texture.is_some()))
-    }
-}
-
-/// Texture of a caster.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Texture {
-    /// A 2D view of a filterable colour format.
-    pub view: wgpu::TextureView,
-    /// Filtering sampler; it also sets the texture's address modes.
-    pub sampler: wgpu::Sampler,
 }
 
 /// Set of casters shared by all lights; see the module.
@@ -397,116 +351,6 @@ impl CasterSet {
         self.casters.get(id).map(|caster| caster.bounds)
     }
 
-    /// Brings what has changed to the GPU: records uploads and packing. Before lights are prepared, and in commands that are
-    /// submitted before theirs.
-    ///
-    /// # Errors
-    /// None today; devices may refuse in later versions.
-    pub fn update(&mut self, recorder: &mut Recorder<'_>) -> Result<(), Error> {
-        if self.updated == Some(self.version) && !self.commands.are_dropped() {
-            return Ok(());
-        }
-        let gpu = self.gpu.clone();
-        if self.commands.take_dropped() {
-            self.bring_all();
-        }
-        let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), None);
-        let encoder = recorder.encoder();
-        self.vertices.iter_mut().for_each(|arena| arena.grow(&gpu, encoder));
-        self.indices.grow(&gpu, encoder);
-        self.instances.grow(&gpu, encoder);
-        let mut dispatches = Vec::new();
-        self.pack_meshes(&stage, encoder, &mut dispatches);
-        self.upload_instances(&stage, encoder, &mut dispatches);
-        let uploads;
-        (self.keep, uploads) = stage.finish();
-        recorder.upload(uploads, self.commands.end());
-        if !dispatches.is_empty() {
-            recorder.compute("pack casters", Span::Only, |pass| {
-                dispatches.iter().for_each(|dispatch| dispatch.record(pass));
-            });
-        }
-        if !std::mem::replace(&mut self.is_sorted, true) {
-            self.sort();
-        }
-        self.updated = Some(self.version);
-        Ok(())
-    }
-
-    /// Has the next update bring everything: what an earlier one recorded came to nothing.
-    fn bring_all(&mut self) {
-        for mesh in self.meshes.values_mut() {
-            mesh.is_changed = true;
-            // What was made of the buffers meanwhile is of what they held before.
-            mesh.version.vertices += 1;
-        }
-        self.casters.values_mut().for_each(|caster| caster.is_moved = true);
-        self.version += 1;
-    }
-
-    fn pack_meshes(
-        &mut self,
-        stage: &Stage<'_>,
-        encoder: &mut wgpu::CommandEncoder,
-        dispatches: &mut Vec<PackDispatch>,
-    ) {
-        let Some(indices) = self.indices.buffer() else { return };
-        for mesh in self.meshes.values_mut().filter(|mesh| mesh.is_changed) {
-            mesh.is_changed = false;
-            let arena = &self.vertices[usize::from(mesh.source.has_uvs())];
-            let Some(positions) = arena.buffer() else { continue };
-            if mesh.source.vertex_count() == 0 || mesh.source.index_count() == 0 {
-                continue;
-            }
-            let uvs = arena.column(1);
-            // Bound, but not written, where there are none: not a buffer that the same pass writes.
-            let uvs = uvs.or(self.instances.buffer()).unwrap_or(positions);
-            let (first_vertex, first_index) = (mesh.vertices.start, 3 * mesh.indices.start);
-            let targets = PackTargets { positions, uvs, indices, first_vertex, first_index };
-            dispatches.push(self.packer.mesh(stage, encoder, &mesh.source, &targets));
-        }
-    }
-
-    /// Matrices that the processor knows go up in as few pieces as they lie in; the others are packed.
-    fn upload_instances(
-        &mut self,
-        stage: &Stage<'_>,
-        encoder: &mut wgpu::CommandEncoder,
-        dispatches: &mut Vec<PackDispatch>,
-    ) {
-        let Some(instances) = self.instances.buffer() else { return };
-        let mut known: Vec<Range<u32>> = Vec::new();
-        for caster in self.casters.values_mut().filter(|caster| caster.is_moved) {
-            caster.is_moved = false;
-            match &caster.source {
-                None => known.push(caster.places.clone()),
-                Some(source) if source.count() > 0 => {
-                    let first = caster.places.start;
-                    dispatches.push(self.packer.instances(stage, encoder, source, instances, first));
-                }
-                Some(_) => {}
-            }
-        }
-        known.sort_unstable_by_key(|places| places.start);
-        for run in known.chunk_by(|a, b| a.end == b.start) {
-            let (Some(first), Some(last)) = (run.first(), run.last()) else { continue };
-            let matrices = &self.matrices[first.start as usize..last.end as usize];
-            stage.upload(instances, u64::from(first.start) * 64, bytemuck::cast_slice(matrices));
-        }
-    }
-
-    /// Casters by vertex buffers, then by mesh, then by place, so that passes change buffers seldom.
-    fn sort(&mut self) {
-        let Self { order, casters, meshes, .. } = self;
-        order.clear();
-        order.extend(casters.keys());
-        order.sort_unstable_by_key(|id| {
-            let caster = &casters[*id];
-            let mesh = &meshes[caster.mesh];
-            (mesh.source.has_uvs(), mesh.vertices.start, caster.places.start)
-        });
-    }
-
     /// The casters of some layers, as techniques take them.
     pub(crate) fn meshes(&self, layers: u32) -> Result<Vec<MeshCaster<'_>>, Error> {
         if self.updated != Some(self.version) {
@@ -580,62 +424,6 @@ impl CasterEntry {
     }
 }
 
-/// Instances that were found to be good.
-struct PlacedInstances<'a> {
-    count: u32,
-    matrices: Option<&'a [Mat4]>,
-    source: Option<InstanceSource>,
-    bounds: Aabb,
-    is_mirrored: bool,
-}
-
-impl<'a> PlacedInstances<'a> {
-    fn new(instances: &Instances<'a>, mesh: Aabb) -> Result<Self, Error> {
-        match instances {
-            Instances::Matrices(matrices) => {
-                if let Some(i) = matrices.iter().position(|matrix| !matrix.is_finite()) {
-                    return Err(bad("the caster's matrix", format!("not finite (instance {i})"), "finite".into()));
-                }
-                Ok(Self {
-                    count: matrices.len() as u32,
-                    matrices: Some(matrices),
-                    source: None,
-                    bounds: world_bounds(mesh, matrices),
-                    is_mirrored: matrices.iter().any(|matrix| matrix.determinant() < 0.0),
-                })
-            }
-            Instances::Buffer(buffer) => {
-                check_box("the instances' box", buffer.bounds.unwrap_or(Aabb::EVERYTHING), buffer.count > 0)?;
-                Ok(Self {
-                    count: buffer.count,
-                    matrices: None,
-                    source: Some(InstanceSource::new(buffer)?),
-                    bounds: buffer.bounds.unwrap_or(Aabb::EVERYTHING),
-                    // Nobody knows; what is taken for open is right either way.
-                    is_mirrored: true,
-                })
-            }
-        }
-    }
-}
-
-/// World-space box of an object-space box under each matrix: of the turned box, which may be larger than that of what is in
-/// it.
-fn world_bounds(mesh: Aabb, matrices: &[Mat4]) -> Aabb {
-    if mesh.is_empty() {
-        return Aabb::EMPTY;
-    }
-    if !(mesh.min.is_finite() && mesh.max.is_finite()) {
-        return Aabb::EVERYTHING;
-    }
-    let (middle, half) = (mesh.center(), 0.5 * (mesh.max - mesh.min));
-    matrices.iter().fold(Aabb::EMPTY, |all, matrix| {
-        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate().abs());
-        let (middle, half): (Vec3, Vec3) = (matrix.transform_point3(middle), x * half.x + y * half.y + z * half.z);
-        all.union(Aabb { min: middle - half, max: middle + half })
-    })
-}
-
 fn source_of(mesh: &Mesh<'_>) -> Result<MeshSource, Error> {
     let source = MeshSource::new(mesh)?;
     check_box("the mesh's box", mesh.bounds, source.index_count() > 0)?;
@@ -653,64 +441,6 @@ fn check_box(what: &'static str, bounds: Aabb, holds_any: bool) -> Result<(), Er
     problem.map_or(Ok(()), |problem| {
         Err(bad(what, problem.into(), "a box with its least corner first, infinite where it is not known".into()))
     })
-}
-
-fn check_surface(gpu: &Gpu, surface: &Surface, mesh: &MeshEntry) -> Result<(), Error> {
-    let is_finite = match surface {
-        Surface::Opaque => true,
-        Surface::Masked { alpha_factor, cutoff, .. } => alpha_factor.is_finite() && cutoff.is_finite(),
-        Surface::Translucent { coverage, transmitted, .. } => coverage.is_finite() && transmitted.is_finite(),
-    };
-    if !is_finite {
-        return Err(bad("the caster's surface", "of numbers that are not finite".into(), "of finite ones".into()));
-    }
-    let Some(texture) = surface.texture() else { return Ok(()) };
-    if !mesh.source.has_uvs() {
-        return Err(bad(
-            "the caster's surface",
-            "textured on a mesh without texture coordinates".into(),
-            "on a mesh that has some".into(),
-        ));
-    }
-    let complaint = ViewKind::Filtered.complaint(gpu, &texture.view);
-    complaint.map_or(Ok(()), |complaint| {
-        Err(bad(
-            "the surface's texture",
-            format!("one that cannot be bound ({complaint})"),
-            "a 2D view of one layer, of a filterable colour format".into(),
-        ))
-    })
-}
-
-fn opacity_of<'a>(surface: &'a Surface, uvs: Option<&'a wgpu::Buffer>) -> Opacity<'a> {
-    let textured =
-        |texture: &'a Texture| uvs.map(|uvs| SurfaceTexture { uvs, view: &texture.view, sampler: &texture.sampler });
-    match surface {
-        Surface::Opaque => Opacity::Opaque,
-        Surface::Masked { texture, alpha_factor, cutoff } => match textured(texture) {
-            Some(texture) => Opacity::Masked { texture, alpha_factor: *alpha_factor, cutoff: *cutoff },
-            None => Opacity::Opaque,
-        },
-        // As hosts write a material that is blended in name alone: what stops all is opaque.
-        Surface::Translucent { coverage, transmitted, texture: None }
-            if *transmitted == Vec3::ZERO && is_whole_without_texture(*coverage) =>
-        {
-            Opacity::Opaque
-        }
-        Surface::Translucent { coverage, transmitted, texture } => Opacity::Translucent {
-            coverage: *coverage,
-            transmitted: *transmitted,
-            texture: texture.as_ref().and_then(textured),
-        },
-    }
-}
-
-fn is_whole_without_texture(coverage: SurfaceCoverage) -> bool {
-    match coverage {
-        SurfaceCoverage::Whole => true,
-        SurfaceCoverage::Alpha(alpha) => alpha >= 1.0,
-        SurfaceCoverage::Cutoff { alpha_factor, cutoff } => alpha_factor >= cutoff,
-    }
 }
 
 /// A range that was taken, or what more room it would need.

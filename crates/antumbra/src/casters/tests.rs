@@ -1,8 +1,9 @@
 use antumbra_light::LightShape;
-use glam::{Affine2, Vec2};
+use glam::{Affine2, Vec2, Vec3};
 
 use super::*;
 use crate::TechniqueKind;
+use crate::gpu::Recorder;
 use crate::shadow::{AnyShadow, Casters};
 use crate::testing::{Case, Mesh as TestMesh, gpu, read_storage, run};
 

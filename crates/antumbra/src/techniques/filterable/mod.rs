@@ -16,23 +16,18 @@
 //! pixel's footprint on the receiver's plane. `resolve = exact` takes the basis's place by comparisons of every texel under
 //! the same kernel, which is what these techniques are held against.
 
-use antumbra_light::Aabb;
 use glam::UVec2;
 
-use crate::contract::{CastersKey, DrawnMap, Error, MeshCaster, PreparedCasters, PreparedFrame};
+use crate::contract::{CastersKey, DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
-    Bindings, Cached, Content, Gpu, GpuStruct, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline,
-    create_uniform, texels, write_uniform,
+    Bindings, Cached, Content, Gpu, GpuStruct, Recorder, Span, Stage, compute_entry, compute_pipeline, create_uniform,
+    write_uniform,
 };
-use crate::light_map::between::Between;
-use crate::light_map::caster_depth::{CasterDepth, check_map_size};
-use crate::light_map::central_view::fit_light_view;
+use crate::light_map::caster_depth::CasterDepth;
 use crate::light_map::hosts_map::view_of_hosts_map;
 use crate::light_map::light_view::LightViewGpu;
-use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
-use crate::primitives::packed_map::{PackedMap, Packing, PreparedPackedMap};
-use crate::shaders;
+use crate::primitives::packed_map::{PackedMap, Packing};
 
 pub mod convolution;
 mod depth_axis;
@@ -41,7 +36,10 @@ pub mod evsm;
 pub(crate) mod gpu_types;
 pub mod lvsm;
 pub mod moment;
+mod own_map;
 mod params;
+mod pipelines;
+mod prepared_basis;
 #[cfg(test)]
 mod tests;
 pub mod vsm;
@@ -49,50 +47,12 @@ pub mod vsm;
 pub use depth_axis::DepthAxis;
 use depth_axis::DepthRange;
 use gpu_types::FilterUniform;
+use own_map::OwnMap;
 pub use params::{FilterKernel, FloatStorage, MomentStorage, Multisampling, ResolveBy};
 pub(crate) use params::{FilterSettings, filterable_params};
-
-/// Threads along each side of a workgroup over the map.
-const TILE: u32 = 8;
-
-bindings! {
-    /// Of passes over the light map. Depth may have several samples a texel, here and below.
-    struct Encoded = "encode", COMPUTE, group 0 of [VSM_ENCODE, VSM_ENCODE_MULTISAMPLED] {
-        0 map_view: Uniform,
-        1 settings: Uniform,
-        2 light_map: Texture(texels::DEPTH),
-        3 packed_target: WrittenArray(PackedMap::FORMAT),
-    }
-
-    /// Of passes over the receivers that read the filtered map.
-    struct Filtered = "filtered map", COMPUTE, group 1 of [VSM_RESOLVE] {
-        0 light_view: Uniform,
-        1 settings: Uniform,
-        2 packed_map: TextureArray(texels::UINT),
-        5 snapped_texels: Uniform,
-    }
-
-    /// The same with what the filtered map was made of.
-    struct Exact = "exact", COMPUTE, group 1 of [FILTERABLE_EXACT, FILTERABLE_EXACT_MULTISAMPLED],
-        with filtered: Filtered
-    {
-        3 depth_map: Texture(texels::DEPTH),
-        4 weights: Storage,
-    }
-
-    /// Of passes over the receivers that read depth alone.
-    struct Depth = "depth of receivers' map", COMPUTE, group 1 of [LVSM_BLEEDING, LVSM_BLEEDING_MULTISAMPLED] {
-        0 light_view: Uniform,
-        1 settings: Uniform,
-        3 depth_map: Texture(texels::DEPTH),
-    }
-
-    /// Of every basis. Each has its own name for the first.
-    struct Basis = "basis parameters", COMPUTE {
-        0 parameters: Uniform,
-        1 buffer: Storage,
-    }
-}
+pub(crate) use pipelines::pipelines_index;
+use pipelines::{Basis, Filtered, MapPipelines};
+pub use prepared_basis::PreparedBasis;
 
 /// A basis's shaders.
 #[derive(Clone, Copy, Debug)]
@@ -100,14 +60,6 @@ pub(crate) struct BasisShaders {
     pub(crate) encode: &'static str,
     pub(crate) encode_multisampled: &'static str,
     pub(crate) resolve: &'static str,
-}
-
-/// A light map of our own.
-#[derive(Debug)]
-struct OwnMap {
-    view: wgpu::TextureView,
-    size: u32,
-    sample_count: u32,
 }
 
 /// The light map of the prepared frame.
@@ -125,41 +77,6 @@ pub(crate) struct FrameMap {
     inputs: PreparedInputs,
     /// An earlier frame has drawn it.
     is_drawn: bool,
-}
-
-/// The passes of one frame that follow its light map.
-#[derive(Debug)]
-#[doc(hidden)]
-pub struct PreparedBasis {
-    map: FrameMap,
-    groups: BindGroups,
-    /// Layouts of the groups that passes between the map and the basis bind.
-    encode_layout: wgpu::BindGroupLayout,
-    depth_layout: wgpu::BindGroupLayout,
-    /// `None` where others draw what it would write, or nothing is filtered.
-    encode: Option<wgpu::ComputePipeline>,
-    packed: PreparedPackedMap,
-    resolve: wgpu::ComputePipeline,
-}
-
-/// The pipelines for maps of one sample a texel, or of several.
-#[derive(Clone, Debug)]
-struct MapPipelines {
-    encode_layout: wgpu::BindGroupLayout,
-    encode: wgpu::ComputePipeline,
-    exact_layout: wgpu::BindGroupLayout,
-    depth_layout: wgpu::BindGroupLayout,
-    /// Made when it is first asked for.
-    exact: Option<wgpu::ComputePipeline>,
-}
-
-#[derive(Debug)]
-struct BindGroups {
-    encode: wgpu::BindGroup,
-    depth: wgpu::BindGroup,
-    /// The basis's, or the exact pass's.
-    resolve: wgpu::BindGroup,
-    params: wgpu::BindGroup,
 }
 
 /// The passes. `P` is the basis's parameter uniform.
@@ -309,44 +226,6 @@ impl<P: GpuStruct> Filterable<P> {
         Ok(map)
     }
 
-    fn prepare_own_map(
-        &mut self,
-        stage: &Stage<'_>,
-        frame: &PreparedFrame<'_>,
-        meshes: &[MeshCaster<'_>],
-        settings: &FilterSettings,
-        inputs: PreparedInputs,
-    ) -> Result<FrameMap, Error> {
-        let technique = self.technique;
-        let size = settings.map_size;
-        check_map_size(stage, technique, size, "set a smaller `map_size`")?;
-        let sample_count = settings.msaa.count();
-        if self.own_map.as_ref().is_none_or(|map| (map.size, map.sample_count) != (size, sample_count)) {
-            self.own_map =
-                Some(OwnMap { view: depth_texture(stage, technique, size, sample_count)?, size, sample_count });
-        }
-        let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
-        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let receivers = corners_to_hold(stage, &frame.receivers);
-        let between = Between::new(frame.light, &bounds, &receivers);
-        let mut view = fit_light_view(frame.light, &bounds, &receivers);
-        // The window holds the receivers; their kernels reach beyond it.
-        let reach = (settings.kernel().radius() + 1).min(size / 4);
-        view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
-        let view = in_whole_texels(stage, view, UVec2::splat(size));
-        let casters = self.casters.get_or_make(sample_count, || CasterDepth::multisampled(stage, sample_count));
-        casters.prepare(stage, &[view.clip_from_world()], meshes);
-        let range = match settings.depth_axis {
-            DepthAxis::Light => None,
-            DepthAxis::World => DepthRange::along_world(&view, &between, &receivers),
-            DepthAxis::Distance => DepthRange::by_distance(&view, &between, &receivers),
-        };
-        let view = view.to_gpu(size);
-        let range = range.unwrap_or_else(|| DepthRange::of_view(&view));
-        let size = UVec2::splat(size);
-        Ok(FrameMap { depth, size, sample_count, view, range, settings: *settings, inputs, is_drawn: false })
-    }
-
     /// Allocates the filtered map of `channels` channels and uploads the basis's parameters. `t_step` is the error in t that
     /// storing leaves.
     pub(crate) fn prepare_basis(
@@ -394,55 +273,6 @@ impl<P: GpuStruct> Filterable<P> {
             encode_layout: pipelines.encode_layout,
             depth_layout: pipelines.depth_layout,
         }
-    }
-
-    fn bind(
-        &self,
-        stage: &Stage<'_>,
-        light_map: &wgpu::TextureView,
-        packed: &PreparedPackedMap,
-        pipelines: &MapPipelines,
-        buffer: &wgpu::Buffer,
-        is_exact: bool,
-    ) -> BindGroups {
-        let (view, settings) = (&self.view_uniform, &self.filter_uniform);
-        let (packed_map, snapped_texels) = (packed.view(), stage.snapped_texels());
-        let filtered = Filtered { light_view: view, settings, packed_map, snapped_texels };
-        let encoded = Encoded { map_view: view, settings, light_map, packed_target: packed.target() };
-        BindGroups {
-            encode: encoded.group(stage, &pipelines.encode_layout),
-            depth: Depth { light_view: view, settings, depth_map: light_map }.group(stage, &pipelines.depth_layout),
-            resolve: if is_exact {
-                Exact { filtered, depth_map: light_map, weights: packed.weights() }
-                    .group(stage, &pipelines.exact_layout)
-            } else {
-                filtered.group(stage, &self.resolve_layout)
-            },
-            params: Basis { parameters: &self.params_uniform, buffer }.group(stage, &self.params_layout),
-        }
-    }
-
-    /// The pipelines of the frame's map, compiled where they are not yet.
-    fn map_pipelines(&mut self, gpu: &Gpu, with_exact: bool) -> MapPipelines {
-        let (multisampled, constants) = (self.is_multisampled(), self.distance_constant());
-        let index = pipelines_index(multisampled, self.is_distance());
-        let pipelines = self.map_pipelines[index].get_or_insert_with(|| {
-            let encode_layout = Encoded::layout_of_samples(gpu, multisampled);
-            let wgsl = if multisampled { self.shaders.encode_multisampled } else { self.shaders.encode };
-            MapPipelines {
-                encode: compute_entry(gpu, "encode", wgsl, None, &constants, &[&encode_layout, &self.params_layout]),
-                encode_layout,
-                exact_layout: Exact::layout_of_samples(gpu, multisampled),
-                depth_layout: Depth::layout_of_samples(gpu, multisampled),
-                exact: None,
-            }
-        });
-        if with_exact && pipelines.exact.is_none() {
-            let wgsl = if multisampled { shaders::FILTERABLE_EXACT_MULTISAMPLED } else { shaders::FILTERABLE_EXACT };
-            let layouts = [&self.inputs.layout, &pipelines.exact_layout, &self.params_layout];
-            pipelines.exact = Some(compute_pipeline(gpu, "exact", wgsl, &layouts));
-        }
-        pipelines.clone()
     }
 
     /// What draws the light map of the prepared frame, where it is ours.
@@ -504,96 +334,4 @@ impl<P: GpuStruct> Filterable<P> {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * u64::from(map.sample_count) * 4);
         map + self.packed.memory_bytes()
     }
-}
-
-impl PreparedBasis {
-    /// Group 0 of passes over the light map.
-    pub(crate) fn encode_group(&self) -> &wgpu::BindGroup {
-        &self.groups.encode
-    }
-
-    /// Layout of [`Self::encode_group`].
-    pub(crate) fn encode_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.encode_layout
-    }
-
-    /// Group 1 of passes over the receivers that read the light map's depth, beside its view and the filter.
-    pub(crate) fn depth_group(&self) -> &wgpu::BindGroup {
-        &self.groups.depth
-    }
-
-    /// Layout of [`Self::depth_group`].
-    pub(crate) fn depth_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.depth_layout
-    }
-
-    /// The receivers: group 0 of passes over them.
-    pub(crate) fn inputs(&self) -> &PreparedInputs {
-        &self.map.inputs
-    }
-
-    /// A view of each word of the packed map, where others draw it.
-    pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
-        self.packed.layer_views()
-    }
-
-    /// Records all that follows the light map.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
-        let Self { map, groups, .. } = self;
-        if let Some(encode) = &self.encode {
-            recorder.compute("encode", Span::Only, |pass| {
-                pass.set_pipeline(encode);
-                pass.set_bind_group(0, &groups.encode, &[]);
-                pass.set_bind_group(1, &groups.params, &[]);
-                pass.dispatch_workgroups(map.size.x.div_ceil(TILE), map.size.y.div_ceil(TILE), 1);
-            });
-        }
-        if map.settings.resolve != ResolveBy::Exact {
-            self.packed.record(recorder);
-        }
-        recorder.compute("resolve", Span::Only, |pass| {
-            pass.set_pipeline(&self.resolve);
-            map.inputs.bind(pass);
-            pass.set_bind_group(1, &groups.resolve, &[]);
-            pass.set_bind_group(2, &groups.params, &[]);
-            map.inputs.dispatch(pass);
-        });
-    }
-}
-
-/// Which pipelines are for maps of several samples a texel, and for distances as depths.
-pub(crate) fn pipelines_index(is_multisampled: bool, is_distance: bool) -> usize {
-    usize::from(is_multisampled) + 2 * usize::from(is_distance)
-}
-
-/// A square depth map.
-fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u32) -> Result<wgpu::TextureView, Error> {
-    // Every adapter has 1 and 4; of the others only the attempt tells.
-    let is_core = matches!(sample_count, 1 | 4);
-    let unsupported = || Error::Unsupported {
-        technique,
-        needed: format!("a light map with {sample_count} samples a texel"),
-        had: "1 and 4".into(),
-        remedy: "set `msaa` to 1 or 4",
-    };
-    if !is_core && !gpu.has(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
-        return Err(unsupported());
-    }
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("antumbra light map"),
-        size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count,
-        dimension: wgpu::TextureDimension::D2,
-        format: CasterDepth::FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    // Browsers, which do not answer at once, never have the feature.
-    let mut made = None;
-    if gpu.complaint(|| made = Some(gpu.device.create_texture(&descriptor))).is_some() {
-        return Err(unsupported());
-    }
-    let texture = made.expect("made on trial");
-    Ok(gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()))
 }

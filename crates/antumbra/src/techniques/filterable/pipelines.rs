@@ -1,0 +1,123 @@
+//! Bindings and pipelines of the passes over a light map and its receivers.
+
+use super::Filterable;
+use crate::gpu::{Bindings, Gpu, GpuStruct, Stage, bindings, compute_entry, compute_pipeline, texels};
+use crate::primitives::packed_map::{PackedMap, PreparedPackedMap};
+use crate::shaders;
+
+bindings! {
+    /// Of passes over the light map. Depth may have several samples a texel, here and below.
+    struct Encoded = "encode", COMPUTE, group 0 of [VSM_ENCODE, VSM_ENCODE_MULTISAMPLED] {
+        0 map_view: Uniform,
+        1 settings: Uniform,
+        2 light_map: Texture(texels::DEPTH),
+        3 packed_target: WrittenArray(PackedMap::FORMAT),
+    }
+
+    /// Of passes over the receivers that read the filtered map.
+    pub(super) struct Filtered = "filtered map", COMPUTE, group 1 of [VSM_RESOLVE] {
+        0 light_view: Uniform,
+        1 settings: Uniform,
+        2 packed_map: TextureArray(texels::UINT),
+        5 snapped_texels: Uniform,
+    }
+
+    /// The same with what the filtered map was made of.
+    struct Exact = "exact", COMPUTE, group 1 of [FILTERABLE_EXACT, FILTERABLE_EXACT_MULTISAMPLED],
+        with filtered: Filtered
+    {
+        3 depth_map: Texture(texels::DEPTH),
+        4 weights: Storage,
+    }
+
+    /// Of passes over the receivers that read depth alone.
+    struct Depth = "depth of receivers' map", COMPUTE, group 1 of [LVSM_BLEEDING, LVSM_BLEEDING_MULTISAMPLED] {
+        0 light_view: Uniform,
+        1 settings: Uniform,
+        3 depth_map: Texture(texels::DEPTH),
+    }
+
+    /// Of every basis. Each has its own name for the first.
+    pub(super) struct Basis = "basis parameters", COMPUTE {
+        0 parameters: Uniform,
+        1 buffer: Storage,
+    }
+}
+
+/// The pipelines for maps of one sample a texel, or of several.
+#[derive(Clone, Debug)]
+pub(super) struct MapPipelines {
+    pub(super) encode_layout: wgpu::BindGroupLayout,
+    pub(super) encode: wgpu::ComputePipeline,
+    pub(super) exact_layout: wgpu::BindGroupLayout,
+    pub(super) depth_layout: wgpu::BindGroupLayout,
+    /// Made when it is first asked for.
+    pub(super) exact: Option<wgpu::ComputePipeline>,
+}
+
+/// What the passes of a frame bind.
+#[derive(Debug)]
+pub(super) struct BindGroups {
+    pub(super) encode: wgpu::BindGroup,
+    pub(super) depth: wgpu::BindGroup,
+    /// The basis's, or the exact pass's.
+    pub(super) resolve: wgpu::BindGroup,
+    pub(super) params: wgpu::BindGroup,
+}
+
+impl<P: GpuStruct> Filterable<P> {
+    /// Binds a frame's maps.
+    pub(super) fn bind(
+        &self,
+        stage: &Stage<'_>,
+        light_map: &wgpu::TextureView,
+        packed: &PreparedPackedMap,
+        pipelines: &MapPipelines,
+        buffer: &wgpu::Buffer,
+        is_exact: bool,
+    ) -> BindGroups {
+        let (view, settings) = (&self.view_uniform, &self.filter_uniform);
+        let (packed_map, snapped_texels) = (packed.view(), stage.snapped_texels());
+        let filtered = Filtered { light_view: view, settings, packed_map, snapped_texels };
+        let encoded = Encoded { map_view: view, settings, light_map, packed_target: packed.target() };
+        BindGroups {
+            encode: encoded.group(stage, &pipelines.encode_layout),
+            depth: Depth { light_view: view, settings, depth_map: light_map }.group(stage, &pipelines.depth_layout),
+            resolve: if is_exact {
+                Exact { filtered, depth_map: light_map, weights: packed.weights() }
+                    .group(stage, &pipelines.exact_layout)
+            } else {
+                filtered.group(stage, &self.resolve_layout)
+            },
+            params: Basis { parameters: &self.params_uniform, buffer }.group(stage, &self.params_layout),
+        }
+    }
+
+    /// The pipelines of the frame's map, compiled where they are not yet.
+    pub(super) fn map_pipelines(&mut self, gpu: &Gpu, with_exact: bool) -> MapPipelines {
+        let (multisampled, constants) = (self.is_multisampled(), self.distance_constant());
+        let index = pipelines_index(multisampled, self.is_distance());
+        let pipelines = self.map_pipelines[index].get_or_insert_with(|| {
+            let encode_layout = Encoded::layout_of_samples(gpu, multisampled);
+            let wgsl = if multisampled { self.shaders.encode_multisampled } else { self.shaders.encode };
+            MapPipelines {
+                encode: compute_entry(gpu, "encode", wgsl, None, &constants, &[&encode_layout, &self.params_layout]),
+                encode_layout,
+                exact_layout: Exact::layout_of_samples(gpu, multisampled),
+                depth_layout: Depth::layout_of_samples(gpu, multisampled),
+                exact: None,
+            }
+        });
+        if with_exact && pipelines.exact.is_none() {
+            let wgsl = if multisampled { shaders::FILTERABLE_EXACT_MULTISAMPLED } else { shaders::FILTERABLE_EXACT };
+            let layouts = [&self.inputs.layout, &pipelines.exact_layout, &self.params_layout];
+            pipelines.exact = Some(compute_pipeline(gpu, "exact", wgsl, &layouts));
+        }
+        pipelines.clone()
+    }
+}
+
+/// Which pipelines are for maps of several samples a texel, and for distances as depths.
+pub(crate) fn pipelines_index(is_multisampled: bool, is_distance: bool) -> usize {
+    usize::from(is_multisampled) + 2 * usize::from(is_distance)
+}
