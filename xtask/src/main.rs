@@ -38,8 +38,8 @@ Development commands of Antumbra. They install what is missing where they can, a
         Choose with --driver or ANTUMBRA_DRIVER; VK_DRIVER_FILES is respected.
 
     cargo xtask ci [--driver default|installed|newer]
-        Runs `test`, each family of techniques alone, `packages`, `wasm` and `web --shaders`. Fails where a check would be
-        skipped, except the last if there is no browser.
+        Runs `test`, each family of techniques alone, `packages` without nightly, `wasm` and `web --shaders`. Fails where a check
+        would be skipped, except the last if there is no browser.
 
     cargo xtask shaders
         Links the library's shaders. Run it after an edit to a .wesl file or to the list in src/shaders.rs.
@@ -97,7 +97,7 @@ fn main() -> ExitCode {
         "docs" => book::write_generated_parts(),
         "shaders" => link_shaders(),
         "mutants" => find_mutants(rest, []),
-        "packages" => packages::check(),
+        "packages" => packages::check().and_then(|()| packages::check_with_nightly()),
         "qualities" => qualities::run(),
         "wasm" => wasm::check(Missing::Skip),
         "web" => web::run(rest),

@@ -55,17 +55,41 @@ antumbra-light = { path = "antumbra-light" }
 debug = false
 "#;
 
-/// Packages every published crate, then builds and runs a program outside the repository from the packaged library, and checks that it
-/// compiles with nightly where that is installed: with the newest versions of everything that the library depends on, since a user
-/// has no lock file of ours.
+/// Packages every published crate, then builds and runs a program outside the repository from the packaged library: with the newest
+/// versions that this toolchain can take of everything that the library depends on, since a user has no lock file of ours.
 ///
 /// # Errors
 /// Says which package lacks what, or what of the program failed.
 pub fn check() -> Result<(), String> {
+    run_program(&unpacked_program()?.0)
+}
+
+/// Checks that the same program compiles with nightly, where that is installed: with versions that need a newer compiler than ours.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_with_nightly() -> Result<(), String> {
+    let nightly = || {
+        let mut command = Command::new("rustup");
+        command.args(["run", "nightly", "cargo"]);
+        command
+    };
+    if find("rustup").is_some() && succeeds(nightly().arg("--version")) {
+        check_program(nightly(), &unpacked_program()?.0)
+    } else {
+        eprintln!(
+            "xtask: SKIPPED a program outside with nightly: it is not installed (`rustup toolchain add nightly`)"
+        );
+        Ok(())
+    }
+}
+
+/// The program beside the packages of every published crate, unpacked.
+fn unpacked_program() -> Result<Folder, String> {
     let began = Instant::now();
     let mut package = cargo();
     // Building each as packaged would build everything again; what packaging can break for the library, the program
-    // below finds. What is checked is the tree as it is, committed or not.
+    // finds. What is checked is the tree as it is, committed or not.
     package.args(["package", "--quiet", "--locked", "--no-verify", "--allow-dirty"]);
     for name in PUBLISHED {
         package.args(["--package", name]);
@@ -83,24 +107,10 @@ pub fn check() -> Result<(), String> {
     if folder.0.join("antumbra/linked/test").exists() {
         return Err("the package antumbra holds linked/test: its Cargo.toml has to exclude it".to_owned());
     }
-    eprintln!("xtask: {} crates packaged after {} s", PUBLISHED.len(), began.elapsed().as_secs());
-
     write(&folder.0.join("Cargo.toml"), MANIFEST)?;
     write(&folder.0.join("src/main.rs"), PROGRAM)?;
-    run_program(&folder.0)?;
-    let nightly = || {
-        let mut command = Command::new("rustup");
-        command.args(["run", "nightly", "cargo"]);
-        command
-    };
-    if find("rustup").is_some() && succeeds(nightly().arg("--version")) {
-        check_program(nightly(), &folder.0)
-    } else {
-        eprintln!(
-            "xtask: SKIPPED a program outside with nightly: it is not installed (`rustup toolchain add nightly`)"
-        );
-        Ok(())
-    }
+    eprintln!("xtask: {} crates packaged after {} s", PUBLISHED.len(), began.elapsed().as_secs());
+    Ok(folder)
 }
 
 /// The command of cargo for the program, with one toolchain, which keeps what it builds from run to run.

@@ -16,7 +16,7 @@ enum Tier {
     Quick,
     /// All but what is marked `#[ignore]`; what continuous integration requires.
     Required,
-    /// What is marked `#[ignore]`, too, then the plugin for Bevy and a sample of mutants.
+    /// What is marked `#[ignore]`, too, then packages with nightly, the plugin for Bevy and a sample of mutants.
     Long,
 }
 
@@ -95,6 +95,7 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             skips.report();
             outcome?;
             if tier == Tier::Long && filter.is_empty() {
+                packages::check_with_nightly()?;
                 bevy::run(&[])?;
                 find_mutants(&MUTANTS.map(str::to_owned), driver.variables())?;
             }
