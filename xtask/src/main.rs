@@ -51,7 +51,8 @@ Development commands of Antumbra. They install what is missing where they can, a
         Builds the book in target/book; --serve serves it on this machine. Installs mdbook in target/tools once.
 
     cargo xtask packages
-        Makes the packages for publication, and builds and runs a program from them outside the repository.
+        Makes the packages for publication, and builds and runs a program from them outside the repository; with nightly, too, where
+        that is installed.
 
     cargo xtask wasm
         Checks that the library compiles for browsers.
