@@ -68,7 +68,7 @@ use glam::UVec2;
 
 use crate::contract::{DrawnLists, Error, ListLengths, ListLevel, ListOrder, PreparedFrame, param_choice};
 use crate::frame::inputs::{FrameInputs, PreparedInputs, clip_depth_rows, matrix_rounding_m};
-use crate::gpu::{Gpu, Recorder, Span, Stage, white_texture};
+use crate::gpu::{Gpu, Stage, white_texture};
 use crate::light_map::readable_meshes::readable_meshes;
 use crate::primitives::prefix_scan::PrefixScan;
 
@@ -84,6 +84,7 @@ mod lookup_table;
 mod pipelines;
 mod plan;
 mod raster;
+mod record;
 mod region;
 pub mod sample_based;
 mod settings;
@@ -93,8 +94,8 @@ mod windows;
 
 use batches::{Batch, Surfaces};
 use buffers::{BufferSet, Buffers};
-use caster_groups::{RunGroup, over_runs, run_groups, surface_group};
-use evaluation::{Evaluation, Evaluations, OverGroups, PointBatch};
+use caster_groups::{RunGroup, run_groups, surface_group};
+use evaluation::{Evaluation, Evaluations, PointBatch};
 use gpu_types::SampleSettings;
 use groups::{FrameGroups, Layouts, TABLE_FORMAT};
 use light_points::WORD;
@@ -362,126 +363,6 @@ impl ViewSamples {
         }
     }
 
-    /// Records every pass of a frame.
-    pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedSamples) {
-        let pipelines = &self.pipelines;
-        if let Some(table) = &self.table
-            && let Some(group) = &table.bind_group
-        {
-            recorder.compute("lookup table", Span::Only, |pass| {
-                pass.set_pipeline(&pipelines.make_lookup);
-                pass.set_bind_group(0, group, &[]);
-                pass.dispatch_workgroups(table.groups[0], table.groups[1], table.groups[2]);
-            });
-        }
-        let over_pixels = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline| {
-            pass.set_pipeline(pipeline);
-            frame.inputs.bind(pass);
-            pass.set_bind_group(1, &frame.lists, &[]);
-            frame.inputs.dispatch(pass);
-        };
-        recorder.compute("view-sample lists", Span::Only, |pass| {
-            clear(pass, pipelines, &frame.clears.state);
-            clear(pass, pipelines, &frame.clears.counts);
-            clear(pass, pipelines, &frame.clears.work);
-            over_pixels(pass, &pipelines.bounds);
-            over_pixels(pass, &pipelines.count);
-            if let Some(choice) = pipelines.choice.as_ref().filter(|_| frame.chooses) {
-                pass.set_pipeline(&choice.choose);
-                pass.dispatch_workgroups(CLEAR_GROUPS, 1, 1);
-                over_pixels(pass, &choice.count_again);
-            }
-        });
-        self.list_scan.record(recorder, "view-sample lists");
-        let storing = pipelines.storing_scatter.as_ref().filter(|_| frame.stores_positions);
-        let scatter = storing.unwrap_or(&pipelines.scatter);
-        recorder.compute("view-sample lists", Span::Only, |pass| over_pixels(pass, scatter));
-
-        if !frame.edge_runs.is_empty() {
-            recorder.compute("silhouettes", Span::Only, |pass| {
-                clear(pass, pipelines, &frame.clears.edges);
-                pass.set_bind_group(0, &frame.edges, &[]);
-                over_runs(pass, &pipelines.edge_faces, &frame.edge_runs);
-            });
-        }
-        let steps = frame.batches[0].evaluate.len();
-        for step in 0..steps {
-            for batch in &frame.batches {
-                // One batch stays sorted.
-                if step == 0 || frame.batches.len() > 1 {
-                    self.record_sort(recorder, batch, frame);
-                }
-                match &batch.evaluate[step] {
-                    Evaluation::Groups(over) => self.record_groups(recorder, over, &batch.surface, frame),
-                    Evaluation::Raster { walked, before, draw, after } => {
-                        if let Some(over) = walked {
-                            self.record_groups(recorder, over, &batch.surface, frame);
-                        }
-                        if let Some(over) = before {
-                            self.record_groups(recorder, over, &batch.surface, frame);
-                        }
-                        if draw.silhouettes.is_some() {
-                            recorder.compute("silhouettes", Span::Only, |pass| {
-                                clear(pass, pipelines, &frame.clears.penumbrae);
-                            });
-                        }
-                        draw.record(recorder, &frame.inputs, &batch.surface);
-                        if let Some(over) = after {
-                            self.record_groups(recorder, over, &batch.surface, frame);
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// Passes over the groups of receivers until each is done.
-    fn record_groups(
-        &self,
-        recorder: &mut Recorder<'_>,
-        over: &OverGroups,
-        surface: &wgpu::BindGroup,
-        frame: &PreparedSamples,
-    ) {
-        recorder.compute("visibility", Span::Only, |pass| {
-            for i in 0..over.passes {
-                pass.set_pipeline(if i == 0 { self.pipelines.begin(over.way) } else { &self.pipelines.advance });
-                pass.set_bind_group(0, &frame.passes, &[]);
-                pass.dispatch_workgroups(1, 1, 1);
-                pass.set_pipeline(&over.pipeline);
-                frame.inputs.bind(pass);
-                pass.set_bind_group(1, &over.group, &[]);
-                pass.set_bind_group(2, surface, &[]);
-                pass.dispatch_workgroups_indirect(&frame.dispatches, 0);
-            }
-        });
-    }
-
-    /// Sorts a batch's triangles.
-    fn record_sort(&self, recorder: &mut Recorder<'_>, batch: &PreparedBatch, frame: &PreparedSamples) {
-        let pipelines = &self.pipelines;
-        recorder.compute("triangles", Span::Only, |pass| {
-            clear(pass, pipelines, &frame.clears.cells);
-            pass.set_bind_group(0, &batch.casters, &[]);
-            over_runs(pass, &pipelines.triangle_count, &batch.runs);
-        });
-        self.cell_scan.record(recorder, "triangles");
-        recorder.compute("triangles", Span::Only, |pass| {
-            pass.set_bind_group(0, &batch.casters, &[]);
-            over_runs(pass, &pipelines.triangle_scatter, &batch.runs);
-            pass.set_pipeline(&pipelines.arguments);
-            pass.set_bind_group(0, &batch.arguments, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-            if batch.clusters > 0 {
-                pass.set_pipeline(&pipelines.cluster_boxes);
-                pass.set_bind_group(0, &batch.boxes, &[]);
-                pass.dispatch_workgroups(batch.clusters.div_ceil(64), 1, 1);
-                pass.set_pipeline(&pipelines.super_boxes);
-                pass.dispatch_workgroups(batch.clusters.div_ceil(64 * 32), 1, 1);
-            }
-        });
-    }
-
     /// Group 0 of every pass over the receivers.
     pub(crate) fn inputs(&self) -> &FrameInputs {
         &self.inputs
@@ -533,16 +414,6 @@ impl PreparedSamples {
         &self.inputs
     }
 }
-
-/// Zeroes a buffer.
-fn clear(pass: &mut wgpu::ComputePass<'_>, pipelines: &Pipelines, group: &wgpu::BindGroup) {
-    pass.set_pipeline(&pipelines.clear);
-    pass.set_bind_group(0, group, &[]);
-    pass.dispatch_workgroups(CLEAR_GROUPS, 1, 1);
-}
-
-/// Workgroups that clear a buffer between them.
-const CLEAR_GROUPS: u32 = 64;
 
 /// Vectors of a triangle in its list: corners, and texture coordinates where the surface has holes or tint.
 fn stride_of(batch: &Batch) -> u32 {

@@ -1,0 +1,38 @@
+//! Resources that are bound on trial once, since wgpu does not tell what they are.
+
+/// Resources that could be bound on trial, with the last frame of each.
+#[derive(Debug)]
+pub(super) struct Good<R> {
+    found: Vec<(R, u64)>,
+    frame: u64,
+}
+
+impl<R> Default for Good<R> {
+    fn default() -> Self {
+        Self { found: Vec::new(), frame: 0 }
+    }
+}
+
+impl<R: PartialEq> Good<R> {
+    /// Resources unused for this many frames are forgotten, so that they can be freed.
+    const KEPT_FRAMES: u64 = 8;
+
+    /// Begins a frame.
+    pub(super) fn begin_frame(&mut self) {
+        self.frame += 1;
+        self.found.retain(|(_, frame)| frame + Self::KEPT_FRAMES >= self.frame);
+    }
+
+    /// What wgpu says against a resource; `None` where nothing is wrong with it. Only new resources are tried.
+    pub(super) fn complaint(&mut self, resource: R, trial: impl FnOnce(&R) -> Option<String>) -> Option<String> {
+        if let Some((_, frame)) = self.found.iter_mut().find(|(good, _)| *good == resource) {
+            *frame = self.frame;
+            return None;
+        }
+        let complaint = trial(&resource);
+        if complaint.is_none() {
+            self.found.push((resource, self.frame));
+        }
+        complaint
+    }
+}
