@@ -36,6 +36,9 @@ Output files appear complete or not at all.")]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
+    /// No progress and no notes: results and errors alone
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -51,6 +54,8 @@ pub enum Command {
     Scenes(ScenesArgs),
     Doctor(DoctorArgs),
     Reproduce(ReproduceArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
 }
 
 /// Camera, lights and time of a scene.
@@ -532,6 +537,9 @@ pub struct TechniquesArgs {
     /// A technique
     #[arg(value_name = "NAME", value_parser = values::kind)]
     pub name: Option<TechniqueKind>,
+    /// Prints JSON: every technique, or the named one, with parameters and qualities
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Lists the built-in scenes, or writes one as glTF
@@ -548,6 +556,9 @@ pub struct ScenesArgs {
     /// File to write: .glb, or .gltf with its buffer inside
     #[arg(short, long, value_name = "x.glb", requires = "export")]
     pub output: Option<PathBuf>,
+    /// Prints the list as JSON
+    #[arg(long, conflicts_with = "export")]
+    pub json: bool,
 }
 
 /// Lists adapters, features and limits, and what each technique needs that is missing
@@ -555,6 +566,33 @@ pub struct ScenesArgs {
 pub struct DoctorArgs {
     #[command(flatten)]
     pub adapter: AdapterArgs,
+    /// Prints JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Prints completions for a shell
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra completions bash > ~/.local/share/bash-completion/completions/antumbra
+  antumbra completions zsh > \"${fpath[1]}/_antumbra\"
+  antumbra completions fish > ~/.config/fish/completions/antumbra.fish")]
+pub struct CompletionsArgs {
+    /// The shell
+    #[arg(value_name = "SHELL", value_enum, ignore_case = true)]
+    pub shell: clap_complete::Shell,
+}
+
+/// Writes manual pages, one for each command
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  antumbra man -o ~/.local/share/man/man1        then: man antumbra-compare")]
+pub struct ManArgs {
+    /// Folder to write to; it is created where it does not exist
+    #[arg(short, long, value_name = "man1")]
+    pub output: PathBuf,
 }
 
 /// Lists the papers' tables and figures, runs them, and says for each of the papers' claims whether it holds here

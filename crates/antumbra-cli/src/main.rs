@@ -31,7 +31,7 @@ fn main() -> ExitCode {
     if let Err(error) = ctrlc::set_handler(stop) {
         tell(&format_args!("Ctrl-C will stop without cleaning up: {error}"));
     }
-    let bars = Bars::default();
+    let bars = Bars::new(cli.quiet);
     let outcome = match cli.command {
         Command::Render(args) => commands::render(&args, &bars),
         Command::Reference(args) => commands::reference(&args, &bars),
@@ -44,6 +44,8 @@ fn main() -> ExitCode {
         Command::Scenes(args) => commands::scenes(&args),
         Command::Doctor(args) => commands::doctor(&args),
         Command::Reproduce(args) => commands::reproduce(&args, &bars),
+        Command::Completions(args) => commands::completions(&args),
+        Command::Man(args) => commands::man(&args),
     };
     antumbra_lab::progress::Progress::end(&bars);
     match outcome {

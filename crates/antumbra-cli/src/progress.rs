@@ -8,13 +8,19 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::tell;
 
-/// One bar at a time. Where stderr is no terminal only the notes are printed.
-#[derive(Debug, Default)]
+/// One bar at a time. Where stderr is no terminal only the notes are printed; nothing is where the user asked for quiet.
+#[derive(Debug)]
 pub struct Bars {
     current: Mutex<Option<ProgressBar>>,
+    is_quiet: bool,
 }
 
 impl Bars {
+    /// Bars that print notes and progress, or neither.
+    pub fn new(is_quiet: bool) -> Self {
+        Self { current: Mutex::new(None), is_quiet }
+    }
+
     fn with_current(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
         act(&mut self.current.lock().unwrap_or_else(PoisonError::into_inner));
     }
@@ -22,6 +28,9 @@ impl Bars {
 
 impl Progress for Bars {
     fn begin(&self, stage: &str, steps: u64) {
+        if self.is_quiet {
+            return;
+        }
         let bar = if steps > 1 { ProgressBar::new(steps) } else { ProgressBar::new_spinner() };
         let template = if steps > 1 {
             "{msg:32!} {bar:30} {percent:>3} %  {elapsed} of about {duration}"
@@ -56,6 +65,9 @@ impl Progress for Bars {
     }
 
     fn note(&self, text: &str) {
+        if self.is_quiet {
+            return;
+        }
         self.with_current(|current| match current {
             Some(bar) => bar.suspend(|| tell(&text)),
             None => tell(&text),

@@ -117,9 +117,11 @@ const WALKS: &[Walk] = &[
     // Of the plan that was written last.
     Walk { base: "sweep run sweep", parts: &["--shard 1/1", "--adapter ADAPTER"], alone: &[] },
     Walk { base: "sweep merge sweep -o results.json", parts: &[], alone: &[] },
-    Walk { base: "techniques", parts: &["pcss"], alone: &[] },
-    Walk { base: "scenes", parts: &["--export overlap -o x.glb"], alone: &[] },
-    Walk { base: "doctor", parts: &["--adapter ADAPTER"], alone: &[] },
+    Walk { base: "techniques", parts: &["pcss", "--json"], alone: &[] },
+    Walk { base: "scenes", parts: &["--export overlap -o x.glb"], alone: &["--json"] },
+    Walk { base: "doctor", parts: &["--adapter ADAPTER", "--json"], alone: &[] },
+    Walk { base: "completions zsh", parts: &[], alone: &[] },
+    Walk { base: "man -o man1", parts: &[], alone: &[] },
     Walk { base: "reproduce", parts: &[], alone: &[] },
     // A figure of debug views, of errors, and of times.
     Walk {
@@ -172,6 +174,8 @@ commands! {
     techniques = "techniques";
     scenes = "scenes";
     doctor = "doctor";
+    completions = "completions";
+    man = "man";
     reproduce = "reproduce";
 }
 
@@ -255,6 +259,8 @@ fn every_option_is_walked() {
         &["techniques"],
         &["scenes"],
         &["doctor"],
+        &["completions"],
+        &["man"],
         &["reproduce"],
     ] {
         let name = command.join(" ");
@@ -269,7 +275,8 @@ fn every_option_is_walked() {
         let elsewhere = ELSEWHERE.iter().find(|(command, _)| *command == name).map_or(&[][..], |(_, options)| *options);
         let options = declared(dir.path(), command);
         assert!(options.contains("--help"), "{name}: {options:?}");
-        for option in options.iter().filter(|option| *option != "--help") {
+        // Every command has these two; `outputs.rs` has the second.
+        for option in options.iter().filter(|option| !["--help", "--quiet"].contains(&option.as_str())) {
             let short = if option == "--output" { " -o " } else { option.as_str() };
             let is_walked = walked.split([' ', '=']).any(|word| word == option) || walked.contains(short);
             assert!(is_walked || elsewhere.contains(&option.as_str()), "{name}: {option} is declared and not walked");
@@ -290,6 +297,8 @@ fn what_is_missing_is_said_in_one_line() {
         "sweep plan",
         "sweep run",
         "sweep merge",
+        "completions",
+        "man",
         "scenes --export overlap",
         "scenes -o x.glb",
         "render builtin:overlap",

@@ -385,6 +385,8 @@ fn what_is_assumed_of_a_scene_is_said() {
     let plain = told("reference t.gltf --samples 4 --size 32x18 -o a.png --visibility a.exr --time 3");
     assert!(plain.contains("t has no camera, and one frames it; no lights, and a square one of"), "{plain}");
     assert!(plain.contains("t stands on nothing, and was put on a ground; --ground=no leaves it out"), "{plain}");
+    let quiet = told("reference t.gltf --samples 4 --size 32x18 -o a.png --time 3 --quiet");
+    assert!(quiet.is_empty(), "{quiet}");
     let bare = told("reference t.gltf --samples 4 --size 32x18 -o a.png --ground=no");
     assert!(!bare.contains("put on a ground"), "{bare}");
     assert!(plain.contains("--time 3: nothing in the scene is animated"), "{plain}");
@@ -431,6 +433,57 @@ fn every_technique_explains_its_parameters() {
         let page = run(dir.path(), &["techniques", name]);
         let page = String::from_utf8_lossy(&page.stdout).into_owned();
         assert!(page.contains("bias_scale") && page.contains("default") && page.contains("from 16 to 8192"), "{page}");
+    }
+}
+
+#[test]
+fn lists_are_json_where_asked_for() {
+    let dir = tempfile::tempdir().unwrap();
+    let json = |words: &[&str]| -> serde_json::Value {
+        let output = run(dir.path(), words);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{words:?}: {error}"))
+    };
+    let names = |list: &serde_json::Value| -> Vec<String> {
+        list.as_array().unwrap().iter().map(|item| item["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let techniques = json(&["techniques", "--json"]);
+    let kinds: Vec<String> = antumbra::TechniqueKind::ALL.iter().map(|kind| kind.name().to_owned()).collect();
+    assert_eq!(names(&techniques), kinds);
+    let pcf = json(&["techniques", "pcf", "--json"]);
+    let samples = pcf["parameters"].as_array().unwrap().iter().find(|parameter| parameter["key"] == "samples").unwrap();
+    assert!(samples["default"].is_u64() && samples["range"][0].is_number(), "{samples}");
+    assert_eq!(pcf["qualities"]["balanced"], serde_json::json!({}));
+    let scenes = json(&["scenes", "--json"]);
+    assert!(names(&scenes).contains(&"builtin:overlap".to_owned()));
+    let parameters: Vec<_> =
+        scenes.as_array().unwrap().iter().flat_map(|s| s["parameters"].as_array().unwrap()).collect();
+    assert!(parameters.iter().any(|parameter| parameter["name"] == "triangles"), "{parameters:?}");
+    if has_adapter(dir.path()) {
+        let doctor = json(&["doctor", "--json"]);
+        assert!(doctor["in_use"]["name"].as_str().is_some_and(|name| !name.is_empty()));
+        assert!(
+            doctor["techniques"]["hard"].is_null() && doctor["techniques"].as_object().unwrap().len() == kinds.len()
+        );
+    }
+}
+
+/// Every command has a page, and shells know every option.
+#[test]
+fn manual_pages_and_completions_have_every_command() {
+    let dir = tempfile::tempdir().unwrap();
+    let man = run(dir.path(), &["man", "-o", "man1"]);
+    assert_eq!(man.status.code(), Some(0), "{}", String::from_utf8_lossy(&man.stderr));
+    let pages = names_in(&dir.path().join("man1"));
+    for page in ["antumbra.1", "antumbra-compare.1", "antumbra-sweep-plan.1", "antumbra-man.1"] {
+        assert!(pages.iter().any(|name| name == page), "{page}: {pages:?}");
+    }
+    let compare = fs::read_to_string(dir.path().join("man1/antumbra-compare.1")).unwrap();
+    assert!(compare.starts_with(".ie") && compare.contains("techniques"), "{compare}");
+    for shell in ["bash", "zsh", "fish", "elvish", "PowerShell"] {
+        let script = run(dir.path(), &["completions", shell]);
+        let script = String::from_utf8_lossy(&script.stdout).into_owned();
+        assert!(script.contains("shadow-distance") && script.contains("reproduce"), "{shell}: {script}");
     }
 }
 

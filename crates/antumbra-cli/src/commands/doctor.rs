@@ -3,11 +3,40 @@
 use antumbra::TechniqueKind;
 use antumbra_lab::device::{AdapterReport, DeviceError, LabDevice, list_adapters};
 
+use serde_json::{Map, Value, json};
+
 use crate::args::DoctorArgs;
 use crate::commands::device_options;
 use crate::failure::Failure;
 use crate::stdout::say;
 use crate::table;
+
+/// A feature beyond WebGPU's core: its name, and what uses it.
+const FEATURES: [(wgpu::Features, &str, &str); 4] = [
+    (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without it, of whole frames"),
+    (wgpu::Features::DEPTH_CLIP_CONTROL, "depth clip control", "casters nearer than a light map's near plane"),
+    (
+        wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES,
+        "adapter's own formats",
+        "light maps of 2 and 8 samples a texel",
+    ),
+    (
+        wgpu::Features::SHADER_EARLY_DEPTH_TEST,
+        "early depth test",
+        "reprojection's path=fragment_two_pass leaves out hidden fragments, alias_free's stencil empty lists",
+    ),
+];
+
+/// A limit's name, and its value of some limits.
+const LIMITS: [(&str, fn(&wgpu::Limits) -> u64); 7] = [
+    ("side of a texture, texels", |limits| limits.max_texture_dimension_2d.into()),
+    ("layers of a texture", |limits| limits.max_texture_array_layers.into()),
+    ("size of a buffer, bytes", |limits| limits.max_buffer_size),
+    ("size of a storage binding, bytes", |limits| limits.max_storage_buffer_binding_size),
+    ("storage buffers a stage", |limits| limits.max_storage_buffers_per_shader_stage.into()),
+    ("invocations a workgroup", |limits| limits.max_compute_invocations_per_workgroup.into()),
+    ("shared memory a workgroup, bytes", |limits| limits.max_compute_workgroup_storage_size.into()),
+];
 
 /// Lists adapters, features and limits, and what each technique lacks here.
 pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
@@ -15,77 +44,73 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
     if adapters.is_empty() {
         return Err(DeviceError::NoAdapter.into());
     }
-    let mut rows = vec![["ADAPTER", "KIND", "BACKEND", "DRIVER"].map(str::to_owned).to_vec()];
-    rows.extend(adapters.iter().map(|adapter| {
-        vec![adapter.name.clone(), kind(adapter).to_owned(), adapter.backend.to_string(), adapter.driver_and_version()]
-    }));
-    table::print(&rows);
-
+    if !args.json {
+        let mut rows = vec![["ADAPTER", "KIND", "BACKEND", "DRIVER"].map(str::to_owned).to_vec()];
+        rows.extend(adapters.iter().map(|adapter| {
+            let texts = [adapter.name.as_str(), kind(adapter), adapter.backend.to_str(), &adapter.driver_and_version()];
+            texts.map(str::to_owned).to_vec()
+        }));
+        table::print(&rows);
+    }
     let lab = LabDevice::new(&device_options(&args.adapter))?;
-    let adapter = &lab.adapter;
+    let gpu = lab.gpu();
+    let problems: Vec<(TechniqueKind, Option<String>)> =
+        TechniqueKind::ALL.iter().map(|kind| (*kind, kind.create(&gpu).err().map(|error| error.to_string()))).collect();
+    if args.json {
+        say!("{:#}", as_json(&adapters, &lab.adapter, &problems));
+    } else {
+        print_device(&lab.adapter, &problems);
+    }
+    Ok(lab.check()?)
+}
+
+fn print_device(adapter: &AdapterReport, problems: &[(TechniqueKind, Option<String>)]) {
     say!("\nIn use: {} ({})", adapter.name, adapter.backend);
     say!("\nFeatures beyond WebGPU's core that the library or the laboratory uses:");
     let has = |feature| if adapter.features.contains(feature) { "yes" } else { "no" };
-    let features = [
-        (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without it, of whole frames"),
-        (wgpu::Features::DEPTH_CLIP_CONTROL, "depth clip control", "casters nearer than a light map's near plane"),
-        (
-            wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES,
-            "adapter's own formats",
-            "light maps of 2 and 8 samples a texel",
-        ),
-        (
-            wgpu::Features::SHADER_EARLY_DEPTH_TEST,
-            "early depth test",
-            "reprojection's path=fragment_two_pass leaves out hidden fragments, alias_free's stencil empty lists",
-        ),
-    ];
     let mut rows: Vec<Vec<String>> = vec![["FEATURE", "AVAILABLE", "USED FOR"].map(str::to_owned).to_vec()];
-    rows.extend(features.map(|(feature, name, use_)| vec![name.into(), has(feature).into(), use_.into()]));
+    rows.extend(FEATURES.map(|(feature, name, used_for)| [name, has(feature), used_for].map(str::to_owned).to_vec()));
     table::print(&rows);
 
-    let needed = wgpu::Limits::default();
-    let had = &adapter.limits;
+    let least = wgpu::Limits::default();
     say!("\nLimits (every technique stays within WebGPU's guaranteed minimum):");
-    let limit = |name: &str, had: u64, least: u64| vec![name.to_owned(), had.to_string(), least.to_string()];
-    table::print(&[
-        ["LIMIT", "THIS ADAPTER", "WEBGPU MINIMUM"].map(str::to_owned).to_vec(),
-        limit("side of a texture, texels", had.max_texture_dimension_2d.into(), needed.max_texture_dimension_2d.into()),
-        limit("layers of a texture", had.max_texture_array_layers.into(), needed.max_texture_array_layers.into()),
-        limit("size of a buffer, bytes", had.max_buffer_size, needed.max_buffer_size),
-        limit(
-            "size of a storage binding, bytes",
-            had.max_storage_buffer_binding_size,
-            needed.max_storage_buffer_binding_size,
-        ),
-        limit(
-            "storage buffers a stage",
-            had.max_storage_buffers_per_shader_stage.into(),
-            needed.max_storage_buffers_per_shader_stage.into(),
-        ),
-        limit(
-            "invocations a workgroup",
-            had.max_compute_invocations_per_workgroup.into(),
-            needed.max_compute_invocations_per_workgroup.into(),
-        ),
-        limit(
-            "shared memory a workgroup, bytes",
-            had.max_compute_workgroup_storage_size.into(),
-            needed.max_compute_workgroup_storage_size.into(),
-        ),
-    ]);
+    let mut rows = vec![["LIMIT", "THIS ADAPTER", "WEBGPU MINIMUM"].map(str::to_owned).to_vec()];
+    rows.extend(
+        LIMITS.map(|(name, of)| vec![name.to_owned(), of(&adapter.limits).to_string(), of(&least).to_string()]),
+    );
+    table::print(&rows);
 
     say!("\nTechniques:");
-    let gpu = lab.gpu();
-    let rows: Vec<Vec<String>> = TechniqueKind::ALL
+    let rows: Vec<Vec<String>> = problems
         .iter()
-        .map(|kind| {
-            let state = kind.create(&gpu).map_or_else(|error| error.to_string(), |_| "ready".to_owned());
-            vec![format!("  {kind}"), state]
-        })
+        .map(|(kind, problem)| vec![format!("  {kind}"), problem.clone().unwrap_or_else(|| "ready".to_owned())])
         .collect();
     table::print(&rows);
-    Ok(lab.check()?)
+}
+
+/// The same facts; a technique's value is null where it is ready.
+fn as_json(adapters: &[AdapterReport], in_use: &AdapterReport, problems: &[(TechniqueKind, Option<String>)]) -> Value {
+    let of_adapter = |adapter: &AdapterReport| {
+        json!({
+            "name": adapter.name,
+            "kind": kind(adapter),
+            "backend": adapter.backend.to_str(),
+            "driver": adapter.driver_and_version(),
+        })
+    };
+    let least = wgpu::Limits::default();
+    let limits = LIMITS
+        .map(|(name, of)| (name.to_owned(), json!({ "adapter": of(&in_use.limits), "webgpu_minimum": of(&least) })));
+    let features = FEATURES.map(|(feature, name, _)| (name.to_owned(), in_use.features.contains(feature).into()));
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "commit": env!("ANTUMBRA_COMMIT"),
+        "adapters": adapters.iter().map(of_adapter).collect::<Vec<_>>(),
+        "in_use": of_adapter(in_use),
+        "features": features.into_iter().collect::<Map<_, _>>(),
+        "limits": limits.into_iter().collect::<Map<_, _>>(),
+        "techniques": problems.iter().map(|(kind, problem)| (kind.name().to_owned(), json!(problem))).collect::<Map<_, _>>(),
+    })
 }
 
 fn kind(adapter: &AdapterReport) -> &'static str {

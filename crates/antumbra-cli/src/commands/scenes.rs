@@ -4,6 +4,7 @@ use std::path::Path;
 
 use antumbra_lab::output_files::{check_ending, check_writable, write_atomically};
 use antumbra_scene::{Scene, SceneError, builtin, export_glb, export_gltf};
+use serde_json::{Value, json};
 
 use crate::args::ScenesArgs;
 use crate::failure::Failure;
@@ -18,6 +19,10 @@ pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
         let spec = builtin::spec_of(name).unwrap_or(name);
         let scene = builtin::build(spec).map_err(|error| Failure::Input(error.to_string()))?;
         return Ok(write_atomically(output, &export(&scene)?)?);
+    }
+    if args.json {
+        say!("{:#}", list_as_json());
+        return Ok(());
     }
     let mut rows = vec![["NAME", "TRIANGLES", "WHAT IT SHOWS"].map(str::to_owned).to_vec()];
     rows.extend(
@@ -42,6 +47,27 @@ pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+fn list_as_json() -> Value {
+    let scenes = builtin::NAMES.iter().map(|info| {
+        let parameters = info.parameters.iter().map(|parameter| {
+            json!({
+                "name": parameter.name,
+                "meaning": parameter.meaning,
+                "unit": parameter.unit,
+                "range": [parameter.min, parameter.max],
+                "default": parameter.default,
+            })
+        });
+        json!({
+            "name": format!("builtin:{}", info.name),
+            "triangles": info.triangles,
+            "shows": info.summary,
+            "parameters": parameters.collect::<Vec<_>>(),
+        })
+    });
+    scenes.collect()
 }
 
 type Exporter = fn(&Scene) -> Result<Vec<u8>, SceneError>;

@@ -1,6 +1,8 @@
 //! `antumbra techniques [NAME]`.
 
+use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
+use serde_json::{Map, Value, json};
 
 use crate::args::TechniquesArgs;
 use crate::failure::Failure;
@@ -10,6 +12,11 @@ use crate::technique_text::plain;
 
 /// Lists the techniques, or what is to be known of one.
 pub fn techniques(args: &TechniquesArgs) -> Result<(), Failure> {
+    if args.json {
+        let value = args.name.map_or_else(|| TechniqueKind::ALL.iter().map(|kind| json_of(*kind)).collect(), json_of);
+        say!("{value:#}");
+        return Ok(());
+    }
     match args.name {
         Some(kind) => print_one(kind),
         None => {
@@ -67,5 +74,56 @@ fn print_printed(kind: TechniqueKind) {
     if !printed.kept.is_empty() {
         say!("\nDepartures that no parameter turns off:");
         printed.kept.iter().for_each(|text| say!("  {text}"));
+    }
+}
+
+/// A technique's facts, parameters and qualities.
+fn json_of(kind: TechniqueKind) -> Value {
+    let facts = kind.facts();
+    let qualities: Map<String, Value> = Quality::LADDER
+        .iter()
+        .map(|quality| {
+            let set = kind.quality_settings(*quality);
+            let set: Map<String, Value> =
+                set.iter().map(|(key, value)| ((*key).to_owned(), number_of(value))).collect();
+            (quality.name().to_owned(), set.into())
+        })
+        .collect();
+    json!({
+        "name": kind.name(),
+        "title": facts.title,
+        "source": facts.source,
+        "penumbra": plain(facts.penumbra),
+        "shadow_maps": plain(facts.light_maps),
+        "good_for": plain(facts.good_for),
+        "fails_where": plain(facts.fails_where),
+        "worst_scene": format!("builtin:{}", facts.worst_scene),
+        "parameters": kind.param_specs().iter().map(json_of_parameter).collect::<Vec<_>>(),
+        "qualities": qualities,
+    })
+}
+
+fn json_of_parameter(spec: &ParamSpec) -> Value {
+    json!({
+        "key": spec.key,
+        "meaning": plain(spec.meaning),
+        "unit": spec.unit,
+        "range": spec.range.map(|(low, high)| [low, high]),
+        "choices": spec.choices,
+        "default": number_of(&spec.default),
+        "more": plain(spec.more),
+    })
+}
+
+/// Numbers and switches as JSON has them, the others by name.
+fn number_of(value: &ParamValue) -> Value {
+    match value {
+        ParamValue::Bool(value) => json!(value),
+        // As it is written: 0.1 rather than the nearest double's digits.
+        ParamValue::U32(_) | ParamValue::F32(_) => {
+            let text = value.to_string();
+            serde_json::from_str(&text).unwrap_or(Value::String(text))
+        }
+        _ => value.to_string().into(),
     }
 }
