@@ -2,10 +2,10 @@
 
 use super::bench::FULL;
 use super::candidate::candidate;
-use super::plainest::{plain_candidate, simplified};
+use super::reasons::reasons;
 use super::search::Search;
+use super::simplify::{simplest_candidate, simplified};
 use super::turns::in_turns;
-use super::words::reasons;
 use super::{Advice, Candidate, Config, Prefer, Spent};
 use crate::adapter_info::AdapterInfo;
 use crate::color_maps::signed_error_map;
@@ -129,7 +129,7 @@ fn time_finalists(search: &mut Search<'_, '_>, candidates: &[Candidate]) -> Resu
                 continue;
             }
             looked_at.push(one.config.clone());
-            let plain = plain_candidate(search, one)?;
+            let plain = simplest_candidate(search, one)?;
             if finalists.iter().chain(&group).all(|other| other.config != plain.config) {
                 group.push(plain);
             }
@@ -148,7 +148,7 @@ fn time_finalists(search: &mut Search<'_, '_>, candidates: &[Candidate]) -> Resu
         let limits = search.limits;
         let excess = |one: &Candidate| one.load.max(1.0) * limits.excess(one.memory_bytes, one.roughness).max(1.0);
         let nearest = candidates.iter().min_by(|a, b| excess(a).total_cmp(&excess(b))).expect("there are candidates");
-        finalists.push(plain_candidate(search, nearest)?);
+        finalists.push(simplest_candidate(search, nearest)?);
         time(search, &mut finalists)?;
     }
     Ok(finalists)
@@ -172,7 +172,7 @@ fn time_steps_up(
             return Ok(());
         }
         looked_at.push(step.config.clone());
-        let mut timed = [plain_candidate(search, &step)?];
+        let mut timed = [simplest_candidate(search, &step)?];
         if finalists.iter().all(|other| other.config != timed[0].config) {
             time(search, &mut timed)?;
             finalists.extend(timed);
@@ -224,7 +224,7 @@ fn runners_up(search: &mut Search<'_, '_>, best: &Candidate, others: &[Candidate
     runners_up.sort_by(|a, b| a.objective().total_cmp(&b.objective()));
     runners_up.truncate(RUNNERS_UP);
     // Those that were no finalists have settings as the search left them.
-    runners_up.iter().map(|one| plain_candidate(search, one)).collect()
+    runners_up.iter().map(|one| simplest_candidate(search, one)).collect()
 }
 
 /// Those that none beats in both error and time, the cheapest first.
@@ -236,7 +236,7 @@ fn plain_front(
     others.push(best.clone());
     let mut plain: Vec<Candidate> = Vec::new();
     for one in front(others) {
-        let one = plain_candidate(search, &one)?;
+        let one = simplest_candidate(search, &one)?;
         if plain.iter().all(|other| other.config != one.config) {
             plain.push(one);
         }

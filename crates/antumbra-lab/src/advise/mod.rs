@@ -14,14 +14,14 @@ mod bench;
 mod candidate;
 mod finalists;
 mod grid;
-mod plainest;
+mod reasons;
 mod search;
+mod simplify;
 mod space;
 mod store;
 #[cfg(test)]
 mod tests;
 mod turns;
-mod words;
 
 use std::path::Path;
 
@@ -32,9 +32,9 @@ use image::RgbImage;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+pub use reasons::Reason;
 pub use space::Config;
 pub use store::{MEASUREMENTS_NAME, Measured};
-pub use words::Reason;
 
 use crate::adapter_info::AdapterInfo;
 use crate::device::LabDevice;

@@ -2,10 +2,10 @@
 //!
 //! A camera, a light or a caster moves for some frames and stops ([`Motion`]). Each technique keeps one state over all of
 //! them, as a host's light does, and is held frame by frame against the traced truth of that frame. What is made of that is
-//! defined in [`flicker`]; where things are in each frame, in `course`.
+//! defined in [`flicker`]; where things are in each frame, in `trajectory`.
 //!
 //! ```text
-//! course ─► scene and camera of a frame ─┬─► rays ──► true change ─┐
+//! trajectory ─► scene and camera of a frame ─┬─► rays ──► true change ─┐
 //!                                        └─► mask ──► its change ──┴─► flicker, lag, strip
 //! ```
 //!
@@ -15,9 +15,9 @@
 //! parts, is [`TrueMotion::noise`].
 
 mod caster;
-mod course;
 pub mod flicker;
 mod strip;
+mod trajectory;
 
 #[cfg(test)]
 mod tests;
@@ -39,9 +39,9 @@ use crate::progress::Progress;
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
 use crate::technique_run::{draw_as_host, mask_for};
 use crate::truth::trace_light;
-use course::{Course, Pose};
 use flicker::{FlickerSums, TrueFrame, distances_to_settled, lag_frames, touched_pixels};
 use strip::Strip;
+use trajectory::{Pose, Trajectory};
 
 /// What moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,9 +197,9 @@ impl<'a> MovingScene<'a> {
         (self.options.frames, self.options.step_m)
     }
 
-    fn course(&self, motion: Motion) -> Course<'a> {
+    fn trajectory(&self, motion: Motion) -> Trajectory<'a> {
         let MotionOptions { frames, step_m, ref path, .. } = *self.options;
-        Course { setup: self.setup, light: self.light, motion, frames, step_m, path }
+        Trajectory { setup: self.setup, light: self.light, motion, frames, step_m, path }
     }
 
     /// Puts all in its place and draws what the camera sees.
@@ -218,7 +218,7 @@ impl<'a> MovingScene<'a> {
     /// Where the scene cannot be traced, or the device fails.
     pub fn trace(&mut self, motion: Motion, samples: u32, progress: &dyn Progress) -> Result<MotionTruth, LabError> {
         let caster = self.caster.clone().filter(|_| motion == Motion::Caster);
-        let course = self.course(motion);
+        let trajectory = self.trajectory(motion);
         let last = self.options.frames;
         let mut tracing = Tracing::new(self.at_rest.clone(), caster.as_ref(), samples)?;
         let mut frames: Vec<TrueFrame> = Vec::new();
@@ -228,7 +228,7 @@ impl<'a> MovingScene<'a> {
         progress.begin(&format!("tracing the {}'s motion", motion.name()), u64::from(last + 3) * STEPS);
         let mut other_points: Vec<Visibility> = Vec::new();
         for i in 0..=last {
-            let pose = course.at(i);
+            let pose = trajectory.at(i);
             let receivers = tracing.receivers(&pose, self.size_px)?;
             let done = u64::from(i) * STEPS + other_points.len() as u64 * STEPS;
             let report = |fraction: f32| progress.reach(done + (f64::from(fraction) * STEPS as f64) as u64);
@@ -268,7 +268,7 @@ impl<'a> MovingScene<'a> {
     /// # Errors
     /// Where the technique cannot be prepared, or the device fails.
     pub fn run(&mut self, truth: &MotionTruth, technique: &mut AnyShadow) -> Result<MotionFigures, LabError> {
-        let course = self.course(truth.summary.motion);
+        let trajectory = self.trajectory(truth.summary.motion);
         let last = self.options.frames;
         let casters = self.gpu_scene.casters();
         let mask = mask_for(self.lab, technique, &Casters::Meshes(&casters), self.size_px);
@@ -276,14 +276,14 @@ impl<'a> MovingScene<'a> {
         let mut strip = Strip::new(self.size_px);
         let mut lacking_room = 0;
 
-        let start = course.at(0);
+        let start = trajectory.at(0);
         let images = self.look(&start)?;
         let mut before = self.draw(technique, &start, &images, &mask)?.0;
         for _ in 1..STILL_BEFORE {
             before = self.draw(technique, &start, &images, &mask)?.0;
         }
         for i in 1..=last {
-            let pose = course.at(i);
+            let pose = trajectory.at(i);
             let images = self.look(&pose)?;
             let (now, lacked) = self.draw(technique, &pose, &images, &mask)?;
             lacking_room += u32::from(lacked);
@@ -292,7 +292,7 @@ impl<'a> MovingScene<'a> {
             strip.add(i, last, [true_before, true_now], [&before, &now]);
             before = now;
         }
-        let rest = course.at(last);
+        let rest = trajectory.at(last);
         let images = self.look(&rest)?;
         let mut masks = vec![before];
         for i in 0..STILL_AFTER {

@@ -34,7 +34,7 @@ impl Setting {
 }
 
 /// A configuration without the settings that change no mask and save no time. Where a mask on small pictures differs, so does the mask.
-pub(super) fn plainest(search: &mut Search<'_, '_>, config: &Config) -> Result<Config, LabError> {
+pub(super) fn simplest(search: &mut Search<'_, '_>, config: &Config) -> Result<Config, LabError> {
     without_idle(search, config, &[0, FULL])
 }
 
@@ -84,8 +84,8 @@ fn renamed(one: &Candidate, plain: &Candidate) -> Candidate {
 }
 
 /// A candidate without the settings that do nothing here.
-pub(super) fn plain_candidate(search: &mut Search<'_, '_>, one: &Candidate) -> Result<Candidate, LabError> {
-    let config = plainest(search, &one.config)?;
+pub(super) fn simplest_candidate(search: &mut Search<'_, '_>, one: &Candidate) -> Result<Candidate, LabError> {
+    let config = simplest(search, &one.config)?;
     as_config(search, one, &config)
 }
 
@@ -184,9 +184,9 @@ mod tests {
         let small = Config::default_of(TechniqueKind::Pcss).with("map_size", "128");
         let detached = small.with("attach_contacts", "false");
         let idle = detached.with("layers", "4").with("means", "ranges");
-        assert_eq!(plainest(&mut search, &idle).unwrap(), detached);
+        assert_eq!(simplest(&mut search, &idle).unwrap(), detached);
         let layered = small.with("layers", "1");
-        assert_eq!(plainest(&mut search, &layered).unwrap(), layered);
+        assert_eq!(simplest(&mut search, &layered).unwrap(), layered);
         // The recommendation is written without them, and says what it said.
         let measured = search.measure(&idle, FULL).unwrap();
         let mut best = candidate(&idle, &measured, &[1e3]);

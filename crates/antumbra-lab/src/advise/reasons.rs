@@ -5,7 +5,7 @@ use std::fmt;
 use antumbra::TechniqueKind;
 use serde::{Serialize, Serializer};
 
-use super::plainest::Setting;
+use super::simplify::Setting;
 use super::{Advice, Config};
 use crate::scene_facts::{DEFAULT_MAP_TEXELS, PenumbraFacts, percent};
 

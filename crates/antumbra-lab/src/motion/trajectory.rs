@@ -23,7 +23,7 @@ const SUN_DISTANCE_M: f32 = 10.0;
 
 /// What moves, and how.
 #[derive(Clone, Debug)]
-pub(super) struct Course<'a> {
+pub(super) struct Trajectory<'a> {
     pub(super) setup: &'a Setup,
     /// Which of the setup's lights.
     pub(super) light: usize,
@@ -45,7 +45,7 @@ pub(super) struct Pose {
     pub(super) caster_offset_m: Vec3,
 }
 
-impl Course<'_> {
+impl Trajectory<'_> {
     /// What there is in a frame; at rest from frame N on.
     pub(super) fn at(&self, frame: u32) -> Pose {
         let Setup { camera, lights } = self.setup;
@@ -129,8 +129,8 @@ mod tests {
         Setup { camera, lights: vec![Light::new(shape, Vec3::Y * 5.0, Vec3::ZERO)] }
     }
 
-    fn course(setup: &Setup, motion: Motion) -> Course<'_> {
-        Course { setup, light: 0, motion, frames: 4, step_m: 0.5, path: &[] }
+    fn trajectory(setup: &Setup, motion: Motion) -> Trajectory<'_> {
+        Trajectory { setup, light: 0, motion, frames: 4, step_m: 0.5, path: &[] }
     }
 
     #[test]
@@ -138,8 +138,8 @@ mod tests {
         let setup = setup(LightShape::Rectangle { size_m: Vec2::ONE });
         let back = Vec3::X * -2.0;
         for motion in Motion::ALL {
-            let course = course(&setup, motion);
-            let [first, last, after] = [0, 4, 9].map(|frame| course.at(frame));
+            let trajectory = trajectory(&setup, motion);
+            let [first, last, after] = [0, 4, 9].map(|frame| trajectory.at(frame));
             for rest in [last, after] {
                 assert_eq!(
                     (rest.camera, rest.light, rest.caster_offset_m),
@@ -161,11 +161,11 @@ mod tests {
     #[test]
     fn a_sun_turns_by_the_step_at_ten_metres() {
         let setup = setup(LightShape::Sun { angular_diameter_rad: 0.01 });
-        let course = course(&setup, Motion::Light);
-        let angle = course.at(3).light.axis.angle_between(setup.lights[0].axis);
+        let trajectory = trajectory(&setup, Motion::Light);
+        let angle = trajectory.at(3).light.axis.angle_between(setup.lights[0].axis);
         assert!((angle - 0.05).abs() < 1e-4, "{angle}");
         // Towards the camera's left, from where it comes.
-        assert!((-course.at(3).light.axis).x < 0.0);
+        assert!((-trajectory.at(3).light.axis).x < 0.0);
     }
 
     #[test]
@@ -173,8 +173,8 @@ mod tests {
         let setup = setup(LightShape::Sphere { radius_m: 0.1 });
         let place = |x: f32| Camera { eye: Vec3::new(x, 2.0, 5.0), ..setup.camera };
         let path = [place(-4.0), place(-1.0)];
-        let course = Course { path: &path, ..course(&setup, Motion::Camera) };
-        let eyes: Vec<f32> = (0..=5).map(|frame| course.at(frame).camera.eye.x).collect();
+        let trajectory = Trajectory { path: &path, ..trajectory(&setup, Motion::Camera) };
+        let eyes: Vec<f32> = (0..=5).map(|frame| trajectory.at(frame).camera.eye.x).collect();
         assert_eq!(eyes, [-4.0, -2.5, -1.0, -0.5, 0.0, 0.0]);
     }
 }
