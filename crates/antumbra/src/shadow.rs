@@ -198,7 +198,7 @@ impl<T: Technique> Shadow<T> {
         match (light, &self.parted) {
             (LightPasses::Whole(technique), _) => self.technique.record(recorder, &noisy, &technique),
             (LightPasses::Parts(parts), Some(parted)) => {
-                parted.record(recorder, &noisy, *parts, || self.commands.end());
+                parted.record(recorder, &noisy, *parts);
             }
             (LightPasses::Parts(_), None) => {}
         }
@@ -334,7 +334,7 @@ impl<T: Technique> Work for FrameWork<'_, T> {
     fn record(self: Box<Self>, recorder: &mut Recorder<'_>) {
         let Some((uploads, passes)) = self.passes else { return };
         recorder.upload(uploads, self.shadow.commands.end());
-        self.shadow.record_passes(recorder, &self.asked, passes);
+        recorder.joining_compute_passes(|recorder| self.shadow.record_passes(recorder, &self.asked, passes));
         self.shadow.is_recorded = true;
     }
 }
