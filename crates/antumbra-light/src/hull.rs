@@ -4,27 +4,195 @@ use glam::{DVec3, DVec4, Vec3};
 
 use crate::Aabb;
 
-/// The corners of the convex body where `plane · (x, 1) ≥ 0` for all planes: the ends of its edges, each of which lies
-/// where two planes meet and no other cuts off, with a little room for rounding. Corners come several times over.
-/// `size_m` is about the body's size.
+/// The corners of the convex body where `plane · (x, 1) ≥ 0` for all planes: [`Polytope::corners`].
 pub fn polytope_corners(planes: &[DVec4], size_m: f64) -> Vec<Vec3> {
-    let planes: Vec<DVec4> = planes
-        .iter()
-        .filter(|plane| plane.truncate().length() > 0.0)
-        .map(|plane| plane / plane.truncate().length())
-        .collect();
-    let room_m = 1e-6 * size_m;
-    let mut corners = Vec::new();
-    // Most lines lie outside, most of them by what cut off one of the last few.
-    let mut cutters = planes.clone();
-    for (i, a) in planes.iter().enumerate() {
-        for b in &planes[i + 1..] {
-            let Some((on_line, along)) = line_where_planes_meet(*a, *b) else { continue };
-            let Some((from, to)) = part_in_front(&mut cutters, on_line, along, room_m) else { continue };
-            corners.extend([from, to].into_iter().filter(|t| t.is_finite()).map(|t| (on_line + along * t).as_vec3()));
+    Polytope::new(planes, size_m).corners
+}
+
+/// Convex body between planes, with its edges: bodies that are cut out of it by a few planes more are found from these.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polytope {
+    /// Of unit normals.
+    planes: Vec<DVec4>,
+    room_m: f64,
+    edges: Vec<Edge>,
+    /// The edges of each plane's face.
+    faces: Vec<Vec<usize>>,
+    corners: Vec<Vec3>,
+    /// It reaches a finite way in all directions.
+    is_bounded: bool,
+}
+
+/// Edge of a polytope: the part of a line that all planes leave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Edge {
+    /// The two planes that meet there, the first one first.
+    planes: [usize; 2],
+    on_line: DVec3,
+    along: DVec3,
+    from: f64,
+    to: f64,
+}
+
+/// A plane that is farther than this from a polytope, as a part of its size, cuts nothing off, or all.
+const CLEARLY_BESIDE: f64 = 1e-2;
+
+/// Room for rounding, as a part of a polytope's size.
+const ROOM: f64 = 1e-6;
+
+impl Polytope {
+    /// The body where `plane · (x, 1) ≥ 0` for all planes, which is about `size_m` large.
+    pub fn new(planes: &[DVec4], size_m: f64) -> Self {
+        let planes = with_unit_normals(planes);
+        let room_m = ROOM * size_m;
+        let mut edges = Vec::new();
+        // Most lines lie outside, most of them by what cut off one of the last few.
+        let mut cutters = planes.clone();
+        for (plane, a) in planes.iter().enumerate() {
+            for (other, b) in planes.iter().enumerate().skip(plane + 1) {
+                edges.extend(Edge::between([plane, other], *a, *b, &mut cutters, room_m));
+            }
+        }
+        let corners = edges.iter().flat_map(Edge::corners).collect();
+        let is_bounded = edges.len() >= 6 && edges.iter().all(|edge| edge.from.is_finite() && edge.to.is_finite());
+        let of_plane = |plane: usize| (0..edges.len()).filter(|k| edges[*k].planes.contains(&plane)).collect();
+        let faces = (0..planes.len()).map(of_plane).collect();
+        Self { planes, room_m, edges, faces, corners, is_bounded }
+    }
+
+    /// The ends of its edges, each of which lies where two planes meet and no other cuts off, with a little room for rounding.
+    /// Corners come several times over.
+    pub fn corners(&self) -> &[Vec3] {
+        &self.corners
+    }
+
+    /// The corners of what lies in front of further planes, too: as [`polytope_corners`] of all planes finds them.
+    pub fn corners_within(&self, further: &[DVec4]) -> Vec<Vec3> {
+        let further = with_unit_normals(further);
+        let Some(cuts) = self.cuts_by(&further) else { return Vec::new() };
+        let mut cutters_of_edges: Vec<DVec4> = cuts.iter().map(|cut| cut.plane).collect();
+        let mut cutters = [&cutters_of_edges[..], &self.planes].concat();
+        let mut corners = Vec::with_capacity(self.corners.len());
+        let mut edges = self.edges.iter().enumerate().peekable();
+        for (i, a) in self.planes.iter().enumerate() {
+            while let Some((k, edge)) = edges.next_if(|(_, edge)| edge.planes[0] == i) {
+                match Side::of_edge(&cuts, k) {
+                    Side::InFront => corners.extend(edge.corners()),
+                    Side::Behind => {}
+                    Side::Across => {
+                        let (from, to) = (edge.from, edge.to);
+                        let part =
+                            part_in_front(&mut cutters_of_edges, edge.on_line, edge.along, self.room_m, (from, to));
+                        corners.extend(part.into_iter().flat_map(|(from, to)| Edge { from, to, ..*edge }.corners()));
+                    }
+                }
+            }
+            for cut in cuts.iter().filter(|cut| cut.meets_face(&self.faces[i])) {
+                let edge = Edge::between([i, i], *a, cut.plane, &mut cutters, self.room_m);
+                corners.extend(edge.iter().flat_map(Edge::corners));
+            }
+        }
+        for (i, a) in cuts.iter().enumerate() {
+            for b in &cuts[i + 1..] {
+                let edge = Edge::between([i, i], a.plane, b.plane, &mut cutters, self.room_m);
+                corners.extend(edge.iter().flat_map(Edge::corners));
+            }
+        }
+        corners
+    }
+
+    /// Those of some planes that cut something off; `None` where one leaves nothing.
+    fn cuts_by(&self, planes: &[DVec4]) -> Option<Vec<Cut>> {
+        let mut cuts = Vec::with_capacity(planes.len());
+        for plane in planes {
+            if !self.is_bounded {
+                cuts.push(Cut { plane: *plane, edges: Vec::new() });
+                continue;
+            }
+            let margin_m = CLEARLY_BESIDE / ROOM * self.room_m;
+            let side_of_edge = |ends: &[Vec3]| {
+                let [from, to] = [ends[0], ends[1]].map(|end| plane.dot(end.as_dvec3().extend(1.0)));
+                Side::of(from.min(to), from.max(to), margin_m)
+            };
+            let edges: Vec<Side> = self.corners.chunks_exact(2).map(side_of_edge).collect();
+            if edges.iter().all(|side| *side == Side::Behind) {
+                return None;
+            }
+            if edges.iter().any(|side| *side != Side::InFront) {
+                cuts.push(Cut { plane: *plane, edges });
+            }
+        }
+        Some(cuts)
+    }
+}
+
+/// A plane that cuts something off a polytope.
+struct Cut {
+    plane: DVec4,
+    /// On which side of it each edge is; none of a polytope without bounds.
+    edges: Vec<Side>,
+}
+
+impl Cut {
+    /// Whether the plane may meet a face of these edges; one without any is next to others, and may.
+    fn meets_face(&self, edges: &[usize]) -> bool {
+        let are_all = |side: Side| edges.iter().all(|edge| self.edges[*edge] == side);
+        edges.is_empty() || self.edges.is_empty() || !(are_all(Side::InFront) || are_all(Side::Behind))
+    }
+}
+
+/// On which side of a plane something is, by a margin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    InFront,
+    Behind,
+    /// On both, or too near to tell.
+    Across,
+}
+
+impl Side {
+    /// Of what reaches from one height above the plane to another.
+    fn of(low: f64, high: f64, margin_m: f64) -> Self {
+        if low > margin_m {
+            Self::InFront
+        } else if high < -margin_m {
+            Self::Behind
+        } else {
+            Self::Across
         }
     }
-    corners
+
+    /// Of an edge with regard to all cuts together.
+    fn of_edge(cuts: &[Cut], edge: usize) -> Self {
+        let side_of = |cut: &Cut| cut.edges.get(edge).copied().unwrap_or(Self::Across);
+        if cuts.iter().any(|cut| side_of(cut) == Self::Behind) {
+            Self::Behind
+        } else if cuts.iter().all(|cut| side_of(cut) == Self::InFront) {
+            Self::InFront
+        } else {
+            Self::Across
+        }
+    }
+}
+
+impl Edge {
+    /// The edge where two planes meet; `None` where others cut off all of it. Those come in the order of `cutters`.
+    fn between(planes: [usize; 2], a: DVec4, b: DVec4, cutters: &mut [DVec4], room_m: f64) -> Option<Self> {
+        let (on_line, along) = line_where_planes_meet(a, b)?;
+        let (from, to) = part_in_front(cutters, on_line, along, room_m, (f64::NEG_INFINITY, f64::INFINITY))?;
+        Some(Self { planes, on_line, along, from, to })
+    }
+
+    /// Its ends, where it has such.
+    fn corners(&self) -> impl Iterator<Item = Vec3> + use<> {
+        let Self { on_line, along, from, to, .. } = *self;
+        [from, to].into_iter().filter(|t| t.is_finite()).map(move |t| (on_line + along * t).as_vec3())
+    }
+}
+
+fn with_unit_normals(planes: &[DVec4]) -> Vec<DVec4> {
+    let has_normal = |plane: &&DVec4| plane.truncate().length() > 0.0;
+    planes.iter().filter(has_normal).map(|plane| plane / plane.truncate().length()).collect()
 }
 
 /// A point of the line where two planes meet, and the unit vector along it; `None` where they are all but parallel.
@@ -39,10 +207,15 @@ fn line_where_planes_meet(a: DVec4, b: DVec4) -> Option<(DVec3, DVec3)> {
     Some((point, along / sine_squared.sqrt()))
 }
 
-/// From where to where a line is in front of all planes; where it is so nowhere, but nearly, the two places between which
-/// it nearly is. The plane that tells that there is no such part comes first the next time.
-fn part_in_front(planes: &mut [DVec4], on_line: DVec3, along: DVec3, room_m: f64) -> Option<(f64, f64)> {
-    let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
+/// From where to where a part of a line is in front of all planes; where it is so nowhere, but nearly, the two places between
+/// which it nearly is. The plane that tells that there is no such part comes first the next time.
+fn part_in_front(
+    planes: &mut [DVec4],
+    on_line: DVec3,
+    along: DVec3,
+    room_m: f64,
+    (mut from, mut to): (f64, f64),
+) -> Option<(f64, f64)> {
     for i in 0..planes.len() {
         let plane = planes[i];
         let in_front = plane.dot(on_line.extend(1.0));
@@ -120,6 +293,31 @@ mod tests {
             assert!(corners.iter().any(|p| p.abs_diff_eq(*corner, 0.02)), "{corner} of {corners:?}");
         }
         assert!(corners.iter().all(|p| p.abs().max_element() < 1.02), "{corners:?}");
+    }
+
+    /// What is cut out of a body is what all planes leave, corner by corner and to the bit, whether a plane cuts it, misses it or
+    /// leaves nothing of it.
+    #[test]
+    fn a_part_of_a_body_is_that_of_all_planes() {
+        let unit = |i: u32| f64::from(crate::unit_f32(crate::hash_u32(i))) * 2.0 - 1.0;
+        let direction = |i: u32| DVec3::new(unit(3 * i), unit(3 * i + 1), unit(3 * i + 2)).normalize();
+        let (mut empty, mut cut) = (0, 0);
+        for case in 0..400 {
+            let first = 100 * case;
+            let body: Vec<DVec4> =
+                (0..14).map(|i| direction(first + i).extend(1.0 + 0.2 * unit(first + 50 + i))).collect();
+            let further: Vec<DVec4> = (14..18)
+                .map(|i| 3.0 * direction(first + i).extend(1.2 * unit(first + 70 + i)))
+                .chain([DVec4::ZERO])
+                .collect();
+            let all = [&body[..], &further].concat();
+            let polytope = Polytope::new(&body, 2.0);
+            let within = polytope.corners_within(&further);
+            assert_eq!(within, polytope_corners(&all, 2.0), "case {case}");
+            empty += u32::from(within.is_empty());
+            cut += u32::from(!within.is_empty() && within != polytope.corners());
+        }
+        assert!(empty > 20 && cut > 100, "{empty} cases leave nothing, {cut} are cut");
     }
 
     /// Whatever way one looks along, the points lie between the corners; a ball's are at most a tenth outside.

@@ -16,7 +16,7 @@ mod shadow_distance;
 
 pub use aabb::Aabb;
 pub use anchor::anchor_near;
-pub use hull::{enclosing_corners, enclosing_planes, polytope_corners};
+pub use hull::{Polytope, enclosing_corners, enclosing_planes, polytope_corners};
 pub use light::{
     Cone, EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape, ball_from_cube, disk_from_square,
 };

@@ -9,15 +9,14 @@
 
 use std::fmt;
 
-use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Mask, Overflow, Params, PreparedFrame, PreparedReceivers};
+use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::frame::denoise::{Denoiser, PreparedDenoise};
-use crate::frame::mask_format::NarrowMask;
-use crate::frame::points::PointTextures;
 use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
 
 mod anchored;
 mod any;
+mod ends;
 mod frame;
 mod frame_key;
 mod parted;
@@ -28,6 +27,7 @@ mod validate;
 mod warm_up;
 
 use anchored::{Anchored, anchor_of};
+use ends::{Ends, KeptEnds};
 use frame::{Asked, FrameCasters, prepared};
 use frame_key::FrameKey;
 use parted::{Parted, PartedPasses};
@@ -51,10 +51,7 @@ pub struct Shadow<T: Technique> {
     technique: T,
     /// Made where that does not cover what the light reaches, and kept.
     parted: Option<Parted<T>>,
-    /// Where the host's mask has fewer bits than the technique's.
-    narrow: Option<NarrowMask>,
-    /// Where the last frame's receivers are points.
-    points: Option<PointTextures>,
+    ends: KeptEnds,
     denoiser: Option<Denoiser>,
     keep: Keep,
     functions: ShaderFunctions,
@@ -92,8 +89,7 @@ impl<T: Technique> Shadow<T> {
             denoise: None,
             technique: T::new(gpu)?,
             parted: None,
-            narrow: None,
-            points: None,
+            ends: KeptEnds::default(),
             denoiser: None,
             keep: Keep::default(),
             functions: ShaderFunctions::default(),
@@ -167,8 +163,9 @@ impl<T: Technique> Shadow<T> {
         is_same: bool,
     ) -> Result<Passes<'a, T::Prepared>, Error> {
         let casters = FrameCasters::of(asked.casters())?;
-        self.prepare_ends(stage, asked);
-        let (receivers, mask) = ends_of(asked, self.points.as_ref(), self.narrow.as_ref());
+        let ends = Ends::prepare(stage, asked, std::mem::take(&mut self.ends));
+        self.ends = ends.kept();
+        let (receivers, mask) = ends.inner();
         let wide = prepared(asked.light(), &casters, receivers, mask);
 
         let in_world = casters.meshes();
@@ -188,49 +185,27 @@ impl<T: Technique> Shadow<T> {
             Some(parts) => LightPasses::Parts(Box::new(parts)),
             None => LightPasses::Whole(self.technique.prepare(stage, &noisy, &self.params)?),
         };
-        Ok(Passes { casters, light, denoise })
-    }
-
-    /// Prepares the conversions between the host's receivers and mask and those of techniques.
-    fn prepare_ends(&mut self, stage: &Stage<'_>, asked: &Asked<'_>) {
-        (self.narrow, self.points) = match asked {
-            Asked::Mask(Frame { mask, .. }) => {
-                (NarrowMask::serves(mask).then(|| NarrowMask::prepare(stage, mask, self.narrow.take())), None)
-            }
-            Asked::Points(frame) => {
-                let earlier = self.points.take();
-                let points =
-                    PointTextures::prepare(stage, &frame.receivers, frame.visibilities, frame.channels, earlier);
-                (None, Some(points))
-            }
-        };
+        Ok(Passes { casters, ends, light, denoise })
     }
 
     /// Records a frame's stages, in the order of the data: reading of points, the technique, denoising, conversion of the mask.
     fn record_passes(&self, recorder: &mut Recorder<'_>, asked: &Asked<'_>, passes: Passes<'_, T::Prepared>) {
-        let Passes { casters, light, denoise } = passes;
-        let (receivers, smooth) = ends_of(asked, self.points.as_ref(), self.narrow.as_ref());
+        let Passes { casters, ends, light, denoise } = passes;
+        let (receivers, smooth) = ends.inner();
         let mask = denoise.as_ref().map_or(smooth, |denoise| &denoise.noisy);
         let noisy = prepared(asked.light(), &casters, receivers, mask);
-        if let Some(points) = &self.points {
-            points.record_read(recorder);
-        }
+        ends.record_read(recorder);
         match (light, &self.parted) {
             (LightPasses::Whole(technique), _) => self.technique.record(recorder, &noisy, &technique),
             (LightPasses::Parts(parts), Some(parted)) => {
-                parted.record(recorder, &noisy, *parts, || self.commands.end());
+                parted.record(recorder, &noisy, *parts);
             }
             (LightPasses::Parts(_), None) => {}
         }
         if let Some(denoise) = &denoise {
             denoise.record(recorder);
         }
-        if let (Some(narrow), Asked::Mask(frame)) = (&self.narrow, asked) {
-            narrow.record(recorder, frame.mask);
-        }
-        if let Some(points) = &self.points {
-            points.record_write(recorder);
-        }
+        ends.record_write(recorder);
     }
 
     fn is_settled(&self) -> bool {
@@ -261,7 +236,7 @@ impl<T: Technique> Shadow<T> {
         self.technique.memory_bytes()
             + self.parted.as_ref().map_or(0, Parted::memory_bytes)
             + self.denoiser.as_ref().map_or(0, Denoiser::memory_bytes)
-            + self.points.as_ref().map_or(0, PointTextures::memory_bytes)
+            + self.ends.memory_bytes()
     }
 
     /// The depth maps that the frame prepared last draws and its mask is read from, to be looked at once its commands have
@@ -293,22 +268,10 @@ impl<T: Technique> Shadow<T> {
     }
 }
 
-/// A frame's receivers and mask as techniques have them: the host's, or textures that stand for them.
-fn ends_of<'f>(
-    asked: &'f Asked<'_>,
-    points: Option<&'f PointTextures>,
-    narrow: Option<&'f NarrowMask>,
-) -> (PreparedReceivers<'f>, &'f Mask) {
-    match (asked, points) {
-        (Asked::Points(frame), Some(points)) => (points.receivers(&frame.receivers), points.mask()),
-        (Asked::Mask(frame), _) => (frame.receivers.into(), narrow.map_or(frame.mask, NarrowMask::wide)),
-        (Asked::Points(_), None) => unreachable!("`prepare_ends` came before"),
-    }
-}
-
 /// Passes of one frame; `P` is the technique's.
 struct Passes<'a, P> {
     casters: FrameCasters<'a>,
+    ends: Ends<'a>,
     light: LightPasses<'a, P>,
     /// Where the mask is denoised.
     denoise: Option<PreparedDenoise>,
@@ -371,7 +334,7 @@ impl<T: Technique> Work for FrameWork<'_, T> {
     fn record(self: Box<Self>, recorder: &mut Recorder<'_>) {
         let Some((uploads, passes)) = self.passes else { return };
         recorder.upload(uploads, self.shadow.commands.end());
-        self.shadow.record_passes(recorder, &self.asked, passes);
+        recorder.joining_compute_passes(|recorder| self.shadow.record_passes(recorder, &self.asked, passes));
         self.shadow.is_recorded = true;
     }
 }

@@ -38,6 +38,7 @@ use antumbra_light::{Light, LightFrame, LightShape};
 use glam::{Vec3, Vec4};
 
 use crate::contract::{MeshCaster, PreparedCasters, PreparedFrame, PreparedReceivers};
+use crate::gpu::SharedValues;
 use crate::light_map::central_view::central_reach;
 use crate::light_map::light_view::{HORIZON_TANGENT, MIDDLE_TANGENT};
 use crate::light_map::sweep::Sweep;
@@ -90,8 +91,14 @@ const FACE_OVERLAP: f32 = 1e-3;
 const WHOLE: u32 = u32::MAX;
 
 /// The parts of a frame whose places are counted from an anchor; none where the light as it is does for all of them. `still`
-/// is what the frames before left.
-pub(crate) fn parts_of(frame: &PreparedFrame<'_>, coverage: Coverage, anchor: Vec3, still: &mut Still) -> Vec<Part> {
+/// is what the frames before left, `shared` what other lights have found.
+pub(crate) fn parts_of(
+    frame: &PreparedFrame<'_>,
+    coverage: Coverage,
+    anchor: Vec3,
+    still: &mut Still,
+    shared: &SharedValues,
+) -> Vec<Part> {
     let PreparedFrame { light, receivers, casters, .. } = frame;
     let meshes = if let PreparedCasters::Draws(meshes) = casters { meshes } else { &[][..] };
     let end = receivers.shadow_end_plane();
@@ -100,11 +107,12 @@ pub(crate) fn parts_of(frame: &PreparedFrame<'_>, coverage: Coverage, anchor: Ve
     if does && end.is_none() {
         return Vec::new();
     }
-    let body = Body::of(receivers, &corners);
+    let shared_body = Body::of(receivers, corners, shared);
+    let (_, body) = &*shared_body;
     if light.is_distant() {
         still.begin(light);
     }
-    let mut sectors = if does { Vec::new() } else { sectors_of(light, receivers, &body, still) };
+    let mut sectors = if does { Vec::new() } else { sectors_of(light, receivers, body, still) };
     if let Some(end) = end {
         if sectors.is_empty() {
             sectors.push((WHOLE, Sector::whole(light)));
@@ -116,9 +124,9 @@ pub(crate) fn parts_of(frame: &PreparedFrame<'_>, coverage: Coverage, anchor: Ve
         // Those that are nearer than the light is large, if there are others, are in the region and not in the hull: seen
         // from the light's rim they lie in any direction, and a view that held them would hold little else.
         let beyond_light = along.extend(-radius_m);
-        let mut hull = if radius_m > 0.0 { region.corners_within(&body, beyond_light) } else { Vec::new() };
+        let mut hull = if radius_m > 0.0 { region.corners_within(body, beyond_light) } else { Vec::new() };
         if hull.is_empty() {
-            hull = region.corners_within(&body, Vec4::ZERO);
+            hull = region.corners_within(body, Vec4::ZERO);
         }
         let seen = receivers.seen.iter().copied().filter(|x| region.holds(*x)).collect();
         let still = (light.is_distant() && !hull.is_empty()).then(|| still.hold(id, &hull, anchor));
@@ -198,8 +206,7 @@ impl Part {
                 |caster: &MeshCaster<'a>| Some(MeshCaster { bounds: sweep.part_of(&caster.bounds)?, ..*caster });
             return casters.iter().filter_map(of_part).collect();
         }
-        let radius_m = self.light.bounding_radius();
-        casters.iter().filter(|caster| self.region.may_be_shaded_by(caster, radius_m)).copied().collect()
+        self.region.casters_of(casters, self.light.bounding_radius())
     }
 }
 

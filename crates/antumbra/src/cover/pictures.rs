@@ -1,6 +1,7 @@
 //! The receivers of one part as a picture of their own, and the way of what a technique gives for them into the light's
 //! mask. One picture serves all parts and all lights: it is filled, used and emptied before the next.
 
+use std::num::NonZeroU64;
 use std::sync::Arc;
 
 use antumbra_light::ShadowDistance;
@@ -18,15 +19,15 @@ use crate::shaders;
 
 bindings! {
     struct Picked = "receivers of a part", COMPUTE, group 1 of [COVER_PICK] {
-        0 region: Storage,
+        0 region: StoragePart,
         1 part_depth: WrittenTexture(DEPTH_FORMAT),
         2 part_normals: WrittenTexture(NORMAL_FORMAT),
     }
 
     struct Joined = "mask of a part", COMPUTE, group 1 of [COVER_JOIN] {
-        0 region: Storage,
+        0 region: StoragePart,
         1 part_mask: TextureArray(texels::FLOAT),
-        2 joining: Storage,
+        2 joining: StoragePart,
     }
 }
 
@@ -41,6 +42,9 @@ gpu_structs! {
         padding: u32,
     }
 }
+
+/// Offsets of bindings are multiples of WebGPU's default alignment.
+const SLOT_BYTES: usize = 256;
 
 /// What takes a frame's receivers apart and joins masks.
 #[derive(Debug)]
@@ -102,15 +106,18 @@ impl PartPictures {
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, parts: &[Part]) -> PreparedPictures {
         let inputs = self.inputs.prepare(stage, frame);
         let picture = Picture::prepare(stage, frame, self.picture.as_ref());
+        let places = places_of_parts(stage, frame, parts);
+        let place = |slot: usize, size: usize| wgpu::BufferBinding {
+            buffer: &places,
+            offset: (slot * SLOT_BYTES) as u64,
+            size: NonZeroU64::new(size as u64),
+        };
         let mut groups = Vec::with_capacity(parts.len());
-        for (i, part) in parts.iter().enumerate() {
-            // Another for each part, and so no uniforms: drivers may compile for those.
-            let region = &stage.storage::<RegionGpu>("antumbra region", &[part.region.to_gpu()]);
-            let joining = JoiningGpu { is_first: u32::from(i == 0), ..JoiningGpu::of(frame.receivers.shadow_distance) };
-            let joining = &stage.storage::<JoiningGpu>("antumbra joining", &[joining]);
+        for i in 0..parts.len() {
+            let (region, joining) = (place(2 * i, size_of::<RegionGpu>()), place(2 * i + 1, size_of::<JoiningGpu>()));
             let normals = picture.normals.as_ref().map_or(&self.no_normals, |(_, view)| view);
             let depth = picture.depth.as_ref().map_or(&self.no_depth, |(_, view)| view);
-            let picked = Picked { region, part_depth: depth, part_normals: normals };
+            let picked = Picked { region: region.clone(), part_depth: depth, part_normals: normals };
             let joined = Joined { region, part_mask: picture.mask.layers_view(), joining };
             groups.push([picked.group(stage, &self.layouts[0]), joined.group(stage, &self.layouts[1])]);
         }
@@ -203,6 +210,19 @@ impl Picture {
             mask,
         }
     }
+}
+
+/// Regions of some parts and how their masks are joined, a slot each, in one buffer: one upload for all. It has room for as many
+/// parts as a light mostly has, which come and go. No uniforms, since drivers may compile for their values.
+fn places_of_parts(stage: &Stage<'_>, frame: &PreparedFrame<'_>, parts: &[Part]) -> wgpu::Buffer {
+    const ROOM: usize = 8;
+    let mut bytes = vec![0u8; 2 * SLOT_BYTES * parts.len().next_multiple_of(ROOM)];
+    for (i, (part, slots)) in parts.iter().zip(bytes.chunks_exact_mut(2 * SLOT_BYTES)).enumerate() {
+        let joining = JoiningGpu { is_first: u32::from(i == 0), ..JoiningGpu::of(frame.receivers.shadow_distance) };
+        slots[..size_of::<RegionGpu>()].copy_from_slice(bytemuck::bytes_of(&part.region.to_gpu()));
+        slots[SLOT_BYTES..SLOT_BYTES + size_of::<JoiningGpu>()].copy_from_slice(bytemuck::bytes_of(&joining));
+    }
+    stage.storage("antumbra places of parts", &bytes)
 }
 
 fn written(format: wgpu::TextureFormat, size_px: UVec2) -> wgpu::TextureDescriptor<'static> {

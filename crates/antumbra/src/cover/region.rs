@@ -1,10 +1,12 @@
 //! A convex part of space about a light: a few planes.
 
-use antumbra_light::{Aabb, enclosing_planes, polytope_corners};
+use std::sync::Arc;
+
+use antumbra_light::{Aabb, Polytope, enclosing_planes};
 use glam::{DVec4, Vec3, Vec4};
 
 use crate::contract::{MeshCaster, PreparedReceivers};
-use crate::gpu::gpu_structs;
+use crate::gpu::{SharedValues, gpu_structs};
 
 /// Planes that a region may have: as many as `cover/region.wesl` has room for.
 const MOST_PLANES: usize = 6;
@@ -69,49 +71,66 @@ impl Region {
     /// no such part.
     pub(crate) fn corners_within(&self, body: &Body, more: Vec4) -> Vec<Vec3> {
         let of_region = self.planes.iter().chain([&more]).map(|plane| self.in_world(*plane));
-        let planes: Vec<DVec4> = body.planes.iter().copied().chain(of_region).collect();
-        polytope_corners(&planes, body.size_m)
+        body.polytope.corners_within(&of_region.collect::<Vec<_>>())
     }
 
-    /// Whether a caster may stand between what is inside and a light about the origin that reaches `radius_m` from it.
-    pub(crate) fn may_be_shaded_by(&self, caster: &MeshCaster<'_>, radius_m: f32) -> bool {
-        let Aabb { min, max } = caster.bounds;
+    /// The casters that may stand between what is inside and a light about the origin that reaches `radius_m` from it.
+    pub(crate) fn casters_of<'a>(&self, casters: &[MeshCaster<'a>], radius_m: f32) -> Vec<MeshCaster<'a>> {
         // Receivers are in front of each plane, the light's points no farther behind it than the origin and the radius,
         // and so is what lies between.
-        self.planes.iter().all(|plane| {
-            let normal = plane.truncate();
-            let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), max, min) - self.origin;
-            let least = (plane.w - radius_m * normal.length()).min(0.0);
-            let in_front = normal.dot(farthest) + plane.w;
-            // A box without numbers may be anywhere.
-            in_front.is_nan() || in_front >= least
-        })
+        let least = |plane: &Vec4| (plane.w - radius_m * plane.truncate().length()).min(0.0);
+        let planes: Vec<(Vec4, f32)> = self.planes.iter().map(|plane| (*plane, least(plane))).collect();
+        let may_shade = |caster: &&MeshCaster<'a>| {
+            let Aabb { min, max } = caster.bounds;
+            planes.iter().all(|(plane, least)| {
+                let normal = plane.truncate();
+                let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), max, min) - self.origin;
+                let in_front = normal.dot(farthest) + plane.w;
+                // A box without numbers may be anywhere.
+                in_front.is_nan() || in_front >= *least
+            })
+        };
+        let mut found = Vec::with_capacity(casters.len());
+        found.extend(casters.iter().filter(may_shade));
+        found
     }
 }
 
 /// A convex body that holds every receiver.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
-    /// Those alone that bound it: what is cut out of it has few corners to look for.
-    planes: Vec<DVec4>,
-    size_m: f64,
+    /// Of those planes alone that bound it: what is cut out of it has few corners to look for.
+    polytope: Polytope,
     corners: Vec<Vec3>,
 }
 
+/// What a body depends on: points, and the planes that the camera sees between.
+type BodyKey = (Vec<Vec3>, Vec<DVec4>);
+
 impl Body {
-    /// What the camera sees of the convex hull of some corners, as far as there are shadows, or little more.
-    pub(crate) fn of(receivers: &PreparedReceivers<'_>, corners: &[Vec3]) -> Self {
-        let size_m = f64::from(Aabb::of(corners.iter().copied()).diagonal());
-        let mut planes = enclosing_planes(corners);
-        planes.extend(receivers.frustum_planes().into_iter().flatten());
+    /// What the camera sees of the convex hull of some corners, as far as there are shadows, or little more. Lights that see the
+    /// same receivers share it.
+    pub(crate) fn of(
+        receivers: &PreparedReceivers<'_>,
+        corners: Vec<Vec3>,
+        shared: &SharedValues,
+    ) -> Arc<(BodyKey, Self)> {
+        let mut planes: Vec<DVec4> = receivers.frustum_planes().into_iter().flatten().collect();
         planes.extend(receivers.shadow_end_plane());
-        let corners = polytope_corners(&planes, size_m);
+        shared.get_or_make((corners, planes), |(corners, planes)| Self::between(corners, planes))
+    }
+
+    fn between(points: &[Vec3], seen_between: &[DVec4]) -> Self {
+        let size_m = f64::from(Aabb::of(points.iter().copied()).diagonal());
+        let mut planes = enclosing_planes(points);
+        planes.extend(seen_between);
+        let corners = Polytope::new(&planes, size_m).corners().to_vec();
         let touches = |plane: &DVec4| {
             let room = 1e-3 * size_m * plane.truncate().length();
             corners.iter().any(|corner| plane.dot(corner.as_dvec3().extend(1.0)).abs() <= room)
         };
         planes.retain(touches);
-        Self { planes, size_m, corners }
+        Self { polytope: Polytope::new(&planes, size_m), corners }
     }
 
     /// Its corners, each several times over.

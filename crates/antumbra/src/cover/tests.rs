@@ -117,7 +117,7 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
         let receivers = Receivers { hull, view_from_world, ..test_receivers(SIZE, &depth) };
         let frame =
             PreparedFrame { light, casters: PreparedCasters::Draws(casters), receivers: receivers.into(), mask: &mask };
-        parts_of(&frame, coverage, Vec3::ZERO, &mut Still::default())
+        parts_of(&frame, coverage, Vec3::ZERO, &mut Still::default(), &SharedValues::default())
     };
     let parts = |light: &Light, hull: &[Vec3], coverage| parts_with(&casters, light, hull, coverage);
     let lamp = Light::new(LightShape::Sphere { radius_m: 0.1 }, 2.0 * Vec3::Y, Vec3::ZERO);
@@ -157,7 +157,8 @@ fn a_sun_has_slices_where_one_map_is_too_coarse() {
     let depth = empty_depth(gpu, SIZE);
     let (sun, far) = world(1000.0);
     let receivers = Receivers { hull: &far, ..test_receivers(SIZE, &depth) };
-    let slices = slices::slices_of(&sun, &receivers.into(), Body::of(&receivers.into(), &far).corners(), &mut None);
+    let body = Body::of(&receivers.into(), far.to_vec(), &SharedValues::default());
+    let slices = slices::slices_of(&sun, &receivers.into(), body.1.corners(), &mut None);
     assert!((3..=8).contains(&slices.len()), "{} slices", slices.len());
     let world_from_view = receivers.view_from_world.inverse();
     let mut held = vec![0; slices.len()];
@@ -236,7 +237,7 @@ fn slices_stay_while_a_camera_walks() {
             receivers: receivers.into(),
             mask: &mask,
         };
-        let parts = parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut still);
+        let parts = parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut still, &SharedValues::default());
         let now: Vec<_> = parts.iter().map(|part| (part.id, part.still.expect("a slice"))).collect();
         for (part, (_, corners)) in parts.iter().zip(&now) {
             let body = Sweep::of(&sun, corners);
@@ -300,7 +301,7 @@ fn parts_end_where_shadows_do() {
             receivers: receivers.into(),
             mask: &mask,
         };
-        parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut Still::default())
+        parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut Still::default(), &SharedValues::default())
     };
     for (light, end_m) in [(&sun, 150.0), (&sun, 20.0), (&lamp, 30.0), (&spot, 30.0)] {
         let near = parts(light, Some(end_m));

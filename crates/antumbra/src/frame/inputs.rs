@@ -302,9 +302,9 @@ pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &PreparedReceivers
 
 /// Metres across a pixel, the wider way, where the clip position's w is 1: 1 m before a perspective camera, anywhere before an
 /// orthographic one.
-fn pixel_m_per_w(clip_from_view: &Mat4, size_px: UVec2) -> f32 {
+fn pixel_m_per_w(view_from_clip: &Mat4, size_px: UVec2) -> f32 {
     // Where w and depth stay, a step of the clip position's x or y over w is a step of the view position by the inverse's column.
-    let Mat4 { x_axis, y_axis, .. } = clip_from_view.as_dmat4().inverse().as_mat4();
+    let Mat4 { x_axis, y_axis, .. } = view_from_clip;
     let per_ndc = Vec2::new(x_axis.truncate().length(), y_axis.truncate().length());
     (2.0 * per_ndc / size_px.as_vec2()).max_element()
 }
@@ -326,18 +326,36 @@ fn receiver_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> ReceiverView {
     let Surfaces::Depth { camera, .. } = &receivers.surfaces else {
         return ReceiverView { are_points: 1, ..common };
     };
-    let view_from_clip = camera.clip_from_view.as_dmat4().inverse().as_mat4();
-    let [clip_z_row, clip_w_row] = camera.clip_depth_rows();
-    let world_from_view = camera.view_from_world.as_dmat4().inverse().as_mat4();
+    // The same for all lights, and all parts of them, that are seen by one camera.
+    let of_camera = stage.device.shared_values().get_or_make(*camera, CameraMatrices::of);
+    let CameraMatrices { view_from_clip, world_from_view, clip_depth_rows: [clip_z_row, clip_w_row] } = of_camera.1;
     ReceiverView {
         view_from_clip,
         world_from_view,
         eye_in_world: world_from_view.w_axis.truncate(),
         background_depth: camera.depth_convention.background(),
-        pixel_m_per_w: pixel_m_per_w(&camera.clip_from_view, receivers.size_px),
+        pixel_m_per_w: pixel_m_per_w(&view_from_clip, receivers.size_px),
         clip_z_row,
         clip_w_row,
         ..common
+    }
+}
+
+/// Matrices that follow from a camera.
+#[derive(Clone, Copy)]
+struct CameraMatrices {
+    view_from_clip: Mat4,
+    world_from_view: Mat4,
+    clip_depth_rows: [Vec4; 2],
+}
+
+impl CameraMatrices {
+    fn of(camera: &Camera) -> Self {
+        Self {
+            view_from_clip: camera.clip_from_view.as_dmat4().inverse().as_mat4(),
+            world_from_view: camera.view_from_world.as_dmat4().inverse().as_mat4(),
+            clip_depth_rows: camera.clip_depth_rows(),
+        }
     }
 }
 
@@ -370,7 +388,8 @@ mod tests {
                 clip_from_view.inverse().project_point3(clip.truncate() / clip.w + offset)
             };
             let widths = [Vec2::X, Vec2::Y].map(|step_px| view_of(step_px).distance(view_of(Vec2::ZERO)));
-            let got = pixel_m_per_w(&clip_from_view, size_px) * clip.w.abs();
+            let view_from_clip = clip_from_view.as_dmat4().inverse().as_mat4();
+            let got = pixel_m_per_w(&view_from_clip, size_px) * clip.w.abs();
             let want = widths[0].max(widths[1]);
             assert!((got - want).abs() < 2e-3 * want, "{name}: {got} m, {want} to the neighbour");
         }

@@ -1,6 +1,8 @@
 //! Typed uniforms, and the few descriptors that every pass repeats.
 
-use super::{DrawPipeline, Gpu, Stage, overrides};
+use std::sync::Arc;
+
+use super::{DrawPipeline, Gpu, Stage, TableKey, overrides};
 
 /// Where a member of a [`GpuStruct`] lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +74,22 @@ pub(crate) fn upload_storage<'a, T: bytemuck::NoUninit>(
     let buffer = sized_buffer(stage, buffer, label, bytes.len() as u64, usage);
     stage.upload(buffer, 0, bytes);
     buffer
+}
+
+/// A storage buffer whose content follows from its key: made once, and shared by all lights.
+pub(crate) fn shared_table(gpu: &Gpu, key: TableKey, bytes: impl FnOnce() -> Vec<u8>) -> Arc<wgpu::Buffer> {
+    let label = key.of;
+    gpu.device.table(key, || {
+        let bytes = bytes();
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes.len() as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        gpu.queue.write_buffer(&buffer, 0, &bytes);
+        buffer
+    })
 }
 
 /// The same of bytes of which a frame has more and another less: they lie in a buffer that has room for the most so far.

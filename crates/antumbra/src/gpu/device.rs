@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use super::budget::Budget;
+use super::shared_values::SharedValues;
 use super::uniforms::{self, UniformAccess};
 use super::{programs, quirks};
 
@@ -98,6 +99,14 @@ struct ScratchTextureKey {
     usage: wgpu::TextureUsages,
 }
 
+/// What the content of a table that lights share follows from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct TableKey {
+    /// What it is of.
+    pub(crate) of: &'static str,
+    pub(crate) numbers: Vec<u32>,
+}
+
 /// A layout's entries as declared, and as the device has them.
 type LayoutKey = [Vec<wgpu::BindGroupLayoutEntry>; 2];
 
@@ -117,8 +126,10 @@ struct Programs {
     samplers: DescriptorCache<String, wgpu::Sampler>,
     scratch_textures: SharedPool<ScratchTextureKey, wgpu::Texture>,
     scratch_buffers: SharedPool<(Scratch, u64, wgpu::BufferUsages), wgpu::Buffer>,
+    tables: SharedPool<TableKey, wgpu::Buffer>,
     /// Memory budget of maps that one light owns.
     budget: Arc<Budget>,
+    shared_values: SharedValues,
     /// What `rasteriser` measures.
     snapped_texels: OnceLock<wgpu::Buffer>,
     /// What `frame/blue_noise` makes.
@@ -408,6 +419,11 @@ impl Device {
         samplers.get_or_make(key, &counts.programs, || self.device.create_sampler(descriptor))
     }
 
+    /// Values of the processor that lights share.
+    pub(crate) fn shared_values(&self) -> &SharedValues {
+        &self.programs.shared_values
+    }
+
     /// What `rasteriser` has measured of the adapter, or measures now.
     pub(super) fn snapped_texels(&self, measure: impl FnOnce() -> wgpu::Buffer) -> &wgpu::Buffer {
         self.programs.snapped_texels.get_or_init(measure)
@@ -454,6 +470,12 @@ impl Device {
     ) -> Arc<wgpu::Buffer> {
         let key = (scratch, descriptor.size, descriptor.usage);
         self.programs.scratch_buffers.get_or_make(key, || self.create_buffer(descriptor))
+    }
+
+    /// A buffer whose content follows from its key and never changes, shared by all that ask for the same for as long as one of
+    /// them keeps it.
+    pub(super) fn table(&self, key: TableKey, make: impl FnOnce() -> wgpu::Buffer) -> Arc<wgpu::Buffer> {
+        self.programs.tables.get_or_make(key, make)
     }
 
     pub(crate) fn create_view(

@@ -23,6 +23,7 @@ mod quirks;
 mod rasteriser;
 mod recorder;
 pub(crate) mod shared_constants;
+mod shared_values;
 mod stage;
 mod textures;
 mod trial;
@@ -31,15 +32,15 @@ mod uniforms;
 pub(crate) use bindings::{Bindings, bindings, samples, texels};
 pub(crate) use buffers::{
     GpuField, GpuStruct, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
-    create_uniform, dispatch_threads, gpu_structs, shader_module, sized_buffer, upload_storage, upload_with_room,
-    write_uniform,
+    create_uniform, dispatch_threads, gpu_structs, shader_module, shared_table, sized_buffer, upload_storage,
+    upload_with_room, write_uniform,
 };
 pub(crate) use cached::Cached;
 pub(crate) use commands::{Commands, CommandsEnd};
 pub(crate) use content::Content;
 pub use context::{Gpu, MemoryBytes};
 pub use device::ObjectCounts;
-pub(crate) use device::{Scratch, texture_bytes};
+pub(crate) use device::{Scratch, TableKey, texture_bytes};
 pub(crate) use draw_pipeline::{DrawPipeline, depth_state, with_early_depth_test};
 pub use embedded::ShaderFunction;
 pub(crate) use embedded::{Embeddable, EmbeddedGroup};
@@ -48,6 +49,7 @@ pub(crate) use lease::Lease;
 pub(crate) use no_depth::NoDepth;
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
 pub(crate) use shared_constants::shared_constants;
+pub(crate) use shared_values::SharedValues;
 pub use stage::Stage;
 pub(crate) use stage::{Keep, Resource, StagedUploads};
 pub(crate) use textures::{array_view, level_views, slice_views, texture_of, white_texture};

@@ -159,6 +159,19 @@ pub struct Recorder<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
     timer: Option<&'a mut PassTimer>,
     passes: Vec<Pass>,
+    joined: JoinedPasses,
+}
+
+/// Whether compute steps that follow one another are recorded in one pass of wgpu's, which costs the processor less than as
+/// many. Clocks stop at passes: with a timer each step has its own.
+#[derive(Debug)]
+enum JoinedPasses {
+    /// Each step has its own.
+    Off,
+    /// None is open.
+    Closed,
+    /// Further steps go into this one.
+    Open(wgpu::ComputePass<'static>),
 }
 
 impl<'a> Recorder<'a> {
@@ -167,7 +180,7 @@ impl<'a> Recorder<'a> {
         if let Some(timer) = &mut timer {
             timer.reset();
         }
-        Self { encoder, timer, passes: Vec::new() }
+        Self { encoder, timer, passes: Vec::new(), joined: JoinedPasses::Off }
     }
 
     /// What has been recorded so far, in order. What stood still and was not drawn again is not in it.
@@ -175,14 +188,25 @@ impl<'a> Recorder<'a> {
         &self.passes
     }
 
-    /// For copies between passes.
+    /// Records a light's steps, with compute passes joined where nothing is timed. None is open afterwards: the encoder is the
+    /// host's again.
+    pub(crate) fn joining_compute_passes(&mut self, record: impl FnOnce(&mut Self)) {
+        self.joined = if self.timer.is_some() { JoinedPasses::Off } else { JoinedPasses::Closed };
+        record(self);
+        self.joined = JoinedPasses::Off;
+    }
+
+    /// The encoder between passes.
     pub(crate) fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
+        if let JoinedPasses::Open(_) = self.joined {
+            self.joined = JoinedPasses::Closed;
+        }
         self.encoder
     }
 
     /// Copies a frame's uploads to where they belong.
     pub(crate) fn upload(&mut self, uploads: StagedUploads, then: CommandsEnd) {
-        uploads.record(self.encoder, then);
+        uploads.record(self.encoder(), then);
     }
 
     /// Copies the first bytes of a buffer to a mappable one, which is mapped once the commands are submitted.
@@ -193,18 +217,34 @@ impl<'a> Recorder<'a> {
         bytes: u64,
         then: impl FnOnce(Result<(), wgpu::BufferAsyncError>) + wgpu::WasmNotSend + 'static,
     ) {
-        self.encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
-        self.encoder.map_buffer_on_submit(to, wgpu::MapMode::Read, .., then);
+        let encoder = self.encoder();
+        encoder.copy_buffer_to_buffer(from, 0, to, 0, bytes);
+        encoder.map_buffer_on_submit(to, wgpu::MapMode::Read, .., then);
     }
 
     /// Fills a buffer with zeros.
     pub(crate) fn clear_buffer(&mut self, buffer: &wgpu::Buffer) {
-        self.encoder.clear_buffer(buffer, 0, None);
+        self.encoder().clear_buffer(buffer, 0, None);
     }
 
     /// A compute pass.
     pub(crate) fn compute(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
         self.passes.push(Pass { label, draws_casters: false });
+        if let JoinedPasses::Closed = self.joined {
+            let descriptor = wgpu::ComputePassDescriptor { label: Some("antumbra"), timestamp_writes: None };
+            self.joined = JoinedPasses::Open(self.encoder.begin_compute_pass(&descriptor).forget_lifetime());
+        }
+        if let JoinedPasses::Open(pass) = &mut self.joined {
+            // By default wgpu hands names to the driver in debug builds alone.
+            if cfg!(debug_assertions) {
+                pass.push_debug_group(label);
+            }
+            record(pass);
+            if cfg!(debug_assertions) {
+                pass.pop_debug_group();
+            }
+            return;
+        }
         let writes = self.timer.as_deref_mut().and_then(|timer| timer.writes(label, span));
         let timestamp_writes = writes.map(|(query_set, begin, end)| wgpu::ComputePassTimestampWrites {
             query_set,
@@ -221,7 +261,7 @@ impl<'a> Recorder<'a> {
         if matches!(span, Span::Only | Span::First) {
             self.compute(label, Span::First, |_| {});
         }
-        record(self.encoder);
+        record(self.encoder());
         if matches!(span, Span::Only | Span::Last) {
             self.compute(label, Span::Last, |_| {});
         }
@@ -290,6 +330,9 @@ impl<'a> Recorder<'a> {
             beginning_of_pass_write_index: begin,
             end_of_pass_write_index: end,
         });
+        if let JoinedPasses::Open(_) = self.joined {
+            self.joined = JoinedPasses::Closed;
+        }
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
             color_attachments,

@@ -186,6 +186,19 @@ impl<'a> Stage<'a> {
         }
     }
 
+    /// A stage for a part of the frame, which has a state of its own; its maps are fitted to a box, where one is given, whose
+    /// corners these are, so that their texels stay where they are. [`finish_part`](Self::finish_part) ends it.
+    pub(crate) fn of_part(&self, keep: Keep, still: Option<[Vec3; 8]>) -> Self {
+        Self {
+            anchor: self.anchor,
+            noise_frame: self.noise_frame,
+            still,
+            #[cfg(test)]
+            is_at_once: self.is_at_once,
+            ..Self::new(self.gpu, keep, self.casters)
+        }
+    }
+
     /// A stage for one frame whose uploads are queued at once.
     #[cfg(test)]
     pub(crate) fn at_once(gpu: &'a Gpu) -> Self {
@@ -200,12 +213,6 @@ impl<'a> Stage<'a> {
     /// The same for a frame whose chances are those of this number; 0 is every frame's that is not denoised.
     pub(crate) fn of_noise_frame(self, noise_frame: u32) -> Self {
         Self { noise_frame, ..self }
-    }
-
-    /// The same for a frame whose maps along the light's axes are fitted to a box, whose corners these are, so that their
-    /// texels stay where they are.
-    pub(crate) fn keeping_still(self, still: Option<[Vec3; 8]>) -> Self {
-        Self { still, ..self }
     }
 
     /// The corners of a box about what receives that mostly stays where it is while the camera moves; `None` where maps
@@ -231,6 +238,21 @@ impl<'a> Stage<'a> {
 
     /// Ends the frame: what is kept, and the uploads.
     pub(crate) fn finish(self) -> (Keep, StagedUploads) {
+        let gpu = self.gpu;
+        let mut keep = self.into_keep();
+        let staged = keep.stage_uploads(gpu);
+        (keep, staged)
+    }
+
+    /// Ends a part of a frame: what is kept. Its uploads go with the frame's: each part has buffers of its own.
+    pub(crate) fn finish_part(self, of_frame: &Stage<'_>) -> Keep {
+        let mut keep = self.into_keep();
+        of_frame.keep.borrow_mut().uploads.append(&mut keep.uploads);
+        keep
+    }
+
+    /// What is kept for the next frame.
+    fn into_keep(self) -> Keep {
         let mut keep = self.keep.into_inner();
         let oldest = keep.frame.saturating_sub(KEPT_FRAMES);
         keep.groups.retain(|kept| kept.group.frame >= oldest);
@@ -238,8 +260,7 @@ impl<'a> Stage<'a> {
         for row in keep.buffers.values_mut() {
             row.buffers.retain(|buffer| buffer.frame >= oldest);
         }
-        let staged = keep.stage_uploads(self.gpu);
-        (keep, staged)
+        keep
     }
 
     /// A bind group of these parts.
@@ -350,6 +371,15 @@ impl<'a> Stage<'a> {
         let from = all.len() as u64;
         all.extend_from_slice(bytes);
         copies.push(Copy { to: to.clone(), to_offset, from, bytes: bytes.len() as u64 });
+    }
+}
+
+impl Uploads {
+    /// Takes over another's.
+    fn append(&mut self, other: &mut Self) {
+        let first = self.bytes.len() as u64;
+        self.bytes.append(&mut other.bytes);
+        self.copies.extend(other.copies.drain(..).map(|copy| Copy { from: first + copy.from, ..copy }));
     }
 }
 

@@ -6,7 +6,7 @@ use crate::contract::{DrawnLists, DrawnMap, Error, MeshCaster, Overflow, Params,
 use crate::cover::pictures::{PartPictures, PreparedPictures};
 use crate::cover::still::Still;
 use crate::cover::{Part, parts_of};
-use crate::gpu::{CommandsEnd, Gpu, Keep, Recorder, Stage, StagedUploads};
+use crate::gpu::{Gpu, Keep, Recorder, Stage};
 use crate::techniques::Technique;
 
 /// The parts of a light.
@@ -37,7 +37,6 @@ pub(super) struct PartedPasses<'a, P> {
 struct PartPasses<'a, P> {
     casters: Vec<MeshCaster<'a>>,
     technique: P,
-    uploads: StagedUploads,
 }
 
 impl<T: Technique> Parted<T> {
@@ -50,7 +49,7 @@ impl<T: Technique> Parted<T> {
         params: &T::Params,
     ) -> Result<Option<PartedPasses<'a, T::Prepared>>, Error> {
         let mut still = earlier.as_mut().map(|earlier| std::mem::take(&mut earlier.still)).unwrap_or_default();
-        let parts = parts_of(frame, T::coverage(params), stage.anchor(), &mut still);
+        let parts = parts_of(frame, T::coverage(params), stage.anchor(), &mut still, stage.device.shared_values());
         if parts.is_empty() {
             if let Some(earlier) = earlier {
                 earlier.parts = parts;
@@ -74,28 +73,26 @@ impl<T: Technique> Parted<T> {
             let of_part = pictures.frame_of(frame, part);
             let frame = PreparedFrame { casters: of_meshes(&frame.casters, &casters), ..of_part };
             state.has_cast |= !casters.is_empty() || !matches!(frame.casters, PreparedCasters::Draws(_));
-            let (technique, uploads) = if state.has_cast {
+            let technique = if state.has_cast {
                 state.prepare(stage, &frame, part.still, params)?
             } else {
                 state.prepare(stage, &frame, part.still, &with_least_maps(params))?
             };
-            passes.push(PartPasses { casters, technique, uploads });
+            passes.push(PartPasses { casters, technique });
         }
         Ok(Some(PartedPasses { pictures, parts: passes }))
     }
 
-    /// Records a frame, part by part. `then` is told of each part's commands.
+    /// Records a frame, part by part.
     pub(super) fn record(
         &self,
         recorder: &mut Recorder<'_>,
         frame: &PreparedFrame<'_>,
         passes: PartedPasses<'_, T::Prepared>,
-        then: impl Fn() -> CommandsEnd,
     ) {
         let PartedPasses { pictures, parts } = passes;
         for (i, (part, passes)) in self.parts.iter().zip(parts).enumerate() {
             let Some(state) = self.states.iter().find(|state| state.id == part.id) else { continue };
-            recorder.upload(passes.uploads, then());
             pictures.pick(recorder, i);
             let frame = pictures.frame_of(frame, part);
             let casters = of_meshes(&frame.casters, &passes.casters);
@@ -177,15 +174,10 @@ impl<T: Technique> PartState<T> {
         frame: &PreparedFrame<'_>,
         still: Option<[Vec3; 8]>,
         params: &T::Params,
-    ) -> Result<(T::Prepared, StagedUploads), Error> {
-        let keep = std::mem::take(&mut self.keep);
-        let stage = Stage::new(of_light, keep, of_light.casters())
-            .anchored(of_light.anchor())
-            .of_noise_frame(of_light.noise_frame())
-            .keeping_still(still);
+    ) -> Result<T::Prepared, Error> {
+        let stage = of_light.of_part(std::mem::take(&mut self.keep), still);
         let outcome = self.technique.prepare(&stage, frame, params);
-        let uploads;
-        (self.keep, uploads) = stage.finish();
-        Ok((outcome?, uploads))
+        self.keep = stage.finish_part(of_light);
+        outcome
     }
 }

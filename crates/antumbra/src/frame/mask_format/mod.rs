@@ -19,7 +19,7 @@ bindings! {
 }
 
 /// What draws a host's mask.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct NarrowMask {
     /// What techniques write. Each light's commands fill it and read it before another's do, so lights share it.
     scratch: Arc<wgpu::Texture>,

@@ -70,7 +70,7 @@ pub(crate) fn size_of_points(count: u32, row_length: Option<u32>) -> UVec2 {
 }
 
 /// A frame's points as techniques receive them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct PointTextures {
     size_px: UVec2,
     positions: (Arc<wgpu::Texture>, wgpu::TextureView),

@@ -356,7 +356,7 @@ pub(crate) struct ViewFit {
     held_from_m: f32,
     /// Points whose convex hull is that of what casts: of all its boxes' corners, or the hull's own corners.
     casters: Vec<Vec2>,
-    /// Corners of the convex hull of what receives; `None` where that is unknown.
+    /// The same of what receives; `None` where that is unknown.
     receivers: Option<Vec<Vec2>>,
     /// How far segments to the light leave the receivers' window.
     margin: f32,
@@ -415,6 +415,7 @@ impl ViewFit {
             add_tangents(&mut of_casters, corners, near, farthest);
         }
         of_casters.retain(|p| p.is_finite());
+        of_receivers.retain(|p| p.is_finite());
         Self {
             frame,
             perspective: true,
@@ -422,7 +423,7 @@ impl ViewFit {
             far_m: far,
             held_from_m: if held_from_m > near { held_from_m } else { 0.0 },
             casters: of_casters,
-            receivers: (!receivers.is_empty()).then(|| convex_hull(of_receivers)),
+            receivers: (!receivers.is_empty()).then_some(of_receivers),
             margin: margin_m * (1.0 / held_from_m - 1.0 / far),
             reach_tangent,
         }
@@ -465,7 +466,8 @@ impl ViewFit {
             far_m: far,
             held_from_m: 0.0,
             casters: of_casters.filter(|p| p.is_finite()).collect(),
-            receivers: (!receivers.is_empty()).then(|| convex_hull(receivers.iter().map(in_plane).collect())),
+            receivers: (!receivers.is_empty())
+                .then(|| receivers.iter().map(in_plane).filter(|p| p.is_finite()).collect()),
             // Unknown casters may stand anywhere; no window can hold all that they blur.
             margin: (margin * (far - near_of_known)).min(most),
             reach_tangent: None,
@@ -474,7 +476,7 @@ impl ViewFit {
 
     /// The same, with less to look at in every window: worth its time where many are tried.
     pub(crate) fn for_many_windows(self) -> Self {
-        Self { casters: convex_hull(self.casters), ..self }
+        Self { casters: convex_hull(self.casters), receivers: self.receivers.map(convex_hull), ..self }
     }
 
     /// What is seen in the plane of the fit's views.

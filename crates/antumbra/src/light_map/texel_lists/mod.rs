@@ -25,7 +25,7 @@ use crate::gpu::{
     Bindings, Cached, DrawPipeline, Gpu, Lease, NoDepth, Recorder, Scratch, Span, Stage, bindings, compute_entry,
     create_uniform, gpu_structs, samples, texels, white_texture, write_uniform,
 };
-use crate::light_map::caster_depth::{Bound, INSTANCES, POSITIONS, UVS, caster_primitives, is_in_view, make_no_uvs};
+use crate::light_map::caster_depth::{Bound, INSTANCES, POSITIONS, UVS, ViewSides, caster_primitives, make_no_uvs};
 use crate::light_map::caster_surface::SurfaceValues;
 use crate::light_map::light_view::LightView;
 use crate::primitives::prefix_scan::PrefixScan;
@@ -373,7 +373,8 @@ impl TexelLists {
         self.caster_groups = self.caster_groups(stage, casters, options.samples);
         let clip_from_world = view.clip_from_world();
         self.is_in_view.clear();
-        self.is_in_view.extend(casters.iter().map(|caster| is_in_view(&clip_from_world, &caster.bounds)));
+        let sides = ViewSides::of(&clip_from_world);
+        self.is_in_view.extend(casters.iter().map(|caster| sides.may_hold(&caster.bounds)));
         make_no_uvs(stage, &mut self.no_uvs, casters);
         prepared
     }

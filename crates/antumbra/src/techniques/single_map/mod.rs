@@ -1,14 +1,14 @@
 //! Techniques of one light map and one pass over the receivers that resolves it into the mask. They differ in that pass's shader
 //! and its parameters alone.
 
-use bytemuck::Pod;
+use std::sync::Arc;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{
-    Bindings, Embeddable, EmbeddedGroup, Gpu, GpuStruct, Recorder, Stage, bindings, create_uniform, upload_storage,
-    write_uniform,
+    Bindings, Cached, Embeddable, EmbeddedGroup, Gpu, GpuStruct, Recorder, Stage, TableKey, bindings, create_uniform,
+    shared_table, upload_storage, write_uniform,
 };
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
@@ -27,6 +27,22 @@ bindings! {
         0 params: Uniform,
         /// The kernel's points.
         1 taps: Storage,
+    }
+}
+
+/// The points of a kernel.
+pub(crate) struct KernelPoints<'a> {
+    /// What they follow from, where that is not this light alone: they are then worked out once and shared.
+    pub(crate) key: Option<TableKey>,
+    /// The points, one after the other.
+    pub(crate) bytes: &'a dyn Fn() -> Vec<u8>,
+}
+
+impl KernelPoints<'_> {
+    /// Without points: WebGPU has no empty bindings.
+    pub(crate) fn without_points() -> Self {
+        let key = TableKey { of: "antumbra no taps", numbers: Vec::new() };
+        Self { key: Some(key), bytes: &|| vec![0; 16] }
     }
 }
 
@@ -59,7 +75,10 @@ pub(crate) struct MapResolve<P> {
     further_layouts: Vec<wgpu::BindGroupLayout>,
     resolve: Resolve,
     params_uniform: wgpu::Buffer,
+    /// Points of the light's own kernel.
     taps: Option<wgpu::Buffer>,
+    /// Points of one that others have, too.
+    shared_taps: Cached<TableKey, Arc<wgpu::Buffer>>,
     /// Of the frame prepared last.
     constants: Vec<(&'static str, f64)>,
     _params: std::marker::PhantomData<P>,
@@ -119,20 +138,21 @@ impl<P: GpuStruct> MapResolve<P> {
             resolve,
             params_uniform: create_uniform::<P>(gpu, "antumbra resolve parameters"),
             taps: None,
+            shared_taps: Cached::default(),
             constants: Vec::new(),
             _params: std::marker::PhantomData,
         }
     }
 
     /// Fits the map, allocates it, and uploads everything; compiles the pass where it is another, or sparse for
-    /// the first time. `taps` are the kernel's points, none for kernels without.
-    pub(crate) fn prepare<T: Pod>(
+    /// the first time.
+    pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         pass: &ResolvePass<'_>,
         params: &P,
-        taps: &[T],
+        kernel: KernelPoints<'_>,
     ) -> Result<PreparedMapResolve, Error> {
         let map = self.map.prepare(stage, frame, pass.map)?;
         let shader = ResolveShader {
@@ -145,8 +165,16 @@ impl<P: GpuStruct> MapResolve<P> {
         self.constants.extend_from_slice(pass.constants);
         let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, pass.is_sparse, &shader);
         write_uniform(stage, &self.params_uniform, params);
-        let taps: &[T] = if taps.is_empty() { &[T::zeroed()] } else { taps };
-        let taps = upload_storage(stage, &mut self.taps, "antumbra taps", taps);
+        let taps = match kernel.key {
+            Some(key) => {
+                self.taps = None;
+                &**self.shared_taps.get_or_make(key.clone(), || shared_table(stage, key, kernel.bytes))
+            }
+            None => {
+                self.shared_taps = Cached::default();
+                upload_storage(stage, &mut self.taps, "antumbra taps", &(kernel.bytes)())
+            }
+        };
         let params = ResolveParams { params: &self.params_uniform, taps };
         Ok(PreparedMapResolve { map, params_group: params.group(stage, &self.params_layout), resolve })
     }
@@ -178,7 +206,8 @@ impl<P: GpuStruct> MapResolve<P> {
     pub(crate) fn embeddable(&self, wgsl: &'static str) -> Option<Embeddable> {
         let inputs = self.inputs.embedded()?;
         let (map, is_own) = self.map.embedded()?;
-        let params = ResolveParams { params: &self.params_uniform, taps: self.taps.as_ref()? };
+        let taps = self.taps.as_ref().or(self.shared_taps.get().map(|taps| &**taps))?;
+        let params = ResolveParams { params: &self.params_uniform, taps };
         let groups = vec![inputs, map, EmbeddedGroup::of(&params)];
         Some(Embeddable { wgsl, constants: self.constants.clone(), groups, is_own })
     }

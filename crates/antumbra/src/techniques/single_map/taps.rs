@@ -3,7 +3,9 @@
 use antumbra_light::{Light, LightShape, SampleSet, ball_from_cube, disk_from_square};
 use glam::{Vec2, Vec3, Vec4};
 
+use super::KernelPoints;
 use crate::frame::inputs::kind_of;
+use crate::gpu::TableKey;
 
 /// 2 / (1 + √5).
 const INVERSE_GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
@@ -16,6 +18,49 @@ pub(crate) struct Taps<'a> {
     pub(crate) seed: u32,
     /// Which of the set's runs of so many points, one behind the other: 0 but where frames differ by chance.
     pub(crate) run: u32,
+}
+
+/// Use of a list of taps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TapUse {
+    /// Places in the light's shape, and scales.
+    Search,
+    /// Places in the light's shape.
+    Filter,
+    /// Places in the unit square.
+    Square,
+}
+
+/// Two lists of taps, one after the other, of so many taps each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TapLists<'a>(pub(crate) [(Taps<'a>, TapUse, u32); 2]);
+
+impl TapLists<'_> {
+    /// Runs a pass's preparation with the kernel of these taps.
+    pub(crate) fn with_kernel<R>(&self, prepare: impl FnOnce(KernelPoints<'_>) -> R) -> R {
+        prepare(KernelPoints { key: self.key(), bytes: &|| bytemuck::pod_collect_to_vec(&self.taps()) })
+    }
+
+    fn taps(&self) -> Vec<Vec4> {
+        let list = |(taps, used_as, count): &(Taps<'_>, TapUse, u32)| match used_as {
+            TapUse::Search => taps.of_search(*count),
+            TapUse::Filter => taps.of_filter(*count),
+            TapUse::Square => taps.of_square(*count),
+        };
+        self.0.iter().flat_map(list).collect()
+    }
+
+    /// What the taps follow from; `None` where that is the light's own points, or changes from frame to frame.
+    fn key(&self) -> Option<TableKey> {
+        let mut numbers = Vec::with_capacity(10);
+        for (Taps { light, set, seed, run }, used_as, count) in &self.0 {
+            if *run != 0 || matches!(light.shape, LightShape::Points { .. }) {
+                return None;
+            }
+            numbers.extend([kind_of(&light.shape), *set as u32, *seed, *used_as as u32, *count]);
+        }
+        Some(TableKey { of: "antumbra taps", numbers })
+    }
 }
 
 impl Taps<'_> {

@@ -14,7 +14,7 @@ use crate::light_map::light_view::Followed;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
+use crate::techniques::single_map::{KernelPoints, MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -46,7 +46,7 @@ impl Technique for Hard {
         let uniform = HardUniform { bias_scale: params.bias_scale };
         let map = OwnMapSettings { followed: Followed::Middle, ..OwnMapSettings::narrow(params.map_size) };
         let pass = ResolvePass::of(map);
-        self.resolve.prepare(stage, frame, &pass, &uniform, &[] as &[f32])
+        self.resolve.prepare(stage, frame, &pass, &uniform, KernelPoints::without_points())
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {

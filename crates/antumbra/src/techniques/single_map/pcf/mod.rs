@@ -23,12 +23,12 @@ use antumbra_light::SampleSet;
 use glam::Vec2;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
-use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
+use crate::gpu::{Embeddable, Gpu, Recorder, Stage, TableKey};
 use crate::light_map::light_view::Followed;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
+use crate::techniques::single_map::{KernelPoints, MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
 mod params;
@@ -59,21 +59,29 @@ impl Technique for Pcf {
         frame: &PreparedFrame<'_>,
         params: &PcfParams,
     ) -> Result<PreparedMapResolve, Error> {
-        let taps = match params.kernel {
+        let PcfParams { kernel, samples, seed, .. } = *params;
+        let points = || match kernel {
             PcfKernel::Box => Vec::new(),
-            PcfKernel::Poisson => poisson_disk(params.samples, params.seed),
-            PcfKernel::Vogel => vogel_disk(params.samples),
+            PcfKernel::Poisson => poisson_disk(samples, seed),
+            PcfKernel::Vogel => vogel_disk(samples),
+        };
+        let bytes = || bytemuck::pod_collect_to_vec(&points());
+        let key = TableKey { of: "antumbra taps of pcf", numbers: vec![kernel as u32, samples, seed] };
+        let kernel = if kernel == PcfKernel::Box {
+            KernelPoints::without_points()
+        } else {
+            KernelPoints { key: Some(key), bytes: &bytes }
         };
         let uniform = PcfUniform {
             kernel_size_texels: params.kernel_size,
-            tap_count: taps.len() as u32,
+            tap_count: if params.kernel == PcfKernel::Box { 0 } else { samples },
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
             attach_contacts: params.attach_contacts.into(),
         };
         let map = OwnMapSettings { followed: Followed::Middle, ..OwnMapSettings::square(params.map_size) };
         let pass = ResolvePass::of(map);
-        self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
+        self.resolve.prepare(stage, frame, &pass, &uniform, kernel)
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {

@@ -54,7 +54,7 @@ use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::single_map::taps::{Taps, TapsProgram};
+use crate::techniques::single_map::taps::{TapLists, TapUse, Taps, TapsProgram};
 use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
@@ -92,7 +92,7 @@ impl Technique for Pcss {
         // Lists are walked to their end.
         let least = if taps.are_progressive() { LEAST_BEFORE_LIT } else { 1 };
         let search_count = params.search_samples.max(least);
-        let places = [taps.of_search(search_count), taps.of_filter(params.samples)].concat();
+        let lists = TapLists([(taps, TapUse::Search, search_count), (taps, TapUse::Filter, params.samples)]);
         // What the sketch compares would find the receiver itself; a host's map is all that is known of its casters.
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let attach_contacts = params.attach_contacts && params.compare == PcssCompare::Plane;
@@ -111,7 +111,7 @@ impl Technique for Pcss {
         };
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
         let pass = ResolvePass { map, constants: &program.constants(), is_sparse: params.sub };
-        self.resolve.prepare(stage, frame, &pass, &uniform, &places)
+        lists.with_kernel(|kernel| self.resolve.prepare(stage, frame, &pass, &uniform, kernel))
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {

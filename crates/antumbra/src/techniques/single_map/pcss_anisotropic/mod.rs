@@ -23,7 +23,7 @@ use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
 use crate::techniques::single_map::pcss::search_constants;
-use crate::techniques::single_map::taps::Taps;
+use crate::techniques::single_map::taps::{TapLists, TapUse, Taps};
 use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 mod params;
@@ -53,7 +53,8 @@ impl Technique for PcssAnisotropic {
         params: &PcssAnisotropicParams,
     ) -> Result<PreparedMapResolve, Error> {
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
-        let taps = [taps.of_search(params.search_samples), taps.of_square(params.samples)].concat();
+        let search = (taps, TapUse::Search, params.search_samples);
+        let lists = TapLists([search, (taps, TapUse::Square, params.samples)]);
         let light = LightSpread::of(frame.light);
         let uniform = PcssUniform {
             rotate: params.rotate.into(),
@@ -73,7 +74,7 @@ impl Technique for PcssAnisotropic {
             constants: &search_constants(frame.light),
             is_sparse: params.sub,
         };
-        self.resolve.prepare(stage, frame, &pass, &uniform, &taps)
+        lists.with_kernel(|kernel| self.resolve.prepare(stage, frame, &pass, &uniform, kernel))
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {

@@ -64,7 +64,7 @@ use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::techniques::single_map::taps::{Taps, TapsProgram};
+use crate::techniques::single_map::taps::{TapLists, TapUse, Taps, TapsProgram};
 use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
 pub(crate) mod gpu_types;
@@ -140,11 +140,13 @@ impl Technique for Smrt {
             padding: 0,
         };
         let search_taps = Taps { set: SampleSet::Sobol, ..taps };
-        let taps = [search_taps.of_search(tile_search_count), taps.of_filter(params.samples)].concat();
+        let search = (search_taps, TapUse::Search, tile_search_count);
+        let lists = TapLists([search, (taps, TapUse::Filter, params.samples)]);
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
         let pass = ResolvePass { map, constants: &constants(program, is_smooth), is_sparse: false };
         let smoothing = self.smoothing.prepare(stage, frame.receivers.size_px, is_smooth);
-        Ok(PreparedSmrt { resolve: self.resolve.prepare(stage, frame, &pass, &uniform, &taps)?, smoothing })
+        let resolve = lists.with_kernel(|kernel| self.resolve.prepare(stage, frame, &pass, &uniform, kernel))?;
+        Ok(PreparedSmrt { resolve, smoothing })
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedSmrt) {

@@ -1,0 +1,91 @@
+//! Ends of a frame's data: the host's receivers and mask, and the textures that techniques read and write in their place where
+//! they need others.
+
+use super::frame::{Asked, Frame, PointFrame};
+use crate::contract::{Mask, PreparedReceivers};
+use crate::frame::mask_format::NarrowMask;
+use crate::frame::points::PointTextures;
+use crate::gpu::{Recorder, Stage};
+
+/// Ends of one frame.
+pub(super) enum Ends<'a> {
+    /// A mask of a depth buffer.
+    Mask {
+        frame: Frame<'a>,
+        /// Where the host's mask has fewer bits than techniques write.
+        narrow: Option<NarrowMask>,
+    },
+    /// Visibilities of points.
+    Points { frame: PointFrame<'a>, textures: PointTextures },
+}
+
+/// Resources of the last frame's ends.
+#[derive(Clone, Debug, Default)]
+pub(super) enum KeptEnds {
+    /// The host's own did.
+    #[default]
+    Nothing,
+    Narrow(NarrowMask),
+    Points(PointTextures),
+}
+
+impl<'a> Ends<'a> {
+    /// Makes ready for what a host asks for. `earlier` is the frame before's.
+    pub(super) fn prepare(stage: &Stage<'_>, asked: &Asked<'a>, earlier: KeptEnds) -> Self {
+        match asked {
+            Asked::Mask(frame) => {
+                let earlier = if let KeptEnds::Narrow(earlier) = earlier { Some(earlier) } else { None };
+                let narrow = NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, earlier));
+                Self::Mask { frame: *frame, narrow }
+            }
+            Asked::Points(frame) => {
+                let earlier = if let KeptEnds::Points(earlier) = earlier { Some(earlier) } else { None };
+                let PointFrame { receivers, visibilities, channels, .. } = frame;
+                let textures = PointTextures::prepare(stage, receivers, visibilities, *channels, earlier);
+                Self::Points { frame: *frame, textures }
+            }
+        }
+    }
+
+    /// Receivers and mask as techniques have them.
+    pub(super) fn inner(&self) -> (PreparedReceivers<'_>, &Mask) {
+        match self {
+            Self::Mask { frame, narrow } => {
+                (frame.receivers.into(), narrow.as_ref().map_or(frame.mask, NarrowMask::wide))
+            }
+            Self::Points { frame, textures } => (textures.receivers(&frame.receivers), textures.mask()),
+        }
+    }
+
+    /// Records the way from the host's receivers to the technique's.
+    pub(super) fn record_read(&self, recorder: &mut Recorder<'_>) {
+        if let Self::Points { textures, .. } = self {
+            textures.record_read(recorder);
+        }
+    }
+
+    /// Records the way from the technique's mask to where the host wants visibility.
+    pub(super) fn record_write(&self, recorder: &mut Recorder<'_>) {
+        match self {
+            Self::Mask { frame, narrow: Some(narrow) } => narrow.record(recorder, frame.mask),
+            Self::Mask { narrow: None, .. } => {}
+            Self::Points { textures, .. } => textures.record_write(recorder),
+        }
+    }
+
+    /// Handles of the resources, for the next frame.
+    pub(super) fn kept(&self) -> KeptEnds {
+        match self {
+            Self::Mask { narrow: Some(narrow), .. } => KeptEnds::Narrow(narrow.clone()),
+            Self::Mask { narrow: None, .. } => KeptEnds::Nothing,
+            Self::Points { textures, .. } => KeptEnds::Points(textures.clone()),
+        }
+    }
+}
+
+impl KeptEnds {
+    /// Bytes of points' textures; of masks the host knows.
+    pub(super) fn memory_bytes(&self) -> u64 {
+        if let Self::Points(textures) = self { textures.memory_bytes() } else { 0 }
+    }
+}
