@@ -159,19 +159,11 @@ pub struct Recorder<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
     timer: Option<&'a mut PassTimer>,
     passes: Vec<Pass>,
-    joined: JoinedPasses,
-}
-
-/// Whether compute steps that follow one another are recorded in one pass of wgpu's, which costs the processor less than as
-/// many. Clocks stop at passes: with a timer each step has its own.
-#[derive(Debug)]
-enum JoinedPasses {
-    /// Each step has its own.
-    Off,
-    /// None is open.
-    Closed,
-    /// Further steps go into this one.
-    Open(wgpu::ComputePass<'static>),
+    /// Whether compute steps that follow one another are recorded in one pass of wgpu's, which costs the processor less than as
+    /// many. Clocks stop at passes: with a timer each step has its own.
+    joins_steps: bool,
+    /// The pass that the next compute step is recorded in, where there is one.
+    open: Option<wgpu::ComputePass<'static>>,
 }
 
 impl<'a> Recorder<'a> {
@@ -180,7 +172,7 @@ impl<'a> Recorder<'a> {
         if let Some(timer) = &mut timer {
             timer.reset();
         }
-        Self { encoder, timer, passes: Vec::new(), joined: JoinedPasses::Off }
+        Self { encoder, timer, passes: Vec::new(), joins_steps: false, open: None }
     }
 
     /// What has been recorded so far, in order. What stood still and was not drawn again is not in it.
@@ -191,16 +183,14 @@ impl<'a> Recorder<'a> {
     /// Records a light's steps, with compute passes joined where nothing is timed. None is open afterwards: the encoder is the
     /// host's again.
     pub(crate) fn joining_compute_passes(&mut self, record: impl FnOnce(&mut Self)) {
-        self.joined = if self.timer.is_some() { JoinedPasses::Off } else { JoinedPasses::Closed };
+        self.joins_steps = self.timer.is_none();
         record(self);
-        self.joined = JoinedPasses::Off;
+        (self.joins_steps, self.open) = (false, None);
     }
 
     /// The encoder between passes.
     pub(crate) fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
-        if let JoinedPasses::Open(_) = self.joined {
-            self.joined = JoinedPasses::Closed;
-        }
+        self.open = None;
         self.encoder
     }
 
@@ -230,11 +220,10 @@ impl<'a> Recorder<'a> {
     /// A compute pass.
     pub(crate) fn compute(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
         self.passes.push(Pass { label, draws_casters: false });
-        if let JoinedPasses::Closed = self.joined {
+        if self.joins_steps {
+            let Self { encoder, open, .. } = self;
             let descriptor = wgpu::ComputePassDescriptor { label: Some("antumbra"), timestamp_writes: None };
-            self.joined = JoinedPasses::Open(self.encoder.begin_compute_pass(&descriptor).forget_lifetime());
-        }
-        if let JoinedPasses::Open(pass) = &mut self.joined {
+            let pass = open.get_or_insert_with(|| encoder.begin_compute_pass(&descriptor).forget_lifetime());
             // By default wgpu hands names to the driver in debug builds alone.
             if cfg!(debug_assertions) {
                 pass.push_debug_group(label);
@@ -330,9 +319,7 @@ impl<'a> Recorder<'a> {
             beginning_of_pass_write_index: begin,
             end_of_pass_write_index: end,
         });
-        if let JoinedPasses::Open(_) = self.joined {
-            self.joined = JoinedPasses::Closed;
-        }
+        self.open = None;
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
             color_attachments,
