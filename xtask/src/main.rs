@@ -5,6 +5,7 @@
 
 mod bevy;
 mod book;
+mod cases;
 mod demo;
 mod driver;
 mod families;
@@ -72,6 +73,10 @@ Development commands of Antumbra. They install what is missing where they can, a
     cargo xtask qualities
         Measures every technique at every quality but best on built-in scenes, and writes bench/qualities.md: ten minutes.
 
+    cargo xtask cases [NAME ...]
+        Measures every technique on the small inputs that reports led to, and writes bench/cases.md: half an hour. With the beginnings of
+        their names, only prints the table of some.
+
     cargo xtask figures [TECHNIQUE ...]
         Makes the images of docs/ and the README, or only those of the named techniques in docs/limits.md.
 
@@ -99,6 +104,7 @@ fn main() -> ExitCode {
         "mutants" => find_mutants(rest, []),
         "packages" => packages::check(),
         "qualities" => qualities::run(),
+        "cases" => cases::run(rest),
         "wasm" => wasm::check(Missing::Skip),
         "web" => web::run(rest),
         "figures" => figures::run(rest),

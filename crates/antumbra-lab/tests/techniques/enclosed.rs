@@ -47,17 +47,73 @@ fn a_near_plane_may_cut_into_a_closed_mesh() {
 #[test]
 fn a_cover_before_a_panel_hides_all_of_it() {
     for name in ["cover_0.01", "cover_0.05", "cover_0.2"] {
-        hold(name, &[("hard", 0.0), ("pcss", 0.001), ("multi_layer", 0.01), ("sample_based", 0.0)]);
+        hold(
+            name,
+            &[
+                ("hard", 0.0),
+                ("pcss", 0.001),
+                ("smrt", 0.001),
+                ("multi_layer", 0.01),
+                ("essm", 0.01),
+                ("reprojection_layered", 0.05),
+                ("sample_based", 0.0),
+                ("multi_view", 0.001),
+            ],
+        );
     }
+}
+
+/// As published nothing lies beyond the map.
+#[test]
+fn what_the_map_shows_at_its_edge_goes_on_by_choice() {
+    let Some(lab) = lab() else { return };
+    let Some(judged) = case("cover_0.01", SIZE) else { return };
+    let settings = [("map_size", "512"), ("edge_goes_on", "false")];
+    let rmse = judged.metrics(&judged.run(lab, TechniqueKind::Essm, &settings)).rmse.expect("judged pixels");
+    assert!(rmse > 0.9, "{rmse}");
 }
 
 #[test]
 fn a_shell_about_a_lamp_hides_it() {
-    hold("shell_0.08", &[("hard", 0.0), ("pcss", 0.02), ("multi_layer", 0.02), ("sample_based", 0.001)]);
+    hold(
+        "shell_0.08",
+        &[
+            ("hard", 0.0),
+            ("pcss", 0.02),
+            ("smrt", 0.02),
+            ("multi_layer", 0.02),
+            ("essm", 0.05),
+            ("reprojection_layered", 0.05),
+            ("sample_based", 0.001),
+        ],
+    );
+}
+
+/// Walls of single sheets, and of five millimetres.
+#[test]
+fn a_closed_room_keeps_a_sun_out() {
+    for name in ["room_sheet", "room_5mm"] {
+        hold(name, &[("hard", 0.06), ("pcss", 0.06), ("smrt", 0.06), ("multi_layer", 0.06), ("essm", 0.06)]);
+    }
 }
 
 /// A bulb two centimetres before a wall lights it at less than a degree beyond a metre.
 #[test]
 fn grazing_light_is_not_taken_for_shadow() {
-    hold("sconce_near", &[("hard", 0.06), ("pcss", 0.03), ("multi_layer", 0.16), ("sample_based", 0.005)]);
+    hold(
+        "sconce_near",
+        &[
+            ("hard", 0.06),
+            ("pcss", 0.03),
+            ("multi_layer", 0.02),
+            ("reprojection_layered", 0.03),
+            ("sample_based", 0.005),
+        ],
+    );
+}
+
+/// A bulb that touches a wall lights it, which coarse levels hold merged.
+#[test]
+fn a_wall_that_a_bulb_touches_does_not_hide_it() {
+    hold("sconce_touch", &[("multi_layer", 0.03), ("sample_based", 0.005)]);
 }

@@ -60,7 +60,7 @@ override LISTS_APART: u32 = 0u;
 
 override HAS_PLANES: bool = true;
 
-const LEAST_SINE = 0.006;
+const LEAST_SINE = 0.001;
 
 const PARTS = vec4u(0u, 1u, 2u, 3u);
 
@@ -326,6 +326,11 @@ fn share_in_front(lookup: Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f3
     return mix(1.0, max(share, LEAST_IN_FRONT), smoothstep(OWN_SURFACE_TEXELS, OTHER_SURFACE_TEXELS, gap_texels));
 }
 
+fn merged_texels(rung: MultiLayerRung) -> f32 {
+    let box = sqrt(max(rung.width * rung.width - 2.0 * rung.spacing * rung.spacing, 1.0));
+    return 0.5 * (box - 1.0);
+}
+
 fn plane_z_at(plane: space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) -> vec4f {
     if !HAS_PLANES {
         return vec4f(space_z_of_depth(map_light_view, saturate(plane.depth)));
@@ -333,7 +338,8 @@ fn plane_z_at(plane: space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) ->
     let uv_step = rung.spacing / map_light_view.map_size;
     let step = plane.depth_per_uv * uv_step;
     let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
-    let depth = space_held(map_light_view, plane, near + vec4f(0.0, step.x, step.y, step.x + step.y));
+    let rise = map_light_view.depth_sign * merged_texels(rung) * dot(abs(plane.depth_per_uv), 1.0 / map_light_view.map_size);
+    let depth = space_held(map_light_view, plane, near + rise + vec4f(0.0, step.x, step.y, step.x + step.y));
     return vec4f(space_z_of_depth(map_light_view, depth.x), space_z_of_depth(map_light_view, depth.y), space_z_of_depth(map_light_view, depth.z), space_z_of_depth(map_light_view, depth.w));
 }
 

@@ -82,7 +82,8 @@ fn is_summed(piece: sums_Piece) -> bool {
     return max(size.x, size.y) > uniform_soft.direct_texels && sums_area(piece) <= uniform_soft.max_part_texels;
 }
 
-fn piece_blockers(compared: compared_Compared, piece: sums_Piece) -> answer_Answer {
+fn piece_blockers(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
+    let piece = compared_piece_in_map(compared, asked);
     if is_summed(piece) {
         let answer = answer_basis_answer(compared, piece, answer_WHOLE);
         if answer.is_good || uniform_soft.may_read_map == 0u {
@@ -92,7 +93,8 @@ fn piece_blockers(compared: compared_Compared, piece: sums_Piece) -> answer_Answ
     return map_answer(compared, piece);
 }
 
-fn piece_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
+fn piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
+    let piece = compared_piece_in_map(compared, asked);
     if is_summed(piece) {
         let answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, IS_ONE_PIECE || uniform_CUTS_SQUARES));
         if answer.is_good || uniform_soft.may_read_map == 0u {
@@ -131,12 +133,16 @@ fn search_of(compared: compared_Compared, extent: vec2f) -> Search {
     return Search(g, g, extent, compared.place, blocker_range_half_extent_uv_at_1(compared.plane.uv, extent) * map_light_view.map_size, FINEST_TEXELS * space_texel_in_plane_at(map_light_view, from_center));
 }
 
-fn window_half(search: Search, k: u32) -> vec2f {
+fn window_g(search: Search, k: u32) -> f32 {
     if IS_ONE_WINDOW {
-        return max(search.half_at_1 * search.window_g, vec2f(1.0));
+        return search.window_g;
     }
     let scale = (f32(k) + 0.5) / f32(uniform_soft.search_scales);
-    return max(search.half_at_1 * (blocker_range_RIM * search.window_g * scale * scale), vec2f(1.0));
+    return blocker_range_RIM * search.window_g * scale * scale;
+}
+
+fn window_half(search: Search, k: u32) -> vec2f {
+    return max(search.half_at_1 * window_g(search, k), vec2f(1.0));
 }
 
 fn counted(search: Search, compared: compared_Compared, piece: sums_Piece, answer: answer_Answer) -> vec2f {
@@ -166,7 +172,8 @@ fn search_tables(search: Search, compared: compared_Compared) -> vec2f {
     return sum;
 }
 
-fn window_blockers(search: Search, compared: compared_Compared, k: u32) -> vec2f {
+fn window_blockers(search: Search, receiver: compared_Compared, k: u32) -> vec2f {
+    let compared = compared_asking_for(receiver, window_g(search, k));
     let half = window_half(search, k);
     let most = search_side(k);
     let is_summed = 2.0 * max(half.x, half.y) > uniform_soft.direct_texels;
@@ -204,11 +211,13 @@ fn search_taps(search: Search, compared: compared_Compared) -> vec2f {
     let count = select(0u, uniform_soft.search_scales * side * side, search.g > 0.0);
     var sum = vec2f();
     for (var i = 0u; i < count; i++) {
-        let half = window_half(search, i / (side * side));
+        let k = i / (side * side);
+        let half = window_half(search, k);
         let size = 2.0 * half / f32(side);
         let low = search.center - half + size * vec2f(vec2u(i % side, i / side % side));
         let piece = sums_Piece(low, low + size);
-        let blocks = texel_blocks(compared, about(compared, sums_middle(piece)), sums_middle(piece));
+        let place = compared_place_in_map(compared_asking_for(compared, window_g(search, k)), sums_middle(piece));
+        let blocks = texel_blocks(compared, about(compared, place), place);
         sum += counted(search, compared, piece, answer_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
     }
     return sum;
@@ -253,7 +262,7 @@ fn narrow_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f3
         let half = soft_kernel_row_half_width(kernel, y);
         sums_note_reads(1u);
         let at = kernel.center + vec2f(place.x * half + kernel.shear * y, y);
-        sum += half * vec2f(map_lit_bilinear(plane, at / map_light_view.map_size), 1.0);
+        sum += half * vec2f(map_lit_bilinear(plane, compared_place_in_map(compared, at) / map_light_view.map_size), 1.0);
         continuing {
             i++;
             break if i >= count;
@@ -512,7 +521,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     }
     let center_uv = compared.plane.uv + space_uv_step_at(map_light_view, compared.plane.uv, uniform_soft.light_mean * blockers.x);
     let center = center_uv * map_light_view.map_size;
-    return above * kernel_lit(compared, soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u));
+    let kernel = soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u);
+    return above * kernel_lit(compared_asking_for(compared, blockers.x), kernel);
 }
 
 @compute @workgroup_size(8, 8)
@@ -1189,6 +1199,10 @@ fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
     return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
 }
 
+fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+}
+
 fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
     let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
     return abs(dot(normal_in_world, ray));
@@ -1589,12 +1603,34 @@ struct compared_Compared {
     inverse_divisor_step: vec2f,
     own_depth: f32,
     z_m: f32,
-    range: depth_range_DepthRange
+    range: depth_range_DepthRange,
+    edge_g: f32,
+    goes_on: bool
 }
 
 fn compared_compared_of(plane: space_ReceiverPlane, bare: space_ReceiverPlane, z_m: f32, range: depth_range_DepthRange) -> compared_Compared {
     let warp_per_uv = vec2f(dot(map_light_view.warp, map_light_view.plane_from_uv.xy), dot(map_light_view.warp, map_light_view.plane_from_uv.zw));
-    return compared_Compared(plane, plane.uv * map_light_view.map_size, bare.depth, bare.depth_per_uv / map_light_view.map_size, plane.depth_per_uv / map_light_view.map_size, space_inverse_divisor(map_light_view, plane.uv), -warp_per_uv / map_light_view.map_size, space_unwarped_depth(map_light_view, plane.depth, plane.uv), z_m, range);
+    return compared_Compared(plane, plane.uv * map_light_view.map_size, bare.depth, bare.depth_per_uv / map_light_view.map_size, plane.depth_per_uv / map_light_view.map_size, space_inverse_divisor(map_light_view, plane.uv), -warp_per_uv / map_light_view.map_size, space_unwarped_depth(map_light_view, plane.depth, plane.uv), z_m, range, space_g_beyond_window(map_light_view, z_m), false);
+}
+
+override compared_EDGE_GOES_ON: bool = true;
+
+fn compared_asking_for(compared: compared_Compared, g: f32) -> compared_Compared {
+    var asking = compared;
+    asking.goes_on = compared_EDGE_GOES_ON && g > compared.edge_g;
+    return asking;
+}
+
+fn compared_place_in_map(compared: compared_Compared, place: vec2f) -> vec2f {
+    return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), compared.goes_on);
+}
+
+fn compared_piece_in_map(compared: compared_Compared, piece: sums_Piece) -> sums_Piece {
+    if !compared.goes_on {
+        return piece;
+    }
+    let size = map_light_view.map_size;
+    return sums_Piece(clamp(piece.low, vec2f(0.0), size - 1.0), clamp(piece.high, vec2f(1.0), size));
 }
 
 fn compared_inverse_divisor_at(compared: compared_Compared, place: vec2f) -> f32 {

@@ -472,6 +472,11 @@ impl ViewFit {
         }
     }
 
+    /// The same from a depth on.
+    pub(crate) fn beginning_at(self, near_m: f32) -> Self {
+        Self { near_m: self.near_m.max(near_m), ..self }
+    }
+
     /// The same, with less to look at in every window: worth its time where many are tried.
     pub(crate) fn for_many_windows(self) -> Self {
         Self { casters: convex_hull(self.casters), ..self }

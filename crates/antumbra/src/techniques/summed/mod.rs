@@ -32,6 +32,11 @@
 //! the error on eleven of twelve scenes tried, by up to a fifteenth, and leaves the other's. `cssm` gains nothing by it, and
 //! `mssm` loses on `columns`.
 //!
+//! # Covers
+//! Casters nearer to the light than it is large hide its rim where they lie beyond any window of the map. What the map shows at its edge
+//! goes on there, as in `pcss`: a piece beyond the map is answered by a texel's width along the edge, where the blockers that are asked
+//! for are nearer than the map holds them (`edge_goes_on` of `essm`). A sheet 1 cm before a panel of 60 cm, `cover_0.01`: `essm` .99 and .00.
+//!
 //! # Sums that hold
 //! Table entries are integers. Differences of integers are exact however often the sums have wrapped, if the part's own
 //! sum is below 2³², so each value may have as many bits as the largest part leaves; a part that cuts through texels takes
@@ -157,6 +162,8 @@ pub(crate) struct SoftSettings {
     pub(crate) averages_depth: bool,
     /// Whether the light's part below the receiver's plane is hidden.
     pub(crate) horizon: bool,
+    /// Whether what the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.
+    pub(crate) edge_goes_on: bool,
     /// Parts up to this many texels wide are read from the map.
     pub(crate) direct_texels: f32,
     pub(crate) bleeding_reduction: f32,
@@ -190,6 +197,7 @@ impl Default for SoftSettings {
             footprint_ends: true,
             averages_depth: false,
             horizon: true,
+            edge_goes_on: true,
             // A part that is hardly a texel wide is one comparison.
             direct_texels: 1.5,
             bleeding_reduction: 0.0,
@@ -211,6 +219,7 @@ struct Specialisation {
     footprint_ends: bool,
     averages_depth: bool,
     horizon: bool,
+    edge_goes_on: bool,
 }
 
 impl Specialisation {
@@ -226,6 +235,7 @@ impl Specialisation {
             footprint_ends: settings.footprint_ends,
             averages_depth: settings.averages_depth,
             horizon: settings.horizon,
+            edge_goes_on: settings.edge_goes_on,
         }
     }
 }

@@ -163,6 +163,7 @@ impl SoftFilter {
             ("FOOTPRINT_ENDS", f64::from(u8::from(specialisation.footprint_ends))),
             ("AVERAGES_DEPTH", f64::from(u8::from(specialisation.averages_depth))),
             ("HAS_HORIZON", f64::from(u8::from(specialisation.horizon))),
+            ("EDGE_GOES_ON", f64::from(u8::from(specialisation.edge_goes_on))),
         ];
         if design.filter == Filter::Mips {
             constants.push(("IS_MIPS", 1.0));

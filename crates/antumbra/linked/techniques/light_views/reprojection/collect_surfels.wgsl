@@ -81,6 +81,7 @@ struct splat_SplatBatch {
     face_slack_m: f32,
     light_reach: vec4f,
     light_axis: vec4f,
+    light_front: vec4f,
     receivers: array<vec4f, 8>
 }
 
@@ -123,7 +124,9 @@ fn surfels_name_of(texel: vec2u, is_flat: bool) -> u32 {
 
 fn surfels_depth_at(texel: vec2u) -> f32 {
     let size = textureDimensions(central_central_depth);
-    return select(0.0, textureLoad(central_central_depth, min(texel, size - 1u), surfels_piece.slice, 0), all(texel < size));
+    let depth = textureLoad(central_central_depth, min(texel, size - 1u), surfels_piece.slice, 0);
+    let is_before_light = dot(splat_batch.light_front, vec4f(vec2f(texel) + 0.5, depth, 1.0)) > 0.0;
+    return select(0.0, depth, all(texel < size) && is_before_light);
 }
 
 fn surfels_gradient_at(texel: vec2u, depth: f32) -> vec2f {

@@ -181,6 +181,7 @@ struct splat_SplatBatch {
     face_slack_m: f32,
     light_reach: vec4f,
     light_axis: vec4f,
+    light_front: vec4f,
     receivers: array<vec4f, 8>
 }
 
@@ -204,9 +205,9 @@ override splat_TRIES_FACES: bool = false;
 
 override splat_HAS_REACH: bool = false;
 
-const splat_MOST_TEXELS = 4.0;
+const splat_MOST_TEXELS = 16.0;
 
-const splat_MOST_COVERED = 81u;
+const splat_MOST_COVERED = 1089u;
 
 @group(2) @binding(0)
 var<uniform> splat_batch: splat_SplatBatch;

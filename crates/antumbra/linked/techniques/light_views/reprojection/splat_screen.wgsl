@@ -140,6 +140,7 @@ struct splat_SplatBatch {
     face_slack_m: f32,
     light_reach: vec4f,
     light_axis: vec4f,
+    light_front: vec4f,
     receivers: array<vec4f, 8>
 }
 

@@ -4,6 +4,7 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint};
 use glam::{DMat4, DVec4, Mat4, Vec3};
 
+use super::behind::Behind;
 use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{ReprojectionProjection, Settings};
 use crate::light_map::between::Between;
@@ -42,6 +43,8 @@ pub(super) struct Views {
     pub(super) central_size: u32,
     /// Texels along a side of a target.
     pub(super) view_size: u32,
+    /// Where the central views are from, if that is behind the light.
+    pub(super) behind: Option<Behind>,
 }
 
 /// From the central images to the targets'.
@@ -70,21 +73,26 @@ impl Views {
         receivers: &[Vec3],
         settings: &Settings,
     ) -> Self {
-        let plane = central_plane(light, casters, receivers);
+        let from_middle = central_plane(light, casters, receivers);
         let (central_size, view_size) = (settings.central_size, settings.view_size);
-        if !needs_cube(light, &plane, settings.projection) {
+        let behind = settings.may_be_from_behind().then(|| Behind::of(light, &from_middle)).flatten();
+        let from_behind = behind.and_then(|behind| behind.plane(light, casters, receivers));
+        if from_behind.is_some() || !needs_cube(light, &from_middle, settings.projection) {
             let targets = views_from(light, points, casters, receivers, &[]);
-            return Self { central: vec![plane], targets, central_size, view_size };
+            let behind = behind.filter(|_| from_behind.is_some());
+            let central = vec![from_behind.unwrap_or(from_middle)];
+            return Self { central, targets, central_size, view_size, behind };
         }
         let (central_size, view_size) = ((central_size / 2).max(1), (view_size / 2).max(1));
         // What is farther than all that receives shades nothing.
         let of_receivers = Aabb::of(receivers.iter().copied());
         let of_casters = || Between::new(light, casters, receivers).all().fold(Aabb::EMPTY, Aabb::union);
         let all = if of_receivers.is_empty() { of_casters() } else { of_receivers };
-        let looks_back = light.shines_all_around() && is_behind(&plane.frame, receivers, all);
-        let (central, targets) =
-            central_and_target_cubes(plane.frame, points, all, looks_back, (central_size, view_size));
-        Self { central, targets, central_size, view_size }
+        let looks_back = light.shines_all_around() && is_behind(&from_middle.frame, receivers, all);
+        let behind = behind.filter(|_| !light.shines_all_around());
+        let middle = behind.map_or(from_middle.frame, |behind| behind.frame);
+        let (central, targets) = central_and_target_cubes(middle, points, all, looks_back, (central_size, view_size));
+        Self { central, targets, central_size, view_size, behind }
     }
 
     /// Maps of each light point.
@@ -96,6 +104,13 @@ impl Views {
     pub(super) fn in_central(&self, view: usize, bounds: Aabb) -> [[f32; 4]; 8] {
         let texels_from_world = texels_from_world(&self.central[view], self.central_size);
         bounds.corners().map(|corner| (texels_from_world * corner.as_dvec3().extend(1.0)).as_vec4().to_array())
+    }
+
+    /// What is before the light in the image of a central view: see [`SplatBatch`].
+    pub(super) fn light_front_in_central(&self, view: usize) -> [f32; 4] {
+        let Some(behind) = self.behind else { return [0.0, 0.0, 0.0, 1.0] };
+        let texels_from_world = texels_from_world(&self.central[view], self.central_size);
+        (texels_from_world.inverse().transpose() * behind.front_in_world()).as_vec4().to_array()
     }
 
     /// The light's part of a [`SplatBatch`]: see `hides_nothing` in `surfels.wesl`.
@@ -241,7 +256,7 @@ fn cube_faces(frame: LightFrame, far_m: f32, size: u32) -> [LightView; CUBE_FACE
 /// With bias before reprojection, the central depth first moves away from the light by the automatic bias of the
 /// central map: Z grows by the factor 1 + b, or by b where rays are parallel, so that depth changes affinely.
 fn target_from_central(views: &Views, bias_before: Option<f32>) -> Vec<Mat4> {
-    let Views { central, targets, central_size, view_size } = views;
+    let Views { central, targets, central_size, view_size, .. } = views;
     let mut matrices = Vec::with_capacity(central.len() * targets.len());
     for view in central {
         let mut world_from_texels = texels_from_world(view, *central_size).inverse();

@@ -12,7 +12,7 @@ pub(crate) struct Targets {
 }
 
 /// As in `splat.wesl`.
-const MOST_TEXELS: f32 = 4.0;
+const MOST_TEXELS: f32 = 16.0;
 
 /// As in `splat_surfels.wesl`.
 const FLAT: f32 = 0.0625;

@@ -6,6 +6,7 @@ use antumbra_light::Aabb;
 use glam::Mat4;
 use glam::Vec2;
 
+use super::behind::open_about_light;
 use super::central::Views;
 use super::resolve::{PreparedResolve, Resolve};
 use super::scatter::{PreparedScatter, Scatter, Targets};
@@ -51,6 +52,7 @@ pub(crate) struct Engine {
 pub struct PreparedEngine {
     inputs: PreparedInputs,
     needs_central_map: bool,
+    is_from_behind: bool,
     faces: u32,
     targets: Targets,
     scatter: PreparedScatter,
@@ -139,10 +141,13 @@ impl Engine {
         let layers_size = LayersSize {
             size: views.central_size,
             views: clip_from_world.len() as u32,
-            layers: settings.source.layers(),
+            // What is behind the light takes one.
+            layers: settings.source.layers() + u32::from(views.behind.is_some()),
             with_gradients: self.with_gradients,
         };
-        self.layers.prepare(stage, &clip_from_world, meshes, layers_size);
+        let is_from_behind = views.behind.is_some();
+        let drawn = if is_from_behind { &open_about_light(light, meshes) } else { *meshes };
+        self.layers.prepare(stage, &clip_from_world, drawn, layers_size);
 
         let (targets, in_batch) = self.make_targets(stage, &views, points.len() as u32)?;
         let comparison = Comparison {
@@ -180,7 +185,7 @@ impl Engine {
             self.widths = views.central.iter().map(|v| v.depth_per_texel(views.central_size, 1.0)).collect();
             self.matrices_on_cpu = matrices.target_from_central;
         }
-        Ok(PreparedEngine { inputs, needs_central_map, faces, targets, scatter, resolve })
+        Ok(PreparedEngine { inputs, needs_central_map, is_from_behind, faces, targets, scatter, resolve })
     }
 
     /// The integer maps of as many of `point_count` light points as the budget holds, and how many that are.
@@ -209,7 +214,8 @@ impl Engine {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedEngine) {
         let PreparedCasters::Draws(meshes) = &frame.casters else { return };
         if prepared.needs_central_map {
-            self.layers.record(recorder, "central depth map", 0..self.layers.size().views, meshes);
+            let drawn = if prepared.is_from_behind { &open_about_light(frame.light, meshes) } else { *meshes };
+            self.layers.record(recorder, "central depth map", 0..self.layers.size().views, drawn);
         }
         for (index, batch) in self.sample_views.batches().iter().enumerate() {
             let targets = &prepared.targets;

@@ -17,6 +17,7 @@ gpu_structs! {
         face_slack_m: f32,
         light_reach: [f32; 4],
         light_axis: [f32; 4],
+        light_front: [f32; 4],
         receivers: [[f32; 4]; 8],
     }
 

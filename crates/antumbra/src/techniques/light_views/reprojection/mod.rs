@@ -41,6 +41,7 @@ use crate::techniques::light_views::PointChoice;
 use crate::techniques::{Coverage, Technique};
 use glam::Vec2;
 
+mod behind;
 mod central;
 #[cfg(test)]
 mod cpu;

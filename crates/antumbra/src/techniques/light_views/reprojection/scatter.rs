@@ -423,6 +423,7 @@ fn splat_batch(
         width,
         face_half_size,
         face_slack_m: (1.0 + 2.0 * face_half_size) * light_radius_m,
+        light_front: views.light_front_in_central(view),
         receivers: receivers.map_or_else(Default::default, |bounds| views.in_central(view, bounds)),
         ..views.light_in_central(view, points)
     }

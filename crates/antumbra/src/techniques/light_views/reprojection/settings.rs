@@ -93,6 +93,15 @@ pub(crate) struct Settings {
     pub(crate) bias_scale: f32,
 }
 
+impl Settings {
+    /// Whether the central view may be from behind the light: points would leave gaps where views see them from nearer, and fragments
+    /// that are scattered while they are rasterised are not told from those behind the light.
+    pub(crate) fn may_be_from_behind(&self) -> bool {
+        matches!((self.splat, self.source), (Splat::Surfel(_), Source::LayersByCompute(_)))
+            && self.projection == ReprojectionProjection::Auto
+    }
+}
+
 impl Source {
     /// Whether the central views are drawn first, and scattered then.
     pub(crate) fn needs_central_map(self) -> bool {

@@ -51,6 +51,12 @@
 //! the scatter takes .34 of the time, on `tree` .77. Errors are as before to .0002, but on `lantern-wall` (.0087 after .0089) and `hall`
 //! (.0195 after .0220, 160 × 90), whose walls no longer darken themselves.
 //!
+//! **What is near to the light.** Where casters may be nearer to the light than its view holds them, the central view is from behind
+//! the light (`reprojection/behind.rs`), whose layers behind the light are left out and take one layer more. What a point sees from
+//! nearer than the central view does has larger surfels, up to 33 texels a side; what is seen at a grazing angle keeps its slope. Under the
+//! panel of `cover_0.01`, of 60 cm with a sheet 1 cm before it, rmse .90 became .02; on `sconce_near`, where a bulb grazes a wall, .22
+//! became .02; on `overlap`, `tree`, `window` and `columns` steep surfels change it by less than .0003.
+//!
 //! # Limits
 //! Each fragment and view costs about twice a plain one's time. Silhouettes are those of the central map, and
 //! several layers' silhouettes together are a little wider than one's. A solid's side that only some light points see

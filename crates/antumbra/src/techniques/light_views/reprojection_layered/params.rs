@@ -51,8 +51,8 @@ params! {
             more "surfel stores exact depths without gaps; near_centre needs a central_scale of 4; point widens \
                   occluders.";
         /// Steepest surface that a surfel follows, depth per width.
-        steepest: f32 = 16.0, in 0.0..=1000.0, scale Log,
-            more "Fewer gaps on steep sides.";
+        steepest: f32 = 1000.0, in 0.0..=1000.0, scale Log,
+            more "Fewer gaps on steep sides; grazing surfaces lie where they are and do not darken themselves.";
         /// Comparison of the integer maps with receivers.
         filter: ReprojectionFilter = ReprojectionFilter::Manual,
             more "manual and copy compare each texel with the receiver's plane; draw compares one depth, as the paper \

@@ -116,6 +116,7 @@ impl SoftParams for EssmParams {
             footprint_ends: self.footprint_ends,
             averages_depth: self.blocker_mean == EssmBlockerMean::Depth,
             horizon: self.horizon,
+            edge_goes_on: self.edge_goes_on,
             direct_texels: self.direct_texels,
             is_sparse: self.sub,
             ..SoftSettings::default()

@@ -111,6 +111,9 @@ params! {
         /// Whether the light's part below the receiver's own plane counts as hidden.
         horizon: bool = true,
             more "false is the paper's: receivers that the light grazes are as bright as those that face it.";
+        /// Whether what the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.
+        edge_goes_on: bool = true,
+            more "false is the paper's: light passes beside the map where a cover is nearer to the light than the light is large.";
         /// How a kernel's rows are cut.
         cuts: EssmCuts = EssmCuts::Columns,
             more "squares is the paper's: as many times more parts as there are rows in a kernel's height for each part.";
@@ -163,6 +166,7 @@ params! {
         search: EssmSearch::Window, ours "Blockers are searched at four scales, and count where they hide a point of the light.";
         blocker_mean: EssmBlockerMean::Depth, ours "The mean is of g = 1 / z − 1 / z_receiver, which a penumbra's width is proportional to.";
         horizon: false, ours "The light's part below the receiver's plane is hidden.";
+        edge_goes_on: false, ours "What the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.";
         footprint_ends: false, ours "The pixel's footprint is narrower where a neighbour shows another surface.";
         cuts: EssmCuts::Squares, ours "A row has n columns, where the paper's rectangles have n × n parts, and an ellipse n rows, where the paper's become more.";
         direct_texels: 0.0, ours "Kernels of parts up to 3 texels wide are read from the map.";

@@ -1,0 +1,85 @@
+//! Central views from behind the light, which hold what is nearer to the light than the light is large.
+//!
+//! From the light's middle, what is at depth z hides light of its rim at tangents up to r / z: a cover right before a light lies beyond
+//! every window, or is seen edge-on. From a place d behind the light tangents are no larger than r / d: along a segment from a receiver to
+//! the light, offsets change linearly with depth, and their tangents from there lie between those of the segment's two ends. A window
+//! that holds receivers and light holds all segments between them.
+//!
+//! What is behind the light is seen, too, and left out where surfels are collected.
+
+use antumbra_light::{Aabb, Light, LightFrame};
+use glam::{DVec4, Vec3};
+
+use crate::contract::MeshCaster;
+use crate::light_map::between::Between;
+use crate::light_map::light_spread::LightSpread;
+use crate::light_map::light_view::{Followed, LightView, MIDDLE_TANGENT, ViewFit};
+
+/// The light is seen at this tangent: by the middle face of a cube. From nearer behind, what is before its rim would be seen at a grazing
+/// angle; from farther, in coarser texels.
+const LIGHT_TANGENT: f32 = 1.0;
+
+/// A place behind a light, and where the light begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Behind {
+    /// The light's axes about the place.
+    pub(super) frame: LightFrame,
+    /// From the place to the light's back, metres.
+    depth_m: f32,
+    /// From there to what counts as before the light.
+    gap_m: f32,
+}
+
+impl Behind {
+    /// Of a light, where `from_middle` does not hold what is near to it.
+    pub(super) fn of(light: &Light, from_middle: &LightView) -> Option<Self> {
+        if from_middle.held_from_m == 0.0 {
+            return None;
+        }
+        let LightSpread { extent, extent_axis, .. } = LightSpread::of(light);
+        let tangent = light.reach_tangent().map_or(LIGHT_TANGENT, |reach| reach.min(LIGHT_TANGENT));
+        let depth_m = extent.max_element() / tangent;
+        let center = from_middle.frame.center - (depth_m + extent_axis) * from_middle.frame.axis;
+        let frame = LightFrame { center, ..from_middle.frame };
+        // What lies in the light's own plane, as a ceiling about a panel does, is behind it.
+        Some(Self { frame, depth_m, gap_m: 0.5 * from_middle.near_m })
+    }
+
+    /// The view in one window, where one holds all receivers.
+    pub(super) fn plane(&self, light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> Option<LightView> {
+        if receivers.is_empty() {
+            return None;
+        }
+        let LightSpread { extent, extent_axis, .. } = LightSpread::of(light);
+        let LightFrame { center, right, up, axis } = self.frame;
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+            let depth = self.depth_m + extent_axis * (1.0 + sign(4));
+            center + sign(1) * extent.x * right + sign(2) * extent.y * up + depth * axis
+        };
+        let ends: Vec<Vec3> = receivers.iter().copied().chain((0..8).map(corner)).collect();
+        let between = Between::new(light, casters, receivers);
+        let fit = ViewFit::perspective(self.frame, Followed::Middle, 0.0, light.reach_tangent(), &between, &ends)
+            .beginning_at(self.depth_m)
+            .for_many_windows();
+        let view = fit.view(LightView::best_roll(|window| fit.view(window)));
+        (view.window.half_size.max_element() <= MIDDLE_TANGENT).then_some(view)
+    }
+
+    /// The plane from which on things are before the light, on world-space places.
+    pub(super) fn front_in_world(&self) -> DVec4 {
+        let LightFrame { center, axis, .. } = self.frame;
+        let (center, axis) = (center.as_dvec3(), axis.as_dvec3());
+        axis.extend(-axis.dot(center) - f64::from(self.depth_m + self.gap_m))
+    }
+}
+
+/// Casters as they are drawn from behind a light. Of a solid that may hold the light the nearest faces are behind it, and the back ones
+/// before it, which layers of solids leave out: it is drawn as open.
+pub(super) fn open_about_light<'a>(light: &Light, casters: &'a [MeshCaster<'a>]) -> Vec<MeshCaster<'a>> {
+    let radius = Vec3::splat(light.bounding_radius());
+    let of_light = Aabb { min: light.center - radius, max: light.center + radius };
+    let may_hold_light = |caster: &MeshCaster<'_>| of_light.intersection(caster.bounds).is_some();
+    let open = |caster: &MeshCaster<'a>| MeshCaster { closed: caster.closed && !may_hold_light(caster), ..*caster };
+    casters.iter().map(open).collect()
+}

@@ -1,0 +1,168 @@
+//! `cargo xtask cases`: the error of every technique on each small input that a report led to, measured, into `bench/cases.md`.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::machine;
+use crate::shell::{self, cargo};
+
+/// The variable that names the folder of test scenes, beside which the cases are.
+const SCENES: &str = "ANTUMBRA_SCENES";
+
+/// Setup of cases that have none of their own.
+const SHARED_SETUP: &str = "card.toml";
+
+/// Cases side by side in one table.
+const ACROSS: usize = 8;
+
+/// Errors above both are set in bold: so much, and so many times that of `hard`.
+const MUCH: f64 = 0.02;
+const TIMES_HARD: f64 = 1.2;
+
+const HEAD: &str = "\
+# Cases
+
+Root mean square errors on small inputs that reports led to, by `cargo xtask cases`: covers, housings and shells about lamps, closed
+rooms, grazing light, cameras inside solids, and materials of files. The inputs are in the folder `cases` beside the test scenes that
+`ANTUMBRA_SCENES` names, with a description of each. Images are 240 × 135, the truth is of 144 rays a pixel, techniques have their
+default settings. In **bold**: more than .02, and more than 1.2 times the error of `hard`.
+
+";
+
+/// A case and the techniques' errors.
+#[derive(Clone, Debug, PartialEq)]
+struct Case {
+    name: String,
+    /// By technique; none where it was skipped or no pixel is judged.
+    errors: Vec<(String, Option<f64>)>,
+}
+
+impl Case {
+    fn error_of(&self, technique: &str) -> Option<f64> {
+        self.errors.iter().find(|(name, _)| name == technique).and_then(|(_, error)| *error)
+    }
+}
+
+/// Compares all techniques on every case, or on those whose names begin with one of `names`; only the whole is written.
+///
+/// # Errors
+/// The first step that failed.
+pub fn run(names: &[String]) -> Result<(), String> {
+    machine::set_up()?;
+    let folder = folder()?;
+    shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
+    let binary = shell::built_binary()?;
+    let all = scenes_in(&folder)?;
+    let asked = all.iter().filter(|scene| names.is_empty() || names.iter().any(|name| stem(scene).starts_with(name)));
+    let cases: Vec<Case> = asked.map(|scene| measure(&binary, scene)).collect::<Result<_, _>>()?;
+    let tables = tables(&cases)?;
+    if !names.is_empty() {
+        println!("{tables}");
+        return Ok(());
+    }
+    let page = crate::root().join("bench/cases.md");
+    std::fs::write(&page, format!("{HEAD}{tables}")).map_err(|error| format!("{}: {error}", page.display()))
+}
+
+/// The folder of cases: beside that of scenes.
+fn folder() -> Result<PathBuf, String> {
+    let root = crate::root();
+    let candidates = [
+        std::env::var_os(SCENES).map(PathBuf::from),
+        Some(root.join("../shared/scenes")),
+        Some(root.join("shared/scenes")),
+    ];
+    let cases = candidates.into_iter().flatten().filter_map(|scenes| Some(scenes.parent()?.join("cases")));
+    cases
+        .into_iter()
+        .find(|folder| folder.is_dir())
+        .ok_or_else(|| format!("set {SCENES} to the folder of test scenes, beside which there is one named cases"))
+}
+
+/// The scenes in a folder, by name.
+fn scenes_in(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut scenes: Vec<PathBuf> = paths.filter(|path| path.extension().is_some_and(|end| end == "glb")).collect();
+    scenes.sort();
+    if scenes.is_empty() { Err(format!("{}: no .glb files", folder.display())) } else { Ok(scenes) }
+}
+
+fn stem(scene: &Path) -> String {
+    scene.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The errors of all techniques on a scene.
+fn measure(binary: &Path, scene: &Path) -> Result<Case, String> {
+    let name = stem(scene);
+    let own = scene.with_extension("toml");
+    let setup = if own.is_file() { own } else { scene.with_file_name(SHARED_SETUP) };
+    let mut compare = Command::new(binary);
+    compare.arg("compare").arg(scene).arg("--setup").arg(setup);
+    compare.args(["--size", "240x135", "--samples", "144", "--frames", "1", "-o"]);
+    compare.arg(crate::root().join("out/cases").join(&name));
+    Ok(Case { errors: errors_in(&shell::output(&mut compare)?), name })
+}
+
+/// The first two columns of the table that `antumbra compare` prints.
+fn errors_in(printed: &str) -> Vec<(String, Option<f64>)> {
+    let after_heading = printed.lines().skip_while(|line| !line.starts_with("TECHNIQUE ")).skip(1);
+    let rows = after_heading.take_while(|line| !line.ends_with("index.html"));
+    rows.filter_map(|row| {
+        let mut cells = row.split_whitespace();
+        Some((cells.next()?.to_owned(), cells.next()?.parse().ok()))
+    })
+    .collect()
+}
+
+/// Techniques by cases, a few cases at a time.
+fn tables(cases: &[Case]) -> Result<String, String> {
+    let techniques: Vec<&String> =
+        cases.first().map(|case| case.errors.iter().map(|(name, _)| name).collect()).unwrap_or_default();
+    if techniques.is_empty() {
+        return Err("no errors were measured".into());
+    }
+    let table = |cases: &[Case]| {
+        let mut text = String::from("| technique |");
+        cases.iter().for_each(|case| write!(text, " `{}` |", case.name).expect("text"));
+        text.push_str(&format!("\n|---|{}\n", "---:|".repeat(cases.len())));
+        for technique in &techniques {
+            let cells = cases.iter().map(|case| cell(case.error_of(technique), case.error_of("hard")));
+            text.push_str(&format!("| `{technique}` |{}\n", cells.collect::<String>()));
+        }
+        text
+    };
+    Ok(cases.chunks(ACROSS).map(table).collect::<Vec<_>>().join("\n"))
+}
+
+fn cell(error: Option<f64>, of_hard: Option<f64>) -> String {
+    let Some(error) = error else { return " – |".into() };
+    let digits = format!("{error:.3}");
+    let shown = digits.strip_prefix('0').unwrap_or(&digits);
+    let is_worse = error > MUCH && of_hard.is_none_or(|hard| error > TIMES_HARD * hard);
+    if is_worse { format!(" **{shown}** |") } else { format!(" {shown} |") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PRINTED: &str = "\ncover: 12 triangles\n\nTECHNIQUE  RMSE    PENUMBRA RMSE\nhard       0.0100  –\n\
+                           essm       0.9800  –\nray_traced skipped: no rays\n/tmp/out/index.html\n";
+
+    #[test]
+    fn errors_are_those_of_the_printed_table() {
+        let expected = [("hard", Some(0.01)), ("essm", Some(0.98)), ("ray_traced", None)];
+        assert_eq!(errors_in(PRINTED), expected.map(|(name, error)| (name.to_owned(), error)));
+    }
+
+    #[test]
+    fn what_is_worse_than_hard_shadows_is_set_in_bold() {
+        let case = Case { name: "cover".into(), errors: errors_in(PRINTED) };
+        let expected =
+            "| technique | `cover` |\n|---|---:|\n| `hard` | .010 |\n| `essm` | **.980** |\n| `ray_traced` | – |\n";
+        assert_eq!(tables(&[case]), Ok(expected.to_owned()));
+        assert!(tables(&[]).is_err());
+    }
+}
