@@ -53,11 +53,11 @@ fn a_cover_before_a_panel_hides_all_of_it() {
                 ("hard", 0.0),
                 ("pcss", 0.001),
                 ("smrt", 0.001),
-                ("multi_layer", 0.01),
+                ("multi_layer", 0.02),
                 ("essm", 0.01),
                 ("reprojection_layered", 0.05),
                 ("sample_based", 0.0),
-                ("multi_view", 0.0),
+                ("multi_view", 0.001),
             ],
         );
     }
