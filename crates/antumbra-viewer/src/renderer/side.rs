@@ -50,6 +50,8 @@ pub struct SideWork {
     refusals: Refusals,
     /// What the last frame lacked room for.
     pub overflow: Option<String>,
+    /// Texels along a side of each map whose size was chosen for the last frame.
+    auto_map_sizes: Vec<u32>,
     /// Reads the chosen light's mask.
     pub mask_reader: TextureReader,
     list_reader: TextureReader,
@@ -91,6 +93,7 @@ impl SideWork {
             failed: None,
             refusals: Refusals::default(),
             overflow: None,
+            auto_map_sizes: Vec::new(),
             mask_reader: TextureReader::default(),
             list_reader: TextureReader::default(),
             list_totals: None,
@@ -133,6 +136,7 @@ impl SideWork {
             overflow: self.overflow.as_deref(),
             times: &self.times,
             memory_bytes: self.memory_bytes(),
+            auto_map_sizes: &self.auto_map_sizes,
             rmse,
         }
     }
@@ -448,6 +452,7 @@ impl SideWork {
         for work in works {
             work.record(&mut recorder);
         }
+        self.auto_map_sizes = self.shadows.iter().flat_map(AnyShadow::auto_map_sizes).collect();
         let processor_ms = began.elapsed().as_secs_f64() * 1e3;
         let has_made = gpu.objects_made() != made_before;
         let frame = FrameTimes { passes: Vec::new(), processor_ms, has_made };

@@ -147,12 +147,12 @@ fn lights_of_every_shape_and_another_size_are_drawn() {
 
 /// What lies at either end of a parameter; a list is long, and then empty.
 fn ends(spec: &ParamSpec) -> Vec<String> {
-    match (spec.default, spec.range) {
-        (ParamValue::U32(_), Some((low, high))) => vec![(low as u32).to_string(), (high as u32).to_string()],
-        (ParamValue::F32(_), Some((low, high))) => vec![(low as f32).to_string(), (high as f32).to_string()],
-        (ParamValue::Bool(_), _) => vec!["true".into(), "false".into()],
-        (ParamValue::Choice(_), _) => spec.choices.iter().map(|choice| (*choice).to_owned()).collect(),
-        _ => vec![spec.default.to_string()],
+    let numbers = spec.range.map(|(low, high)| [(low as f32).to_string(), (high as f32).to_string()]);
+    let names = spec.choices.iter().map(|choice| (*choice).to_owned());
+    match spec.default {
+        ParamValue::Bool(_) => vec!["true".into(), "false".into()],
+        ParamValue::List(_) => vec![spec.default.to_string()],
+        _ => numbers.into_iter().flatten().chain(names).collect(),
     }
 }
 
