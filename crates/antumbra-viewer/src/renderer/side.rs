@@ -14,6 +14,7 @@ use antumbra_render::shading::{PictureTargets, Shading, VisibilitySource};
 use glam::UVec2;
 use web_time::Instant;
 
+use super::antialiasing::{StillSide, mask_format};
 use super::light_map::{MapChoices, ShownMap, of_point};
 use super::lists::level_of;
 use super::refusals::Refusals;
@@ -149,6 +150,12 @@ impl SideWork {
     /// The picture, linear display values.
     pub fn picture(&self) -> &wgpu::Texture {
         &self.targets.picture
+    }
+
+    /// Every light's mask and the picture, where a technique has drawn them.
+    pub(super) fn still(&self) -> Option<StillSide<'_>> {
+        let are_drawn = !self.shadows.is_empty() && !self.masks.is_empty();
+        are_drawn.then_some(StillSide { masks: &self.masks, picture: &self.targets.picture })
     }
 
     /// A light's mask, once one was drawn.
@@ -416,11 +423,7 @@ impl SideWork {
         let casters = frame.scene.casters();
         let casters = Casters::Meshes(&casters);
         let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
-        // Of three channels all in one texel, so that shading reads them at once.
-        let format = match channels {
-            MaskChannels::One => Mask::FORMAT,
-            MaskChannels::Three => wgpu::TextureFormat::Rgba16Float,
-        };
+        let format = mask_format(channels);
         self.masks.retain(|mask| mask.channels() == channels && mask.size_px() == frame.images.size_px);
         self.masks.truncate(frame.lights.len());
         while self.masks.len() < frame.lights.len() {
