@@ -12,7 +12,7 @@ use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
 use crate::progress::Progress;
-use crate::technique_run::{TechniqueChoice, Timing, Timings, create, parameters_of};
+use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing, Timings, create, parameters_of};
 use crate::view::View;
 
 /// A scene to measure.
@@ -67,6 +67,8 @@ pub enum BenchOutcome {
         timings: Timings,
         /// GPU memory that the technique holds, bytes.
         memory_bytes: u64,
+        /// Texels along a side of each map whose size is `auto`.
+        auto_map_sizes: Vec<u32>,
     },
     /// The device lacks something, or the scene does not suit.
     Skipped(String),
@@ -110,8 +112,8 @@ pub fn bench(
                 };
                 let (parameters, outcome) = match measured {
                     Ok(None) => (Map::new(), BenchOutcome::Skipped("no time was left for it".into())),
-                    Ok(Some((parameters, run))) => {
-                        (parameters, BenchOutcome::Ran { timings: run.timings, memory_bytes: run.memory_bytes })
+                    Ok(Some((parameters, TechniqueRun { timings, memory_bytes, auto_map_sizes, .. }))) => {
+                        (parameters, BenchOutcome::Ran { timings, memory_bytes, auto_map_sizes })
                     }
                     Err(LabError::Technique(error @ antumbra::Error::Unsupported { .. })) => {
                         (Map::new(), BenchOutcome::Skipped(error.to_string()))

@@ -348,6 +348,7 @@ fn measure(
         total_ms: (run.timings.clock != Clock::SubmitToDone).then_some(run.timings.total_ms),
         count,
         memory_bytes: Some(run.memory_bytes),
+        auto_map_sizes: run.auto_map_sizes,
         motions: Vec::new(),
     })
 }

@@ -34,10 +34,11 @@ pub fn preset_toml(choice: &TechniqueChoice) -> String {
     let mut text = format!("technique = \"{}\"\n\n[parameters]\n", choice.name());
     for (key, value) in &choice.settings {
         let spec = choice.kind.param_specs().iter().find(|spec| spec.key == key);
+        let is_name = spec.is_none_or(|spec| spec.choices.iter().any(|name| name.eq_ignore_ascii_case(value)));
         let value = match spec.map(|spec| spec.default) {
-            Some(ParamValue::Choice(_)) | None => Value::String(value.clone()).to_string(),
+            _ if is_name => Value::String(value.clone()).to_string(),
             Some(ParamValue::List(_)) => format!("[{value}]"),
-            Some(_) => value.clone(),
+            _ => value.clone(),
         };
         text += &format!("{key} = {value}\n");
     }
@@ -96,6 +97,8 @@ mod tests {
         let text = preset_toml(&choice);
         assert!(text.starts_with("technique = \"pcss:fast\"\n") && text.contains("means = \"ranges\""), "{text}");
         assert_eq!(parse(&text), Ok(choice));
+        let auto = TechniqueChoice::with_settings(TechniqueKind::Smrt, vec![("map_size".into(), "auto".into())]);
+        assert_eq!(parse(&preset_toml(&auto)), Ok(auto));
         let lists = "technique = \"lvsm\"\n[parameters]\nsplit_depths = [1.5, 4]\nmsaa = 4\n";
         let choice = parse(lists).unwrap();
         assert_eq!(choice.settings[1], ("split_depths".to_owned(), "1.5,4".to_owned()));

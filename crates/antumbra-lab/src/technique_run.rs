@@ -168,6 +168,8 @@ pub struct Drawn {
     pub visibility: Visibility,
     /// GPU memory that the technique holds, bytes.
     pub memory_bytes: u64,
+    /// Texels along a side of each map whose size is `auto`; none where sizes are given.
+    pub auto_map_sizes: Vec<u32>,
 }
 
 /// What a technique gave.
@@ -179,6 +181,8 @@ pub struct TechniqueRun {
     pub timings: Timings,
     /// GPU memory that the technique holds, bytes.
     pub memory_bytes: u64,
+    /// Texels along a side of each map whose size is `auto`; none where sizes are given.
+    pub auto_map_sizes: Vec<u32>,
 }
 
 /// Makes a technique and sets its parameters.
@@ -228,7 +232,11 @@ pub fn draw(
     let mask = mask_for(lab, technique, &casters, receivers.size_px);
     let frame = Frame { light, casters, receivers, mask: &mask };
     draw_frames(lab, technique, &frame, None, &mut Counted { frames: frames.max(1), drawn: 0 })?;
-    Ok(Drawn { visibility: read_mask(lab, &mask)?, memory_bytes: technique.memory_bytes() })
+    Ok(Drawn {
+        visibility: read_mask(lab, &mask)?,
+        memory_bytes: technique.memory_bytes(),
+        auto_map_sizes: technique.auto_map_sizes(),
+    })
 }
 
 /// Runs a technique: its programs are compiled, frames are drawn until nothing is new any more ([`Timing`] says how many at
@@ -260,7 +268,12 @@ pub fn run(
     let warm_up = watch.warm_up();
     let timings = medians(&frames[warm_up as usize..], warm_up, lab.adapter.is_software());
     let visibility = visibility.map_or_else(|| read_mask(lab, &mask), Ok)?;
-    Ok(TechniqueRun { visibility, timings, memory_bytes: technique.memory_bytes() })
+    Ok(TechniqueRun {
+        visibility,
+        timings,
+        memory_bytes: technique.memory_bytes(),
+        auto_map_sizes: technique.auto_map_sizes(),
+    })
 }
 
 /// Observer of frames as they are drawn, which decides when there are enough.

@@ -77,7 +77,7 @@ fn turned(kind: TechniqueKind) -> Vec<(&'static str, String)> {
     let side = quick(kind);
     let other = |spec: &'static ParamSpec| match side.usual(spec) {
         ParamValue::Bool(is_on) => vec![(spec.key, (!is_on).to_string())],
-        ParamValue::Choice(usual) if spec.key != "show" => {
+        ParamValue::Choice(usual) if spec.key != "show" && spec.range.is_none() => {
             // Browsers have maps of one sample and of four.
             let is_everywhere = |choice: &&&str| spec.key != "msaa" || matches!(**choice, "1" | "4");
             let others = spec.choices.iter().filter(|choice| **choice != usual).filter(is_everywhere);

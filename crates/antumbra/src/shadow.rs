@@ -239,6 +239,15 @@ impl<T: Technique> Shadow<T> {
             + self.ends.memory_bytes()
     }
 
+    /// Texels along a side of each map of the frame prepared last whose size is [`MapSize::Auto`](crate::contract::MapSize::Auto):
+    /// one for each part that the light is cut into. None where sizes are given, or the technique has no such map.
+    pub fn auto_map_sizes(&self) -> Vec<u32> {
+        match self.parts_in_use() {
+            Some(parted) => parted.auto_map_sizes().collect(),
+            None => self.keep.auto_texels().into_iter().collect(),
+        }
+    }
+
     /// The depth maps that the frame prepared last draws and its mask is read from, to be looked at once its commands have
     /// run: those of each part that the light is cut into, with layers behind and levels. None of techniques that keep something
     /// else than depths.

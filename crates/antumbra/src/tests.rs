@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use crate::TechniqueKind;
-use crate::contract::{ParamValue, Quality};
+use crate::contract::{MapSize, ParamValue, Quality};
 use crate::gpu::shared_constants::constant_of;
 use crate::gpu::{GpuField, GpuStruct};
 use crate::techniques::summed::Basis;
@@ -163,7 +163,7 @@ fn every_declaration_is_complete_and_holds_its_own_default() {
             match (spec.default, spec.range) {
                 (ParamValue::U32(v), Some((low, high))) => assert!((low..=high).contains(&f64::from(v))),
                 (ParamValue::F32(v), Some((low, high))) => assert!((low..=high).contains(&f64::from(v))),
-                (ParamValue::Choice(v), None) => assert!(spec.choices.contains(&v)),
+                (ParamValue::Choice(v), _) => assert!(spec.choices.contains(&v)),
                 (ParamValue::Bool(_) | ParamValue::List(_), None) => {}
                 other => panic!("{kind}.{}: {other:?}", spec.key),
             }
@@ -227,7 +227,7 @@ fn parameters_say_what_they_take() {
     assert_eq!(params.get("kernel"), Some(ParamValue::Choice("vogel")));
     params.set_value("pcf", "map_size", 2048).expect("a number in range");
     params.set_value("pcf", "Kernel", "box").expect("a choice");
-    assert_eq!((params.map_size, params.get("kernel")), (2048, Some(ParamValue::Choice("box"))));
+    assert_eq!((params.map_size, params.get("kernel")), (MapSize::Texels(2048), Some(ParamValue::Choice("box"))));
     assert!(message(params.set_value("pcf", "map_size", 7)).contains("a whole number from 16 to 8192"));
     assert!(message(params.set_value("pcf", "map_size", 64.0)).contains("a whole number from 16 to 8192"));
     assert!(message(params.set_value("pcf", "kernel_size", f32::NAN)).contains("a number from 1 to 127"));

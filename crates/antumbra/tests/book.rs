@@ -129,6 +129,12 @@ fn fewer_pixels(mut shadow: AnyShadow) -> Result<(), Box<dyn std::error::Error>>
     Ok(())
 }
 
+/// docs/integrating.md, Map size.
+fn map_size(mut shadow: AnyShadow) -> Result<(), Box<dyn std::error::Error>> {
+    shadow.set("map_size", "auto")?;
+    Ok(())
+}
+
 /// docs/advise.md, The preset.
 fn a_preset(gpu: Gpu) -> Result<(), Box<dyn std::error::Error>> {
     let mut shadow = TechniqueKind::Pcss.create(&gpu)?;

@@ -110,7 +110,7 @@ fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
         let size = format!("{}x{}", row.size[0], row.size[1]);
         let begin = vec![row.scene.clone(), size, row.technique.to_owned()];
         let rest = match &row.outcome {
-            BenchOutcome::Ran { timings, memory_bytes } => {
+            BenchOutcome::Ran { timings, memory_bytes, .. } => {
                 let passes: Vec<_> =
                     timings.passes.iter().map(|pass| format!("{} {:.3}", pass.label, pass.ms)).collect();
                 let passes = match timings.clock {

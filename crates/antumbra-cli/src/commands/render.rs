@@ -7,7 +7,7 @@ use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_pi
 use antumbra_lab::output_files::check_json_path;
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
-use antumbra_lab::technique_run::{TechniqueRun, Timing, create, parameters_of};
+use antumbra_lab::technique_run::{Drawn, TechniqueRun, Timing, create, parameters_of};
 use antumbra_lab::view::View;
 use serde_json::json;
 
@@ -44,6 +44,12 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     let visibilities: Vec<&Visibility> = drawn.iter().map(|drawn| &drawn.visibility).collect();
     let picture = view.shade(&visibilities)?;
     bars.end();
+    for (light, Drawn { auto_map_sizes, .. }) in setup.lights.iter().zip(&drawn) {
+        if !auto_map_sizes.is_empty() {
+            let sizes = auto_map_sizes.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+            bars.note(&format!("light `{}`: map_size = auto is {sizes}", light.name));
+        }
+    }
 
     write_picture(&args.output, &picture.to_srgb8())?;
     if let Some(path) = &args.visibility {
@@ -52,8 +58,14 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     if let Some(path) = &args.timings {
         // By a state of its own: what is written is as it would be without.
         let timed = |light: usize| {
-            let TechniqueRun { timings, memory_bytes, .. } = view.run(&mut view.create(&choice)?, light, &TIMED)?;
-            Ok(json!({ "light": setup.lights[light].name, "timings": timings, "memory_bytes": memory_bytes }))
+            let TechniqueRun { timings, memory_bytes, auto_map_sizes, .. } =
+                view.run(&mut view.create(&choice)?, light, &TIMED)?;
+            Ok(json!({
+                "light": setup.lights[light].name,
+                "timings": timings,
+                "memory_bytes": memory_bytes,
+                "auto_map_sizes": auto_map_sizes,
+            }))
         };
         let lights = lights.map(timed).collect::<Result<Vec<_>, LabError>>()?;
         let timings = json!({

@@ -13,7 +13,9 @@ pub(super) fn candidate(config: &Config, measured: &Measured, budget_ms: &[f64])
         .iter()
         .map(|(key, value)| {
             let spec = config.kind.param_specs().iter().find(|spec| spec.key == key);
-            let is_text = spec.is_none_or(|spec| matches!(spec.default, ParamValue::Choice(_) | ParamValue::List(_)));
+            let is_text = spec.is_none_or(|spec| {
+                spec.range.is_none() && matches!(spec.default, ParamValue::Choice(_) | ParamValue::List(_))
+            });
             let number = serde_json::from_str(value).ok().filter(|_| !is_text);
             (key.clone(), number.unwrap_or_else(|| Value::String(value.clone())))
         })

@@ -5,7 +5,7 @@
 //! twice the budget: more of a number takes longer.
 
 use antumbra::TechniqueKind;
-use antumbra::contract::{ParamSpec, ParamValue};
+use antumbra::contract::ParamSpec;
 
 use super::bench::FULL;
 use super::search::Search;
@@ -62,7 +62,8 @@ pub(super) fn grid_of(kind: TechniqueKind) -> Vec<Config> {
 }
 
 fn number(config: &Config, spec: &ParamSpec) -> Option<f64> {
-    matches!(spec.default, ParamValue::U32(_) | ParamValue::F32(_)).then(|| config.value(spec).parse().ok())?
+    spec.range?;
+    config.value(spec).parse().ok()
 }
 
 /// Whether `a` has no larger number than `b`, and is the same in all else.

@@ -19,7 +19,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use antumbra::TechniqueKind;
-use antumbra::contract::{ParamSpec, ParamValue};
+use antumbra::contract::ParamSpec;
 
 use super::Limits;
 use super::bench::{Bench, FULL};
@@ -512,7 +512,7 @@ fn keys_of_qualities(kind: TechniqueKind) -> Vec<&'static str> {
 /// What is no number among that which qualities set, where it is not the default.
 fn switches_of_qualities(kind: TechniqueKind) -> Vec<(&'static str, String)> {
     let other_of = |(spec, values): (&'static ParamSpec, Vec<String>)| {
-        let is_switch = matches!(spec.default, ParamValue::Bool(_) | ParamValue::Choice(_));
+        let is_switch = spec.range.is_none();
         let other = values.into_iter().find(|value| *value != spec.default.to_string())?;
         is_switch.then_some((spec.key, other))
     };

@@ -123,41 +123,41 @@ pub(super) enum Stride {
 }
 
 /// The values next to one: half and double where the scale is of ratios, two thirds and half as much again where it is not; all
-/// others of a choice.
+/// others of a choice; of a name in a number's place numbers about the middle of the range.
 pub(super) fn steps(spec: &ParamSpec, value: &str, stride: Stride) -> Vec<String> {
-    match spec.default {
-        ParamValue::Bool(_) | ParamValue::Choice(_) if stride == Stride::Half => Vec::new(),
-        ParamValue::Bool(_) => vec![if value == "true" { "false" } else { "true" }.into()],
-        ParamValue::Choice(_) => others(spec, value),
-        ParamValue::List(_) => Vec::new(),
-        ParamValue::U32(_) | ParamValue::F32(_) => {
-            let Ok(v) = value.parse::<f64>() else { return Vec::new() };
-            let ratio: f64 = if spec.scale == ParamScale::Log && is_whole(spec) { 2.0 } else { 1.5 };
-            let ratio = if stride == Stride::Half { ratio.sqrt() } else { ratio };
-            let (low, high) = spec.range.unwrap_or((v, v));
-            let up = if v == 0.0 { (high - low) / 16.0 } else { v * ratio };
-            let (down, up) = if is_whole(spec) {
-                ((v / ratio).ceil().min(v - 1.0), up.floor().max(v + 1.0))
-            } else {
-                (v / ratio, up)
-            };
-            numbers(spec, &[down, up], value)
-        }
-    }
+    let Some((low, high)) = spec.range else {
+        return match spec.default {
+            _ if stride == Stride::Half => Vec::new(),
+            ParamValue::Bool(_) => vec![if value == "true" { "false" } else { "true" }.into()],
+            ParamValue::Choice(_) => others(spec, value),
+            _ => Vec::new(),
+        };
+    };
+    let Ok(v) = value.parse::<f64>() else {
+        let middle = (low.max(1.0) * high).sqrt();
+        return if stride == Stride::Half { Vec::new() } else { numbers(spec, &FACTORS.map(|f| f * middle), value) };
+    };
+    let ratio: f64 = if spec.scale == ParamScale::Log && spec.is_whole() { 2.0 } else { 1.5 };
+    let ratio = if stride == Stride::Half { ratio.sqrt() } else { ratio };
+    let up = if v == 0.0 { (high - low) / 16.0 } else { v * ratio };
+    let (down, up) =
+        if spec.is_whole() { ((v / ratio).ceil().min(v - 1.0), up.floor().max(v + 1.0)) } else { (v / ratio, up) };
+    numbers(spec, &[down, up], value)
 }
+
+/// The steps of a fine grid about a number.
+const FACTORS: [f64; 4] = [0.25, 0.5, 2.0, 4.0];
 
 /// The values of a parameter in a grid: of numbers the default, the half and the double, and their next steps where `fine`; of
 /// all, what qualities set.
 pub(super) fn ladder(spec: &ParamSpec, of_qualities: &[String], fine: bool) -> Vec<String> {
     let default = spec.default.to_string();
-    let mut values = match spec.default {
-        ParamValue::Bool(_) | ParamValue::Choice(_) => Vec::new(),
-        ParamValue::List(_) => Vec::new(),
-        ParamValue::U32(_) | ParamValue::F32(_) => {
-            let v: f64 = default.parse().unwrap_or(0.0);
-            let factors: &[f64] = if fine { &[0.25, 0.5, 2.0, 4.0] } else { &[0.5, 2.0] };
+    let mut values = match (spec.range, default.parse::<f64>()) {
+        (Some(_), Ok(v)) => {
+            let factors = if fine { &FACTORS[..] } else { &FACTORS[1..3] };
             numbers(spec, &factors.iter().map(|factor| v * factor).collect::<Vec<_>>(), &default)
         }
+        _ => Vec::new(),
     };
     values.extend(of_qualities.iter().chain([&default]).cloned());
     let number = |value: &String| value.parse::<f64>().unwrap_or(0.0);
@@ -170,14 +170,10 @@ fn others(spec: &ParamSpec, value: &str) -> Vec<String> {
     spec.choices.iter().filter(|choice| **choice != value).map(|choice| (*choice).to_owned()).collect()
 }
 
-fn is_whole(spec: &ParamSpec) -> bool {
-    matches!(spec.default, ParamValue::U32(_))
-}
-
 /// Numbers as text, within the range, to three figures, and without `but`.
 fn numbers(spec: &ParamSpec, numbers: &[f64], but: &str) -> Vec<String> {
     let (low, high) = spec.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-    let text = |v: f64| match is_whole(spec) {
+    let text = |v: f64| match spec.is_whole() {
         true => format!("{}", v as u64),
         false => {
             let unit = if v == 0.0 { 1.0 } else { 10_f64.powf(v.abs().log10().floor() - 2.0) };

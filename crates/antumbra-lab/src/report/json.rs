@@ -101,6 +101,7 @@ fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
         "frames": null,
         "warm_up": null,
         "memory_bytes": null,
+        "auto_map_sizes": [],
         "motion": null,
         "adapter": report.adapter.name,
         "images": null,
@@ -116,6 +117,7 @@ fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
             json["total_ms"] = json!(measured.total_ms);
             (json["frames"], json["warm_up"]) = (measured.count.frames.into(), measured.count.warm_up.into());
             json["memory_bytes"] = json!(measured.memory_bytes);
+            json["auto_map_sizes"] = json!(measured.auto_map_sizes);
             if report.motion.is_some() {
                 let motions = measured.motions.iter().map(|figures| figures_json(figures, stem));
                 json["motion"] = Value::Object(motions.collect());

@@ -140,6 +140,8 @@ pub struct Measurement {
     pub count: FrameCount,
     /// GPU memory that the technique holds, bytes.
     pub memory_bytes: Option<u64>,
+    /// Texels along a side of each map whose size is `auto`; none where sizes are given.
+    pub auto_map_sizes: Vec<u32>,
     /// What it did in motion.
     pub motions: Vec<MotionFigures>,
 }

@@ -517,6 +517,11 @@ fn gallery(report: &Report, rows: &[Measured]) -> String {
     html
 }
 
+/// Numbers with commas between them.
+fn listed(numbers: &[u32]) -> String {
+    numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
+}
+
 fn article(row: &Measured, colors: &BTreeMap<String, String>, size_px: glam::UVec2) -> String {
     let Measured { row, stem, measured, .. } = row;
     let metrics = &measured.metrics;
@@ -526,6 +531,9 @@ fn article(row: &Measured, colors: &BTreeMap<String, String>, size_px: glam::UVe
     sum.extend(metrics.roughness.map(|v| format!("roughness <b>{}</b>", metric_text(v))));
     sum.extend(measured.total_ms.map(|ms| format!("<b>{}</b> ms, {}", three_figures(ms), measured.count)));
     sum.extend(measured.memory_bytes.map(|count| format!("<b>{}</b>", bytes(count))));
+    if !measured.auto_map_sizes.is_empty() {
+        sum.push(format!("maps of <b>{}</b>² texels", listed(&measured.auto_map_sizes)));
+    }
 
     let mut warnings = row.warnings.clone();
     if metrics.non_finite > 0 {

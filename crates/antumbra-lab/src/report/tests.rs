@@ -64,6 +64,7 @@ fn synthetic_report() -> Report {
             total_ms: Some(ms),
             count: FrameCount { frames: 5, warm_up: 2 },
             memory_bytes: Some(4 << 20),
+            auto_map_sizes: vec![1448],
             motions: vec![MotionFigures {
                 motion: Motion::Light,
                 flicker: Some(0.01),
@@ -177,6 +178,7 @@ fn the_numbers_are_in_the_json() {
     let pcss = &rows[1];
     assert_eq!(pcss["adapter"], "llvmpipe");
     assert_eq!(pcss["parameters"], json!({ "map_size": 1024, "kernel": "vogel" }));
+    assert_eq!(pcss["auto_map_sizes"], json!([1448]));
     assert_eq!(pcss["passes"][0]["name"], "light map");
     assert_eq!((&pcss["total_ms"], &pcss["memory_bytes"]), (&json!(3.0), &json!(4 << 20)));
     assert_eq!((&pcss["frames"], &pcss["warm_up"]), (&json!(5), &json!(2)));

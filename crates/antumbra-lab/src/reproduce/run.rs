@@ -232,15 +232,18 @@ impl Site<'_, '_> {
         let (row, view) = (self.row, self.view);
         let choice = row.choice(self.form)?;
         let (drawn, mut measured) = if row.measure.is_timed() {
-            let TechniqueRun { visibility, timings, memory_bytes } = self.time(&choice)?;
+            let TechniqueRun { visibility, timings, memory_bytes, auto_map_sizes } = self.time(&choice)?;
             let Some(ms) = time_of(&timings, row.measure)? else {
                 return Ok(Ran::without(Outcome::Skipped("it does not time single passes".to_owned())));
             };
-            (Drawn { visibility, memory_bytes }, Measured { ms: Some(ms), count: Some(timings.count()), ..about })
+            (
+                Drawn { visibility, memory_bytes, auto_map_sizes },
+                Measured { ms: Some(ms), count: Some(timings.count()), ..about },
+            )
         } else {
             (self.draw(&choice)?, about)
         };
-        let Drawn { visibility, memory_bytes } = drawn;
+        let Drawn { visibility, memory_bytes, .. } = drawn;
         measured.memory_bytes = Some(memory_bytes);
         if let Measure::Fps { .. } = row.measure {
             let (ms, count) = view.scene_ms(&self.bench.options.timing())?;

@@ -105,7 +105,7 @@ fn refuse(path: &Path, why: &str, beside: &Path) -> LabError {
 }
 
 fn row(plan: &Plan, result: &JobResult) -> Value {
-    let JobResult { job, skipped, parameters, metrics, timings, memory_bytes, .. } = result;
+    let JobResult { job, skipped, parameters, metrics, timings, memory_bytes, auto_map_sizes, .. } = result;
     json!({
         "scene": plan.scenes[job.scene].scene,
         "size": job.size,
@@ -116,6 +116,7 @@ fn row(plan: &Plan, result: &JobResult) -> Value {
         "metrics": metrics,
         "timings": timings,
         "memory_bytes": memory_bytes,
+        "auto_map_sizes": auto_map_sizes,
     })
 }
 

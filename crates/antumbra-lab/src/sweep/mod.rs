@@ -84,6 +84,9 @@ struct JobResult {
     metrics: Value,
     timings: Value,
     memory_bytes: Option<u64>,
+    /// Of maps whose size is `auto`; missing in older results.
+    #[serde(default)]
+    auto_map_sizes: Vec<u32>,
 }
 
 const RESULT_FORMAT: &str = "antumbra-sweep-result";

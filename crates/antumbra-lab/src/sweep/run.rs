@@ -144,6 +144,7 @@ impl<'a> Bench<'a> {
             metrics: Value::Null,
             timings: Value::Null,
             memory_bytes: None,
+            auto_map_sizes: Vec::new(),
         };
         let view = View::new(self.lab, &self.scene, &self.setup, self.size_px)?;
         let run = create(&self.lab.gpu(), &choice).map_err(LabError::from).and_then(|mut technique| {
@@ -155,6 +156,7 @@ impl<'a> Bench<'a> {
                 let metrics = compare_visibility(&self.truth.visibility, &run.visibility, &self.truth.judged)?;
                 (result.metrics, result.timings) = (json!(metrics), json!(run.timings));
                 result.memory_bytes = Some(run.memory_bytes);
+                result.auto_map_sizes = run.auto_map_sizes;
             }
             Err(LabError::Technique(error @ antumbra::Error::Unsupported { .. })) => {
                 result.skipped = Some(error.to_string());

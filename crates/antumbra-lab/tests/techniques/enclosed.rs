@@ -57,7 +57,7 @@ fn a_cover_before_a_panel_hides_all_of_it() {
                 ("essm", 0.01),
                 ("reprojection_layered", 0.05),
                 ("sample_based", 0.0),
-                ("multi_view", 0.001),
+                ("multi_view", 0.00001),
             ],
         );
     }

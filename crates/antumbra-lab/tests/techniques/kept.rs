@@ -251,7 +251,7 @@ fn small(kind: TechniqueKind) -> Vec<(&'static str, String)> {
 }
 
 /// Values of a parameter other than the one that it has: all of a choice, of a number one. It is less, which takes less time,
-/// where there is less.
+/// where there is less. Names in a number's place stand for numbers.
 fn others(spec: &ParamSpec, value: String) -> Vec<String> {
     if let ParamValue::List(_) = spec.default {
         return Vec::new();
@@ -261,11 +261,11 @@ fn others(spec: &ParamSpec, value: String) -> Vec<String> {
         return choices.iter().filter(|choice| **choice != value).map(|choice| (*choice).to_owned()).collect();
     };
     let value: f64 = value.parse().expect("a number's");
-    let other = match spec.default {
-        ParamValue::U32(_) if value > low => (0.5 * value).floor().max(low),
-        ParamValue::U32(_) => (value + 1.0).min(high),
-        _ if value > low => (0.5 * value).max(low),
-        _ => low + 0.0625 * (high - low),
+    let other = match spec.is_whole() {
+        true if value > low => (0.5 * value).floor().max(low),
+        true => (value + 1.0).min(high),
+        false if value > low => (0.5 * value).max(low),
+        false => low + 0.0625 * (high - low),
     };
     vec![(other as f32).to_string()]
 }

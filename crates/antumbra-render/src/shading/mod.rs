@@ -44,6 +44,8 @@ pub enum VisibilitySource<'a> {
     /// A technique's mask of the picture's size. Of three channels in a format of four components all count; in others the
     /// first.
     Mask(&'a Mask),
+    /// A texture of the picture's size, unfilterable floats, and whether three channels count or the first alone.
+    Texture(&'a wgpu::TextureView, bool),
 }
 
 /// Shades one view under one set of lights, as often as there are visibilities to see.
@@ -254,6 +256,7 @@ impl Shading {
             VisibilitySource::Mask(mask) => {
                 mask.channels() == MaskChannels::Three && mask.texture().format().components() == 4
             }
+            VisibilitySource::Texture(_, is_tinted) => *is_tinted,
         };
         let uniform = LightUniform { is_tinted: is_tinted.into(), ..light.uniform };
         let uniform = storage_buffer(gpu.device(), "shading: light", bytemuck::bytes_of(&uniform));
@@ -267,6 +270,7 @@ impl Shading {
                 assert_eq!(mask.size_px(), self.size_px, "a mask of another size than the picture");
                 mask.view().clone()
             }
+            VisibilitySource::Texture(view, _) => (*view).clone(),
         };
         bind_group(
             gpu,

@@ -209,8 +209,8 @@ fn turn_parameter(side: &mut Side, random: &mut Random) {
         (_, _, 0) => "what nobody takes".to_owned(),
         (_, _, 1) => side.usual(spec).to_string(),
         (ParamValue::Bool(_), ..) => (random.below(2) == 0).to_string(),
-        (ParamValue::Choice(_), ..) => random.pick(spec.choices).to_owned(),
-        (_, Some((low, _)), _) => low.to_string(),
+        (_, Some((low, _)), _) if spec.choices.is_empty() || random.below(2) == 0 => low.to_string(),
+        (_, Some(_), _) | (ParamValue::Choice(_), ..) => random.pick(spec.choices).to_owned(),
         (_, None, _) => String::new(),
     };
     side.set(spec.key, &value);

@@ -4,6 +4,7 @@
 //! Nothing is drawn that has not changed: each step knows what it was last drawn from. After a change a few frames more are
 //! drawn, because techniques that ran out of room learn of it a frame later.
 
+mod antialiasing;
 mod inspector;
 mod light_map;
 mod lists;
@@ -38,6 +39,7 @@ pub use times::{FRAMES, FrameTimes, Times};
 pub use crate::aside::Wake;
 use crate::state::{Show, Side, State};
 use crate::truth::Estimate;
+use antialiasing::{Antialiasing, Smoothed, Still, StillSide};
 use inspector::{Asked, PixelReader};
 use light_map::LightMapPass;
 use lists::ListsPass;
@@ -79,6 +81,7 @@ pub struct Renderer {
     receivers: ReceiverPass,
     programs: ShadingPrograms,
     present: Present,
+    antialiasing: Antialiasing,
     light_map: LightMapPass,
     lists: ListsPass,
     scene: Option<LoadedScene>,
@@ -90,7 +93,7 @@ pub struct Renderer {
     truth_view: wgpu::TextureView,
     /// What the sides were last drawn from, and how many frames of it there were.
     drawn: Option<(DrawnFrom, u32)>,
-    shown: Option<(Shown, [u64; 4])>,
+    shown: Option<(Shown, [u64; 5])>,
     /// Counts what the sides drew.
     version: u64,
     output_reader: TextureReader,
@@ -123,6 +126,8 @@ struct LoadedScene {
 struct View {
     images: ReceiverImages,
     behind: Option<ReceiverImages>,
+    /// Made when the picture first stands still.
+    smoothed: Option<Smoothed>,
     output: wgpu::Texture,
     output_view: wgpu::TextureView,
     /// The camera that the images were drawn from.
@@ -177,6 +182,7 @@ impl Renderer {
             receivers: ReceiverPass::new(gpu),
             programs: ShadingPrograms::new(gpu.device()),
             present: Present::new(gpu.device()),
+            antialiasing: Antialiasing::new(gpu.device()),
             light_map: LightMapPass::new(gpu.device()),
             lists: ListsPass::new(gpu.device()),
             scene: None,
@@ -298,14 +304,15 @@ impl Renderer {
             self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("viewer") });
         let are_drawn = self.draw_sides(&mut encoder, state);
         self.read_seen(&mut encoder);
+        let is_smoothing = self.smooth(&mut encoder, state);
         let is_new = self.draw_output(&mut encoder, state, truth);
         self.read_pixel(&mut encoder, state);
-        if are_drawn || is_new || self.is_reading() {
+        if are_drawn || is_smoothing || is_new || self.is_reading() {
             self.gpu.queue().submit([encoder.finish()]);
         }
         let is_settling = self.drawn.as_ref().is_some_and(|(_, frames)| *frames < self.wanted_frames());
         let is_compiling = state.shown_sides().iter().zip(&self.sides).any(|(_, work)| work.is_busy());
-        Drawn { is_new, is_unfinished: is_settling || is_compiling || self.is_reading() }
+        Drawn { is_new, is_unfinished: is_settling || is_compiling || is_smoothing || self.is_reading() }
     }
 
     /// Whether something is still to be read. Depths are taken by the next frame, which then draws anew; masks are the
@@ -365,6 +372,7 @@ impl Renderer {
         self.view = Some(View {
             behind: scene.scene.has_translucent_surfaces().then(images),
             images: images(),
+            smoothed: None,
             output_view: output.create_view(&wgpu::TextureViewDescriptor::default()),
             output,
             camera: None,
@@ -463,6 +471,35 @@ impl Renderer {
         true
     }
 
+    /// Adds to the antialiased pictures, where pictures are shown that stand still, until they are complete.
+    fn smooth(&mut self, encoder: &mut wgpu::CommandEncoder, state: &State) -> bool {
+        let wanted = self.wanted_frames();
+        let is_still = self.drawn.as_ref().is_some_and(|(_, frames)| *frames >= wanted);
+        let (Some(scene), Some(view)) = (&self.scene, &mut self.view) else { return false };
+        if !is_still || state.show != Show::Shaded || view.depth_reader.is_pending() {
+            return false;
+        }
+        let shown = state.shown_sides().len();
+        let sides: Option<Vec<StillSide<'_>>> = self.sides[..shown].iter().map(SideWork::still).collect();
+        let Some(sides) = sides else { return false };
+        let camera = &state.setup.camera;
+        let smoothed = view
+            .smoothed
+            .get_or_insert_with(|| Smoothed::new(&self.gpu, camera, view.images.size_px, view.behind.is_some()));
+        let still = Still {
+            receivers: &self.receivers,
+            programs: &self.programs,
+            scene: &scene.scene,
+            groups: &scene.groups,
+            images: &view.images,
+            camera,
+            lights: &state.setup.lights,
+            exposure: &scene.exposure,
+            version: self.version,
+        };
+        self.antialiasing.record(&self.gpu, encoder, smoothed, &still, &sides)
+    }
+
     /// Frames to draw after a change.
     fn wanted_frames(&self) -> u32 {
         let is_cold = self.sides.iter().any(|side| side.kind().is_some() && side.times.counts().0 == 0);
@@ -504,7 +541,9 @@ impl Renderer {
         let divider_px = if state.is_split { (state.divider.clamp(0.0, 1.0) * width as f32) as u32 } else { width };
         let shown = Shown { divider_px, show: state.show };
         let truth_version = held.map_or(0, |(job, points)| job << 32 | u64::from(points));
-        let of = [self.version << 8 | state.light as u64, truth_version, state.level as u64, state.layer as u64];
+        let smooth = [0, 1].map(|side| view.smoothed.as_ref().and_then(|all| all.picture(side, self.version)));
+        let of_light = self.version << 8 | state.light as u64;
+        let of = [of_light, truth_version, state.level as u64, state.layer as u64, smooth[0].is_some().into()];
         if self.shown == Some((shown, of)) {
             return false;
         }
@@ -528,9 +567,9 @@ impl Renderer {
             return true;
         }
         let Some(left) = self.sides[0].mask(light) else { return false };
-        let left = SideImages { picture: self.sides[0].picture(), mask: left };
+        let left = SideImages { picture: smooth[0].unwrap_or(self.sides[0].picture()), mask: left };
         let right = match self.sides[1].mask(light) {
-            Some(mask) if state.is_split => SideImages { picture: self.sides[1].picture(), mask },
+            Some(mask) if state.is_split => SideImages { picture: smooth[1].unwrap_or(self.sides[1].picture()), mask },
             _ => left,
         };
         self.present.record(&self.gpu, encoder, shown, [left, right], &self.truth_view, &view.output_view);

@@ -14,6 +14,7 @@ use antumbra_render::shading::{PictureTargets, Shading, VisibilitySource};
 use glam::UVec2;
 use web_time::Instant;
 
+use super::antialiasing::{StillSide, mask_format};
 use super::light_map::{MapChoices, ShownMap, of_point};
 use super::lists::level_of;
 use super::refusals::Refusals;
@@ -50,6 +51,8 @@ pub struct SideWork {
     refusals: Refusals,
     /// What the last frame lacked room for.
     pub overflow: Option<String>,
+    /// Texels along a side of each map whose size was chosen for the last frame.
+    auto_map_sizes: Vec<u32>,
     /// Reads the chosen light's mask.
     pub mask_reader: TextureReader,
     list_reader: TextureReader,
@@ -91,6 +94,7 @@ impl SideWork {
             failed: None,
             refusals: Refusals::default(),
             overflow: None,
+            auto_map_sizes: Vec::new(),
             mask_reader: TextureReader::default(),
             list_reader: TextureReader::default(),
             list_totals: None,
@@ -133,6 +137,7 @@ impl SideWork {
             overflow: self.overflow.as_deref(),
             times: &self.times,
             memory_bytes: self.memory_bytes(),
+            auto_map_sizes: &self.auto_map_sizes,
             rmse,
         }
     }
@@ -145,6 +150,12 @@ impl SideWork {
     /// The picture, linear display values.
     pub fn picture(&self) -> &wgpu::Texture {
         &self.targets.picture
+    }
+
+    /// Every light's mask and the picture, where a technique has drawn them.
+    pub(super) fn still(&self) -> Option<StillSide<'_>> {
+        let are_drawn = !self.shadows.is_empty() && !self.masks.is_empty();
+        are_drawn.then_some(StillSide { masks: &self.masks, picture: &self.targets.picture })
     }
 
     /// A light's mask, once one was drawn.
@@ -412,11 +423,7 @@ impl SideWork {
         let casters = frame.scene.casters();
         let casters = Casters::Meshes(&casters);
         let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
-        // Of three channels all in one texel, so that shading reads them at once.
-        let format = match channels {
-            MaskChannels::One => Mask::FORMAT,
-            MaskChannels::Three => wgpu::TextureFormat::Rgba16Float,
-        };
+        let format = mask_format(channels);
         self.masks.retain(|mask| mask.channels() == channels && mask.size_px() == frame.images.size_px);
         self.masks.truncate(frame.lights.len());
         while self.masks.len() < frame.lights.len() {
@@ -448,6 +455,7 @@ impl SideWork {
         for work in works {
             work.record(&mut recorder);
         }
+        self.auto_map_sizes = self.shadows.iter().flat_map(AnyShadow::auto_map_sizes).collect();
         let processor_ms = began.elapsed().as_secs_f64() * 1e3;
         let has_made = gpu.objects_made() != made_before;
         let frame = FrameTimes { passes: Vec::new(), processor_ms, has_made };

@@ -17,6 +17,8 @@ pub struct SideReadings<'a> {
     pub times: &'a Times,
     /// GPU memory that the technique holds, bytes.
     pub memory_bytes: u64,
+    /// Texels along a side of each map whose size is chosen for each frame.
+    pub auto_map_sizes: &'a [u32],
     /// The error against the truth so far.
     pub rmse: Option<f64>,
 }

@@ -84,6 +84,46 @@ fn what_stands_still_is_not_drawn_again() {
     assert!(renderer.version() > split);
 }
 
+/// A picture that stands still is antialiased: nearer to the means of a larger one's pixels than samples at the pixels' centres are, and
+/// the same as those within surfaces.
+#[test]
+fn what_stands_still_is_smooth() {
+    const LARGER: u32 = 8;
+    let Some((mut renderer, state)) = fixture("builtin:overlap") else { return };
+    settle(&mut renderer, &state);
+    let smooth = picture(&mut renderer);
+    renderer.view.as_mut().unwrap().smoothed = None;
+    renderer.draw(&state, SIZE, None);
+    let sharp = picture(&mut renderer);
+    let Some((mut larger, state)) = fixture("builtin:overlap") else { return };
+    for _ in 0..=SETTLING_FRAMES {
+        larger.draw(&state, LARGER * SIZE, None);
+    }
+    let larger = picture(&mut larger);
+    let linear = antumbra_scene::linear_from_srgb;
+    let mean_at = |pixel: UVec2, channel: usize| {
+        let within = (0..LARGER * LARGER).map(|i| LARGER * pixel + UVec2::new(i % LARGER, i / LARGER));
+        let at = |p: UVec2| linear(larger[4 * (p.y * LARGER * SIZE.x + p.x) as usize + channel]);
+        within.map(at).sum::<f32>() / (LARGER * LARGER) as f32
+    };
+    let (mut squares, mut unchanged) = ([0.0; 2], 0);
+    for i in 0..SIZE.element_product() {
+        let pixel = UVec2::new(i % SIZE.x, i / SIZE.x);
+        let differs = |channel: usize| smooth[4 * i as usize + channel].abs_diff(sharp[4 * i as usize + channel]) > 1;
+        unchanged += u32::from(!(0..3).any(differs));
+        for channel in 0..3 {
+            let mean = mean_at(pixel, channel);
+            for (sum, bytes) in squares.iter_mut().zip([&smooth, &sharp]) {
+                *sum += (linear(bytes[4 * i as usize + channel]) - mean).powi(2);
+            }
+        }
+    }
+    let [smooth, sharp] = squares.map(|sum: f32| (sum / (3 * SIZE.element_product()) as f32).sqrt());
+    println!("rmse {smooth:.4} antialiased, {sharp:.4} not; {unchanged} pixels unchanged");
+    assert!(smooth < 0.6 * sharp, "{smooth} and {sharp}");
+    assert!(unchanged > SIZE.element_product() / 2 && unchanged < SIZE.element_product(), "{unchanged} pixels");
+}
+
 #[test]
 fn views_and_sides_show_what_they_say() {
     let Some((mut renderer, mut state)) = fixture("builtin:overlap") else { return };
@@ -147,12 +187,12 @@ fn lights_of_every_shape_and_another_size_are_drawn() {
 
 /// What lies at either end of a parameter; a list is long, and then empty.
 fn ends(spec: &ParamSpec) -> Vec<String> {
-    match (spec.default, spec.range) {
-        (ParamValue::U32(_), Some((low, high))) => vec![(low as u32).to_string(), (high as u32).to_string()],
-        (ParamValue::F32(_), Some((low, high))) => vec![(low as f32).to_string(), (high as f32).to_string()],
-        (ParamValue::Bool(_), _) => vec!["true".into(), "false".into()],
-        (ParamValue::Choice(_), _) => spec.choices.iter().map(|choice| (*choice).to_owned()).collect(),
-        _ => vec![spec.default.to_string()],
+    let numbers = spec.range.map(|(low, high)| [(low as f32).to_string(), (high as f32).to_string()]);
+    let names = spec.choices.iter().map(|choice| (*choice).to_owned());
+    match spec.default {
+        ParamValue::Bool(_) => vec!["true".into(), "false".into()],
+        ParamValue::List(_) => vec![spec.default.to_string()],
+        _ => numbers.into_iter().flatten().chain(names).collect(),
     }
 }
 

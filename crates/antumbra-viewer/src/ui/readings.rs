@@ -45,6 +45,10 @@ pub fn show(ui: &mut egui::Ui, state: &State, readings: &Readings<'_>) {
                 row("median of", format!("{frames} frames after {warm_up}"));
             }
             row("memory", mebibytes(readings.memory_bytes));
+            if !readings.auto_map_sizes.is_empty() {
+                let sizes: Vec<_> = readings.auto_map_sizes.iter().map(u32::to_string).collect();
+                row("map_size, auto", sizes.join(", "));
+            }
         });
     }
     ui.label(format!("scene {}", mebibytes(readings.scene_memory_bytes)));

@@ -57,7 +57,7 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>, fea
     egui::CollapsingHeader::new("Parameters").id_salt(("parameters", side.kind())).default_open(true).show(ui, |ui| {
         let params: Vec<_> = side.params().collect();
         for (spec, value) in params {
-            parameter(ui, side, spec, value, features);
+            parameter(ui, side, spec, value, readings.auto_map_sizes.first().copied(), features);
         }
     });
 }
@@ -112,6 +112,7 @@ fn parameter(
     side: &mut Side,
     spec: &'static ParamSpec,
     value: ParamValue,
+    chosen: Option<u32>,
     features: wgpu::Features,
 ) {
     let mut text = None;
@@ -124,7 +125,7 @@ fn parameter(
             ui.set_min_size(size);
             ui.add(egui::Label::new(name).truncate()).on_hover_text(explanation(spec, side.usual(spec)));
         });
-        text = control(ui, spec, value, features);
+        text = control(ui, spec, value, features).or_else(|| name_control(ui, spec, value, chosen));
         if !is_usual && ui.small_button("↺").on_hover_text("As it comes").clicked() {
             text = Some(side.usual(spec).to_string());
         }
@@ -139,6 +140,21 @@ fn parameter(
 
 /// Room for most names; the rest is cut, and whole in the tooltip.
 const NAME_WIDTH: f32 = 110.0;
+
+/// Switches for the names that a number's place takes; switched off, the number is the one that was `chosen` for the last frame, or
+/// the middle of the range.
+fn name_control(ui: &mut egui::Ui, spec: &ParamSpec, value: ParamValue, chosen: Option<u32>) -> Option<String> {
+    let (low, high) = spec.range?;
+    let mut text = None;
+    for name in spec.choices {
+        let is_on = value == ParamValue::Choice(name);
+        if ui.selectable_label(is_on, *name).clicked() {
+            let number = || chosen.map_or_else(|| (low * high).sqrt().round().to_string(), |texels| texels.to_string());
+            text = Some(if is_on { number() } else { (*name).to_owned() });
+        }
+    }
+    text
+}
 
 /// The control for a parameter's type; the new value as text where it was changed.
 fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue, features: wgpu::Features) -> Option<String> {
@@ -156,6 +172,7 @@ fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue, featu
             let mut is_on = v;
             ui.checkbox(&mut is_on, "").changed().then(|| is_on.to_string())
         }
+        ParamValue::Choice(_) if spec.range.is_some() => None,
         ParamValue::Choice(mut choice) => {
             let before = choice;
             egui::ComboBox::from_id_salt((spec.key, ui.scope_id())).selected_text(choice).show_ui(ui, |ui| {

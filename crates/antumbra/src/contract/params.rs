@@ -106,7 +106,7 @@ pub struct ParamSpec {
     pub unit: &'static str,
     /// Smallest and largest number; `None` for switches and choices.
     pub range: Option<(f64, f64)>,
-    /// The names a choice can take; empty for others.
+    /// The names a choice can take; of what has a range, too, what may be given in place of a number; empty for others.
     pub choices: &'static [&'static str],
     /// The value it has unless set.
     pub default: ParamValue,
@@ -119,13 +119,19 @@ pub struct ParamSpec {
 impl ParamSpec {
     /// What the parameter takes, for messages: `a whole number from 64 to 8192`.
     pub fn expected(&self) -> String {
+        let other = if self.choices.is_empty() { String::new() } else { format!(", or {}", self.choices.join(", ")) };
         match (self.default, self.range) {
-            (ParamValue::U32(_), Some((low, high))) => format!("a whole number from {low} to {high}"),
             (ParamValue::F32(_), Some((low, high))) => format!("a number from {low} to {high}"),
+            (_, Some((low, high))) => format!("a whole number from {low} to {high}{other}"),
             (ParamValue::Bool(_), _) => "true or false".into(),
             (ParamValue::List(_), _) => format!("up to {} numbers with commas between them", ParamList::CAPACITY),
             _ => format!("one of {}", self.choices.join(", ")),
         }
+    }
+
+    /// Whether it takes whole numbers, be it with names in place of some.
+    pub fn is_whole(&self) -> bool {
+        self.range.is_some() && !matches!(self.default, ParamValue::F32(_))
     }
 }
 

@@ -33,6 +33,9 @@ pub struct Stage<'a> {
     /// Counts frames whose chances differ.
     noise_frame: u32,
     still: Option<[Vec3; 8]>,
+    auto_texels_before: Option<u32>,
+    /// Maps of one light that share what may be spent on them.
+    sharers: u32,
     /// Uploads go to the queue, for tests that record no frame of a light.
     #[cfg(test)]
     is_at_once: bool,
@@ -58,6 +61,8 @@ pub(crate) struct Keep {
     buffers: HashMap<(&'static str, wgpu::BufferUsages), BufferRow>,
     uploads: Uploads,
     staging: Vec<Staging>,
+    /// Texels along a side of the map whose size is chosen for each frame.
+    auto_texels: Option<u32>,
 }
 
 /// Something kept, and the last frame that used it.
@@ -172,6 +177,7 @@ impl<'a> Stage<'a> {
     /// A stage for the next frame.
     pub(crate) fn new(gpu: &'a Gpu, mut keep: Keep, casters: Option<CastersKey>) -> Self {
         keep.frame += 1;
+        let auto_texels_before = keep.auto_texels.take();
         keep.uploads.bytes.clear();
         keep.uploads.copies.clear();
         Self {
@@ -181,6 +187,8 @@ impl<'a> Stage<'a> {
             anchor: Vec3::ZERO,
             noise_frame: 0,
             still: None,
+            auto_texels_before,
+            sharers: 1,
             #[cfg(test)]
             is_at_once: false,
         }
@@ -219,6 +227,28 @@ impl<'a> Stage<'a> {
     /// are fitted to what receives itself.
     pub(crate) fn still(&self) -> Option<[Vec3; 8]> {
         self.still
+    }
+
+    /// Texels along a side that the map had in the frame before, where its size is chosen for each frame.
+    pub(crate) fn auto_texels(&self) -> Option<u32> {
+        self.auto_texels_before
+    }
+
+    /// Notes what was chosen for this frame; where nothing is noted the next one knows of none.
+    pub(crate) fn note_auto_texels(&self, texels: u32) {
+        self.keep.borrow_mut().auto_texels = Some(texels);
+    }
+
+    /// The same for one of so many maps of a light.
+    pub(crate) fn sharing(self, maps: usize) -> Self {
+        Self { sharers: maps.max(1) as u32, ..self }
+    }
+
+    /// Bytes that a map may take whose size is chosen for each frame: of what the lights have, a quarter for one light.
+    pub(crate) fn auto_map_bytes(&self) -> u64 {
+        /// So many lights have maps of their own however large their maps would be.
+        const LIGHTS: u64 = 4;
+        self.gpu.device.budget().bytes() / LIGHTS / u64::from(self.sharers)
     }
 
     /// What tells a frame's chances from others'.
@@ -384,6 +414,11 @@ impl Uploads {
 }
 
 impl Keep {
+    /// Texels along a side of the map of the frame prepared last, where its size was chosen for that frame.
+    pub(crate) fn auto_texels(&self) -> Option<u32> {
+        self.auto_texels
+    }
+
     fn stage_uploads(&mut self, gpu: &Gpu) -> StagedUploads {
         let bytes = self.uploads.bytes.len() as u64;
         if bytes == 0 {

@@ -13,8 +13,9 @@ use super::depth_pyramid::DepthPyramid;
 use super::hosts_map::view_of_hosts_map;
 use super::light_spread::LightSpread;
 use super::light_view::{FitTo, Followed, LightView, LightViewGpu, WindowShape};
+use super::map_texels::map_texels;
 use super::still_view::{corners_to_hold, in_whole_texels};
-use crate::contract::{CastersKey, DrawnMap, Error, PreparedCasters, PreparedFrame};
+use crate::contract::{CastersKey, DrawnMap, Error, MapSize, PreparedCasters, PreparedFrame};
 use crate::gpu::{
     Bindings, Content, EmbeddedGroup, Gpu, Lease, Recorder, Scratch, Span, Stage, bindings, create_uniform, samples,
     texels, write_uniform,
@@ -36,22 +37,24 @@ pub(crate) enum MapWindow {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OwnMapSettings {
     /// Texels along a side.
-    pub(crate) size: u32,
+    pub(crate) size: MapSize,
     pub(crate) window: MapWindow,
     /// What of receivers' segments the window holds.
     pub(crate) followed: Followed,
     /// Layers of casters, the map's own included; one but for [`MapSearch::Layers`].
     pub(crate) layers: u32,
+    /// Of what a technique makes of the map.
+    pub(crate) more_bytes_per_texel: u32,
 }
 
 impl OwnMapSettings {
     /// A square one, of the nearest casters alone.
-    pub(crate) fn square(size: u32) -> Self {
-        Self { size, window: MapWindow::Square, followed: Followed::All, layers: 1 }
+    pub(crate) fn square(size: MapSize) -> Self {
+        Self { size, window: MapWindow::Square, followed: Followed::All, layers: 1, more_bytes_per_texel: 0 }
     }
 
     /// The same, narrow in a sun's slices.
-    pub(crate) fn narrow(size: u32) -> Self {
+    pub(crate) fn narrow(size: MapSize) -> Self {
         Self { window: MapWindow::Narrow, ..Self::square(size) }
     }
 }
@@ -194,12 +197,15 @@ impl LightMap {
         settings: OwnMapSettings,
     ) -> Result<PreparedMap, Error> {
         let technique = self.technique;
-        let OwnMapSettings { size: map_size, layers, .. } = settings;
+        let layers = settings.layers;
         let (view, hosts_map, shape, empty_depth) = match &frame.casters {
             PreparedCasters::Draws(meshes) => {
-                check_map_size(stage, technique, map_size, "set a smaller `map_size`")?;
                 let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
                 let view = own_view(stage, frame, &bounds, settings);
+                let bytes_of = |size| self.bytes_of(settings, size);
+                let map_size = map_texels(stage, frame, settings.size, bytes_of, &view, &bounds);
+                check_map_size(stage, technique, map_size, "set a smaller `map_size`")?;
+                let view = in_whole_texels(stage, view, UVec2::splat(map_size));
                 self.casters.prepare(stage, &[view.clip_from_world()], meshes);
                 let shape = Shape { size_px: UVec2::splat(map_size), layers };
                 (view.to_gpu(map_size), None, shape, CasterDepth::CLEAR_DEPTH)
@@ -230,7 +236,7 @@ impl LightMap {
             pyramid.prepare(stage, lease, map, &self.view_uniform, shape.size_px, light_half_extent_m);
         }
         if let Some(behind) = &mut self.layers_behind {
-            behind.prepare(stage, lease, map, map_size, shape.layers.saturating_sub(1));
+            behind.prepare(stage, lease, map, shape.size_px.x, shape.layers.saturating_sub(1));
         }
         self.last = Some((map.clone(), lease.is_own()));
         self.drawn = Some(view.drawn_map(map, 1, empty_depth)).filter(|_| lease.is_own());
@@ -240,6 +246,13 @@ impl LightMap {
             BoundMap::WithLayers(bindings) => bindings.group(stage, &self.layout),
         };
         Ok(PreparedMap { group, is_drawn, view, size_px: shape.size_px, empty_depth })
+    }
+
+    /// Of a map of so many texels along a side, with what is searched besides and what the technique makes of it.
+    fn bytes_of(&self, settings: OwnMapSettings, size: u32) -> u64 {
+        let of_pyramid = if self.pyramid.is_some() { DepthPyramid::bytes_of(UVec2::splat(size)) } else { 0 };
+        let of_more = u64::from(settings.more_bytes_per_texel) * u64::from(size).pow(2);
+        LayersBehind::bytes_of(size, settings.layers) + of_pyramid + of_more
     }
 
     /// A map with whatever is searched besides.
@@ -300,16 +313,15 @@ impl LightMap {
     }
 }
 
-/// The view of a map of our own.
+/// The view of a map of our own, before its texels are laid where they stay.
 fn own_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>, casters: &[Aabb], settings: OwnMapSettings) -> LightView {
-    let OwnMapSettings { size, window, .. } = settings;
+    let window = settings.window;
     let (followed, reach) = (settings.followed, central_reach(frame.light));
     if stage.still().is_some() {
         // What a slice receives lies at depths that differ little, and a warp would move with the camera.
         let shape = if window == MapWindow::Square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
         let receivers = &corners_to_hold(stage, &frame.receivers);
-        let view = fit_central_view_within(frame.light, followed, reach, &FitTo { casters, receivers, window: shape });
-        return in_whole_texels(stage, view, UVec2::splat(size));
+        return fit_central_view_within(frame.light, followed, reach, &FitTo { casters, receivers, window: shape });
     }
     let corners = frame.receivers.corners();
     if window != MapWindow::Seen {

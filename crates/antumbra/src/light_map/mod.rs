@@ -12,6 +12,7 @@ pub(crate) mod hosts_map;
 pub(crate) mod light_spread;
 pub(crate) mod light_view;
 pub(crate) mod map;
+pub(crate) mod map_texels;
 #[cfg(any(feature = "light_views", feature = "ray_traced", feature = "receiver_lists"))]
 pub(crate) mod readable_meshes;
 pub(crate) mod still_view;

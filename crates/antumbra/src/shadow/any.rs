@@ -23,6 +23,7 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error>;
     fn shader_function(&mut self, group: u32, prefix: &str) -> Result<ShaderFunction, Error>;
     fn memory_bytes(&self) -> u64;
+    fn auto_map_sizes(&self) -> Vec<u32>;
     fn drawn_maps(&self) -> Vec<DrawnMap>;
     fn drawn_lists(&self) -> Vec<DrawnLists>;
     fn overflow(&self) -> Option<Overflow>;
@@ -64,6 +65,9 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn memory_bytes(&self) -> u64 {
         Shadow::memory_bytes(self)
+    }
+    fn auto_map_sizes(&self) -> Vec<u32> {
+        Shadow::auto_map_sizes(self)
     }
     fn drawn_maps(&self) -> Vec<DrawnMap> {
         Shadow::drawn_maps(self)
@@ -171,6 +175,11 @@ impl AnyShadow {
     /// [`Shadow::memory_bytes`].
     pub fn memory_bytes(&self) -> u64 {
         self.inner.memory_bytes()
+    }
+
+    /// [`Shadow::auto_map_sizes`].
+    pub fn auto_map_sizes(&self) -> Vec<u32> {
+        self.inner.auto_map_sizes()
     }
 
     /// [`Shadow::drawn_maps`].

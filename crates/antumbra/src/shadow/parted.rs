@@ -28,6 +28,14 @@ struct PartState<T> {
     keep: Keep,
 }
 
+/// What a part is prepared with.
+struct PartStage<'a> {
+    of_light: &'a Stage<'a>,
+    still: Option<[Vec3; 8]>,
+    /// Parts of the light.
+    part_count: usize,
+}
+
 /// Passes of all parts in one frame; `P` is the technique's.
 pub(super) struct PartedPasses<'a, P> {
     pictures: PreparedPictures,
@@ -67,16 +75,18 @@ impl<T: Technique> Parted<T> {
         parted.parts = parts;
         let Self { parts, states, .. } = parted;
         let mut passes = Vec::with_capacity(parts.len());
+        let part_count = parts.len();
         for part in &*parts {
             let casters = part.casters_of(meshes);
             let state = PartState::of(states, stage, part.id)?;
             let of_part = pictures.frame_of(frame, part);
             let frame = PreparedFrame { casters: of_meshes(&frame.casters, &casters), ..of_part };
             state.has_cast |= !casters.is_empty() || !matches!(frame.casters, PreparedCasters::Draws(_));
+            let stage = &PartStage { of_light: stage, still: part.still, part_count };
             let technique = if state.has_cast {
-                state.prepare(stage, &frame, part.still, params)?
+                state.prepare(stage, &frame, params)?
             } else {
-                state.prepare(stage, &frame, part.still, &with_least_maps(params))?
+                state.prepare(stage, &frame, &with_least_maps(params))?
             };
             passes.push(PartPasses { casters, technique });
         }
@@ -117,6 +127,11 @@ impl<T: Technique> Parted<T> {
     pub(super) fn memory_bytes(&self) -> u64 {
         let of_states: u64 = self.states.iter().map(|state| state.technique.memory_bytes()).sum();
         self.pictures.memory_bytes() + of_states
+    }
+
+    /// Texels along a side of the map of each part where that is chosen for each frame; of a part without casters none.
+    pub(super) fn auto_map_sizes(&self) -> impl Iterator<Item = u32> {
+        self.states_in_use().filter_map(|state| state.keep.auto_texels())
     }
 
     /// The maps of each part.
@@ -170,12 +185,12 @@ impl<T: Technique> PartState<T> {
 
     fn prepare(
         &mut self,
-        of_light: &Stage<'_>,
+        part: &PartStage<'_>,
         frame: &PreparedFrame<'_>,
-        still: Option<[Vec3; 8]>,
         params: &T::Params,
     ) -> Result<T::Prepared, Error> {
-        let stage = of_light.of_part(std::mem::take(&mut self.keep), still);
+        let of_light = part.of_light;
+        let stage = of_light.of_part(std::mem::take(&mut self.keep), part.still).sharing(part.part_count);
         let outcome = self.technique.prepare(&stage, frame, params);
         self.keep = stage.finish_part(of_light);
         outcome

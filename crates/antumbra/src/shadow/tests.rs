@@ -226,6 +226,32 @@ fn frames_that_only_move_make_no_objects(gpu: &Gpu, case: &Case, kind: Technique
     assert!(rounds.any(|(before, after)| before == after), "{kind}: {:?}", gpu.objects_made());
 }
 
+/// Texels of maps whose size is chosen for each frame are those that are drawn; they stay while the light moves a little, and none are
+/// reported where sizes are given.
+#[test]
+fn chosen_map_sizes_are_those_drawn() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    for kind in [TechniqueKind::Hard, TechniqueKind::Smrt, TechniqueKind::Vsm, TechniqueKind::Savsm] {
+        let mut shadow = small(gpu, kind);
+        let mut draw = |size: &str, frame: u32| {
+            shadow.set("map_size", size).expect("a number or auto");
+            let light = moved(&case.light, frame);
+            case.with_frame(Casters::Meshes(&casters), |frame| {
+                run(gpu, &mut shadow, &Frame { light: &light, ..*frame }).expect("a good frame");
+            });
+            let drawn: Vec<u32> = shadow.drawn_maps().iter().map(|map| map.size_px.x).collect();
+            (shadow.auto_map_sizes(), drawn)
+        };
+        let (chosen, drawn) = draw("auto", 0);
+        assert_eq!(chosen.len(), 1, "{kind}: {chosen:?}");
+        assert!(chosen.iter().all(|size| (256..=4096).contains(size) && drawn.contains(size)), "{kind}: {chosen:?}");
+        assert_eq!(draw("auto", 1).0, chosen, "{kind}");
+        assert_eq!(draw("128", 1).0, [0; 0], "{kind}");
+    }
+}
+
 /// Two lights, each with a state of its own and then both with one: prepared or recorded before one submission, they give
 /// the bits that they give in submissions of their own.
 fn frames_before_one_submission_are_those_of_two(gpu: &Gpu, case: &Case, kind: TechniqueKind) {

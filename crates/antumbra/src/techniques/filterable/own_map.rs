@@ -11,6 +11,7 @@ use crate::gpu::{Gpu, GpuStruct, Stage};
 use crate::light_map::between::Between;
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
+use crate::light_map::map_texels::map_texels;
 use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
 
 /// A light map of our own.
@@ -32,18 +33,19 @@ impl<P: GpuStruct> Filterable<P> {
         inputs: PreparedInputs,
     ) -> Result<FrameMap, Error> {
         let technique = self.technique;
-        let size = settings.map_size;
-        check_map_size(stage, technique, size, "set a smaller `map_size`")?;
         let sample_count = settings.msaa.count();
+        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
+        let receivers = corners_to_hold(stage, &frame.receivers);
+        let between = Between::new(frame.light, &bounds, &receivers);
+        let mut view = fit_light_view(frame.light, &bounds, &receivers);
+        let bytes_of = |size: u32| bytes_of(size, sample_count);
+        let size = map_texels(stage, frame, settings.map_size, bytes_of, &view, &bounds);
+        check_map_size(stage, technique, size, "set a smaller `map_size`")?;
         if self.own_map.as_ref().is_none_or(|map| (map.size, map.sample_count) != (size, sample_count)) {
             self.own_map =
                 Some(OwnMap { view: depth_texture(stage, technique, size, sample_count)?, size, sample_count });
         }
         let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
-        let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let receivers = corners_to_hold(stage, &frame.receivers);
-        let between = Between::new(frame.light, &bounds, &receivers);
-        let mut view = fit_light_view(frame.light, &bounds, &receivers);
         // The window holds the receivers; their kernels reach beyond it.
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
@@ -60,6 +62,12 @@ impl<P: GpuStruct> Filterable<P> {
         let size = UVec2::splat(size);
         Ok(FrameMap { depth, size, sample_count, view, range, settings: *settings, inputs, is_drawn: false })
     }
+}
+
+/// What a map takes with the basis of most techniques: depths, four channels in two words, their levels, and a blurred copy.
+fn bytes_of(size: u32, sample_count: u32) -> u64 {
+    const OF_BASIS: u32 = 8 * 4 / 3 + 4;
+    u64::from(4 * sample_count + OF_BASIS) * u64::from(size).pow(2)
 }
 
 /// A square depth map.

@@ -1,5 +1,5 @@
 use super::DepthAxis;
-use crate::contract::param_choice;
+use crate::contract::{MapSize, param_choice};
 use crate::primitives::packed_map::{Kernel, Packing};
 
 param_choice! {
@@ -92,7 +92,7 @@ impl From<FloatStorage> for Packing {
 /// The parameters that every filterable technique has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilterSettings {
-    pub(crate) map_size: u32,
+    pub(crate) map_size: MapSize,
     pub(crate) msaa: Multisampling,
     pub(crate) filter: FilterKernel,
     pub(crate) kernel_size: f32,
@@ -149,9 +149,9 @@ macro_rules! filterable_params {
                 shared bias_scale;
             }
             // The blur is as wide in the world at each.
-            Fast { map_size: 512, kernel_size: 3.5, anisotropy: 4, }
-            High { map_size: 2048, kernel_size: 14.0, }
-            Best { map_size: 4096, kernel_size: 28.0, }
+            Fast { map_size: $crate::contract::MapSize::Texels(512), kernel_size: 3.5, anisotropy: 4, }
+            High { map_size: $crate::contract::MapSize::Texels(2048), kernel_size: 14.0, }
+            Best { map_size: $crate::contract::MapSize::Texels(4096), kernel_size: 28.0, }
             $( => $($paper)+ )?
         }
 

@@ -7,7 +7,7 @@ use glam::{DVec4, UVec2, Vec2, Vec3, Vec4Swizzles};
 use super::{BasisShaders, DepthAxis, FilterKernel, FilterSettings, Filterable, FrameMap, Multisampling, ResolveBy};
 use super::{convolution, esm, evsm, lvsm, moment, vsm};
 use crate::TechniqueKind;
-use crate::contract::{DepthConvention, DepthMapCaster, Error, Receivers};
+use crate::contract::{DepthConvention, DepthMapCaster, Error, MapSize, Receivers};
 use crate::gpu::{Gpu, GpuStruct, Recorder, Stage};
 use crate::light_map::central_view::fit_light_view;
 use crate::primitives::depth_basis::cpu as basis;
@@ -262,7 +262,7 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
         // Each sample count has sizes of its own, and all have the one that fills several workgroups.
         for size in sizes.iter().copied().skip(i % 2).step_by(2).chain([33]) {
             let settings = FilterSettings {
-                map_size: size,
+                map_size: MapSize::Texels(size),
                 msaa,
                 filter: FilterKernel::Box,
                 kernel_size: 1.0,

@@ -310,7 +310,7 @@ impl Technique for MultiLayer {
             });
         };
         let plan = FramePlan::new(stage, frame, meshes, params);
-        self.make_room(stage, params.map_size, &plan.levels)?;
+        self.make_room(stage, plan.square_size, &plan.levels)?;
         let list_options = plan.list_options(self.capacity);
         let lists = self.lists.prepare(stage, &plan.view, meshes, &list_options);
         write_uniform(stage, &self.view_uniform, &plan.gpu_view);

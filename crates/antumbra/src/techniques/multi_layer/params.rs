@@ -1,4 +1,4 @@
-use crate::contract::{param_choice, params};
+use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
     /// How [`MultiLayer`](super::MultiLayer) gathers fragments.
@@ -177,8 +177,9 @@ param_choice! {
 params! {
     /// Parameters of [`MultiLayer`](super::MultiLayer).
     pub struct MultiLayerParams {
-        /// Texels along a side of the base where it is square; elsewhere it has as many, in the shape of what it sees.
-        map_size: u32 = 1024, in 16..=4096, unit "texels", scale Log,
+        /// Texels along a side of the base where it is square; elsewhere it has as many, in the shape of what it sees. With `auto`
+        /// as many as make a texel about half as wide as a pixel where receivers are seen.
+        map_size: MapSize = MapSize::Texels(1024), in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and filter time grow with the square.";
         /// The shape of the base.
         map_shape: MultiLayerMapShape = MultiLayerMapShape::Fitted,
@@ -257,9 +258,9 @@ params! {
             more "Smoother shadow edges that are finer than pixels.";
         shared bias_scale;
     }
-    Fast { map_size: 512, light_parts: MultiLayerLightParts::One, gather: MultiLayerGather::Linked, sub: true, }
-    High { map_size: 2048, }
-    Best { map_size: 2176, }
+    Fast { map_size: MapSize::Texels(512), light_parts: MultiLayerLightParts::One, gather: MultiLayerGather::Linked, sub: true, }
+    High { map_size: MapSize::Texels(2048), }
+    Best { map_size: MapSize::Texels(2176), }
     => Paper {
         map_shape: MultiLayerMapShape::Square, ours "The map has the sides of what it sees, and its texels the light's proportions.";
         msaa: MultiLayerSamples::One, ours "Four samples a texel: opacity is the share of the texel that is covered.";

@@ -17,6 +17,7 @@ use crate::contract::{MaskChannels, MeshCaster, PreparedFrame};
 use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};
 use crate::light_map::light_view::{FitTo, Followed, LightView, LightViewGpu, Window, WindowShape};
+use crate::light_map::map_texels::map_texels;
 use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
 use crate::light_map::texel_lists::{Accumulation, DepthTolerance, Gather, ListOptions};
 
@@ -30,12 +31,19 @@ const ADJOINING_TEXELS: f32 = 1.0;
 /// them, `tree` .0437, .0448, .0467 at 256 × 144.
 const BIAS_TEXELS: f32 = 2.0 / 3.0;
 
+/// Bytes of a base with its fragments and those of the levels: 50 MiB of 1024² on most scenes.
+fn bytes_of(size: u32) -> u64 {
+    50 * u64::from(size).pow(2)
+}
+
 /// What a frame's lists and levels are made by, and looked up by.
 #[derive(Debug)]
 pub(super) struct FramePlan<'a> {
     params: &'a MultiLayerParams,
     pub(super) view: LightView,
     pub(super) gpu_view: LightViewGpu,
+    /// Texels along a side of a square base of as many texels.
+    pub(super) square_size: u32,
     /// Texels along each side of the base.
     pub(super) map_size: UVec2,
     pub(super) levels: Vec<Level>,
@@ -99,11 +107,9 @@ impl<'a> FramePlan<'a> {
         let window = if is_square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
         let fit = FitTo { casters: &bounds, receivers: &receivers, window };
         let view = fit_central_view_within(light, Followed::All, reach(light), &fit);
-        let (view, map_size) = if is_square {
-            (view, UVec2::splat(params.map_size))
-        } else {
-            shaped_as_light(view, extent, params.map_size)
-        };
+        let square_size = map_texels(stage, frame, params.map_size, bytes_of, &view, &bounds);
+        let (view, map_size) =
+            if is_square { (view, UVec2::splat(square_size)) } else { shaped_as_light(view, extent, square_size) };
         let view = in_whole_texels(stage, view, map_size);
         let gpu_view = view.to_gpu_of(map_size);
         let tolerances = Tolerances::new(&view, &gpu_view, params);
@@ -127,7 +133,7 @@ impl<'a> FramePlan<'a> {
             keep_what_is_looked_up(&mut levels, &reach, |level| tolerances.epsilon(level.octave));
         }
         let colored = frame.casters.mask_channels() == MaskChannels::Three;
-        Self { params, view, gpu_view, map_size, levels, tolerances, filter_per_g, colored }
+        Self { params, view, gpu_view, square_size, map_size, levels, tolerances, filter_per_g, colored }
     }
 
     /// What lists to make, with room for `capacity` fragments.
@@ -135,10 +141,10 @@ impl<'a> FramePlan<'a> {
         let params = self.params;
         ListOptions {
             map_size: self.map_size,
-            most_texels: params.map_size.pow(2),
+            most_texels: self.square_size.pow(2),
             capacity,
             list_count: list_count(&self.levels),
-            owners_bytes: NearestSquares::bytes_of(params.map_size),
+            owners_bytes: NearestSquares::bytes_of(self.square_size),
             colored: self.colored,
             layers: params.layers,
             join: params.join_base.then(|| self.tolerances.epsilon(0.0)),

@@ -8,7 +8,7 @@ use super::nearest::{all_squares, squares_for};
 use super::plan::light_extent;
 use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerHierarchy, MultiLayerParams, PreparedMultiLayer, cpu};
 use crate::TechniqueKind;
-use crate::contract::{Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage};
+use crate::contract::{MapSize, Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::texel_lists::DepthTolerance;
 use crate::light_map::texel_lists::tests::{TestMesh, agree, scenes, unpack};
@@ -129,7 +129,7 @@ fn unpruned_levels_are_those_that_are_asked_for() {
         let mut technique = MultiLayer::new(gpu).expect("default limits");
         (technique.capacity, technique.map_size) = (1 << 20, 128);
         let params = MultiLayerParams {
-            map_size: 128,
+            map_size: MapSize::Texels(128),
             hierarchy: MultiLayerHierarchy::MipMap,
             prune,
             levels,
@@ -231,7 +231,7 @@ fn every_level_equals_its_twin() {
         {
             let by_count = depth_average == MultiLayerDepthAverage::Count;
             let params = MultiLayerParams {
-                map_size: 96,
+                map_size: MapSize::Texels(96),
                 stack_size,
                 subsampled_steps,
                 depth_average,
@@ -275,7 +275,7 @@ fn squares_know_their_nearest_fragment() {
     let Some(gpu) = gpu() else { return };
     for (name, light, meshes) in scenes() {
         // Not a multiple of any square's side.
-        let params = MultiLayerParams { map_size: 84, ..MultiLayerParams::default() };
+        let params = MultiLayerParams { map_size: MapSize::Texels(84), ..MultiLayerParams::default() };
         let mut technique = MultiLayer::new(gpu).expect("default limits");
         (technique.capacity, technique.map_size) = (1 << 20, 84);
         let prepared = record(gpu, &mut technique, &light, &meshes, &params);
@@ -324,7 +324,7 @@ fn two_squares_a_side_hold_what_is_within_reach() {
 fn a_frame_without_room_says_so_and_the_next_has_it() {
     let Some(gpu) = gpu() else { return };
     let (_, light, meshes) = scenes().swap_remove(2);
-    let params = MultiLayerParams { map_size: 96, ..MultiLayerParams::default() };
+    let params = MultiLayerParams { map_size: MapSize::Texels(96), ..MultiLayerParams::default() };
     let mut technique = MultiLayer::new(gpu).expect("default limits");
     (technique.capacity, technique.map_size) = (10_000, 96);
     let mut overflows = Vec::new();

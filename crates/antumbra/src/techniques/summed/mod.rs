@@ -45,7 +45,7 @@
 
 use std::marker::PhantomData;
 
-use crate::contract::{DrawnMap, Error, Params, PreparedFrame};
+use crate::contract::{DrawnMap, Error, MapSize, Params, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::MapWindow;
 use crate::techniques::Technique;
@@ -130,7 +130,7 @@ impl SoftDesign {
 /// What changes from frame to frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SoftSettings {
-    pub(crate) map_size: u32,
+    pub(crate) map_size: MapSize,
     pub(crate) window: MapWindow,
     pub(crate) bias_scale: f32,
     /// For [`Basis::Tiles`] in units a texel's width.
@@ -176,7 +176,7 @@ pub(crate) struct SoftSettings {
 impl Default for SoftSettings {
     fn default() -> Self {
         Self {
-            map_size: 1024,
+            map_size: MapSize::Texels(1024),
             window: MapWindow::Square,
             bias_scale: 1.0,
             exponent: 0.0,

@@ -66,9 +66,9 @@ macro_rules! table_params {
                 shared sub;
                 shared bias_scale;
             }
-            Fast { map_size: 512, search_scales: 2, }
-            High { map_size: 2048, subdivisions: 5, search_scales: 5, }
-            Best { map_size: 4096, subdivisions: 8, search_scales: 8, }
+            Fast { map_size: $crate::contract::MapSize::Texels(512), search_scales: 2, }
+            High { map_size: $crate::contract::MapSize::Texels(2048), subdivisions: 5, search_scales: 5, }
+            Best { map_size: $crate::contract::MapSize::Texels(4096), subdivisions: 8, search_scales: 8, }
             $( $($paper)+ )?
         }
 

@@ -181,7 +181,11 @@ impl SoftFilter {
         design: SoftDesign,
         settings: &SoftSettings,
     ) -> Result<PreparedSoft, Error> {
-        let own = OwnMapSettings { window: settings.window, ..OwnMapSettings::square(settings.map_size) };
+        let own = OwnMapSettings {
+            window: settings.window,
+            more_bytes_per_texel: bytes_per_texel(design),
+            ..OwnMapSettings::square(settings.map_size)
+        };
         let map = self.map.prepare(stage, frame, own)?;
         let made = self.passes.take().filter(|passes| passes.design == design);
         let mut passes = made.unwrap_or_else(|| {
@@ -288,6 +292,14 @@ impl SoftFilter {
         });
         self.map.memory_bytes() + tables + made + self.resolve.memory_bytes()
     }
+}
+
+/// Of tables, and of the basis where no table encodes what it reads.
+fn bytes_per_texel(design: SoftDesign) -> u32 {
+    /// `Rgba32Float` and `Rgba32Uint`.
+    const BYTES: u32 = 16;
+    let tables = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
+    BYTES * (tables + u32::from(!design.is_encoded()))
 }
 
 fn soft_uniform(settings: &SoftSettings, light: &LightSpread, fit: TableFit, empty_depth: f32) -> SoftUniform {

@@ -10,7 +10,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::table_fit::RIM;
 use super::{SoftFilter, SoftParams};
 use crate::contract::{
-    DepthConvention, DepthMapCaster, Mask, MaskChannels, Params, PreparedCasters, PreparedFrame, Receivers,
+    DepthConvention, DepthMapCaster, MapSize, Mask, MaskChannels, Params, PreparedCasters, PreparedFrame, Receivers,
 };
 use crate::gpu::{Gpu, Recorder, Stage, shared_constants};
 use crate::light_map::central_view::fit_light_view;
@@ -195,7 +195,7 @@ fn nor_does_it_by_the_rest_of_the_family() {
 }
 
 /// A side of maps, texels, by which kernels have 30 and more.
-const KERNELS_FROM_30: u32 = 1024;
+const KERNELS_FROM_30: MapSize = MapSize::Texels(1024);
 
 fn all_penumbra(gpu: &Gpu) -> Staged {
     let scene = load("builtin:leaning-plank", &LoadOptions::default()).expect("a built-in scene");

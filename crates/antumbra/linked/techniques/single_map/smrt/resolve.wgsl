@@ -943,6 +943,8 @@ const bins_BIN_COUNT = 32u;
 
 const bins_TILE_PIXELS = 64u;
 
+const bins_ROOM = 0.5;
+
 var<workgroup> bins_bins_found: atomic<u32>;
 
 var<workgroup> bins_least_found: array<atomic<u32>, bins_BIN_COUNT>;
@@ -1007,7 +1009,9 @@ fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_
         }
         if fan_g_of(receiver, depth) >= look.hiding_g {
             let bin = bins_bin_of(bins, depth);
-            atomicOr(&bins_bins_found, 1u << bin);
+            let room = bins_ROOM / bins.per_depth;
+            let beside = (1u << bins_bin_of(bins, depth - room)) | (1u << bins_bin_of(bins, depth + room));
+            atomicOr(&bins_bins_found, (1u << bin) | beside);
             atomicMin(&bins_least_found[bin], bins_depth_bits(depth));
             atomicMax(&bins_greatest_found[bin], bins_depth_bits(depth));
         }
@@ -1050,6 +1054,9 @@ fn bins_steps_of(receiver: map_receiver_MapReceiver, bins: bins_Bins, most: u32)
 
 fn bins_g_in_step(receiver: map_receiver_MapReceiver, steps: bins_Steps, step: u32, along: f32) -> f32 {
     let between = bins_found_between[steps.first + step];
+    if between.y <= map_receiver_least_depth() {
+        return max(steps.begin_g + steps.width_g * (f32(step) + along), 0.0);
+    }
     return max(fan_g_of(receiver, mix(between.x, between.y, along)), 0.0);
 }
 

@@ -4,7 +4,7 @@ use antumbra_light::Light;
 use glam::{Vec2, Vec3};
 
 use super::{LayerPlacement, Lvsm, LvsmLayersBy, LvsmLeastVariance, LvsmParams, RelaxOver};
-use crate::contract::{Opacity, SurfaceCoverage};
+use crate::contract::{MapSize, Opacity, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::primitives::packed_map::{Packing, cpu::unpack_word};
 use crate::techniques::Technique;
@@ -42,7 +42,14 @@ fn frame(gpu: &Gpu, lvsm: &mut Lvsm, case: &Case, params: &LvsmParams) -> Vec<f3
 fn params(relax_over: RelaxOver) -> LvsmParams {
     // Along the light's axis, where boards, table and ground have many depths each.
     let depth_axis = DepthAxis::Light;
-    LvsmParams { map_size: 256, kernel_size: 9.0, mips: false, relax_over, depth_axis, ..LvsmParams::default() }
+    LvsmParams {
+        map_size: MapSize::Texels(256),
+        kernel_size: 9.0,
+        mips: false,
+        relax_over,
+        depth_axis,
+        ..LvsmParams::default()
+    }
 }
 
 /// Two bins of the histogram.
@@ -133,7 +140,7 @@ fn layers_drawn_as_targets_are_those_encoded_from_depth() {
         (16, MomentStorage::Unorm16, DepthAxis::Light, LayerPlacement::Uniform, &["layers", "layers"]),
     ] {
         let params = LvsmParams {
-            map_size: 128,
+            map_size: MapSize::Texels(128),
             kernel_size: 3.0,
             mips: false,
             layers,

@@ -5,7 +5,9 @@ use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::TestMesh;
-use crate::contract::{Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage, SurfaceTexture};
+use crate::contract::{
+    MapSize, Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage, SurfaceTexture,
+};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::Technique;
 use crate::techniques::multi_layer::{MultiLayer, MultiLayerParams, MultiLayerSamples};
@@ -133,7 +135,7 @@ fn fragments_lie_between_the_view_s_planes() {
     let depth = empty_depth(gpu, size);
     let mask = Mask::new(gpu.device(), size);
     for_each_path(gpu, &meshes, &on_gpu, |path, casters, msaa| {
-        let params = MultiLayerParams { map_size: 128, msaa, ..MultiLayerParams::default() };
+        let params = MultiLayerParams { map_size: MapSize::Texels(128), msaa, ..MultiLayerParams::default() };
         let mut technique = MultiLayer::new(gpu).expect("default limits");
         let frame = PreparedFrame {
             light: &light,

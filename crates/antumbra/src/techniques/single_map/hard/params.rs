@@ -1,4 +1,4 @@
-use crate::contract::params;
+use crate::contract::{MapSize, params};
 
 params! {
     /// Parameters of [`Hard`](super::Hard).
@@ -6,7 +6,7 @@ params! {
         shared map_size, more "Finer edges; memory and fill grow with the square.";
         shared bias_scale;
     }
-    Fast { map_size: 512, }
-    High { map_size: 2048, }
-    Best { map_size: 4096, }
+    Fast { map_size: MapSize::Texels(512), }
+    High { map_size: MapSize::Texels(2048), }
+    Best { map_size: MapSize::Texels(4096), }
 }

@@ -1,4 +1,4 @@
-use crate::contract::{param_choice, params};
+use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
     /// The kernel of [`Pcf`](super::Pcf).
@@ -34,7 +34,7 @@ params! {
         shared seed;
         shared bias_scale;
     }
-    Fast { map_size: 512, kernel_size: 2.0, }
-    High { map_size: 2048, kernel_size: 6.0, }
-    Best { map_size: 4096, kernel_size: 12.0, }
+    Fast { map_size: MapSize::Texels(512), kernel_size: 2.0, }
+    High { map_size: MapSize::Texels(2048), kernel_size: 6.0, }
+    Best { map_size: MapSize::Texels(4096), kernel_size: 12.0, }
 }

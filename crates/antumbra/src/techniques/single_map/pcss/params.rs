@@ -1,6 +1,6 @@
 use antumbra_light::SampleSet;
 
-use crate::contract::{param_choice, params};
+use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
     /// What [`Pcss`](super::Pcss) compares a texel with.
@@ -54,7 +54,7 @@ params! {
         shared sub;
         shared bias_scale;
     }
-    Fast { map_size: 640, samples: 40, search_samples: 32, layers: 1, }
-    High { map_size: 2048, samples: 128, search_samples: 128, layers: 4, }
-    Best { map_size: 4096, samples: 1024, search_samples: 1024, layers: 4, means: PcssMeans::Ranges, }
+    Fast { map_size: MapSize::Texels(640), samples: 40, search_samples: 32, layers: 1, }
+    High { map_size: MapSize::Texels(2048), samples: 128, search_samples: 128, layers: 4, }
+    Best { map_size: MapSize::Texels(4096), samples: 1024, search_samples: 1024, layers: 4, means: PcssMeans::Ranges, }
 }

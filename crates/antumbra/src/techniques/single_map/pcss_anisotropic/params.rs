@@ -1,6 +1,6 @@
 use antumbra_light::SampleSet;
 
-use crate::contract::{param_choice, params};
+use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
     /// The shape that is sampled.
@@ -37,9 +37,9 @@ params! {
         shared sub;
         shared bias_scale;
     }
-    Fast { map_size: 512, samples: 16, search_samples: 16, }
-    High { map_size: 2048, samples: 128, search_samples: 128, }
-    Best { map_size: 4096, samples: 1024, search_samples: 1024, }
+    Fast { map_size: MapSize::Texels(512), samples: 16, search_samples: 16, }
+    High { map_size: MapSize::Texels(2048), samples: 128, search_samples: 128, }
+    Best { map_size: MapSize::Texels(4096), samples: 1024, search_samples: 1024, }
     => Paper {
         kernel: AnisotropicKernel::Parallelogram, ours "An ellipse for a light that is round.";
     } kept {

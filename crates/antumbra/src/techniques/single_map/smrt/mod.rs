@@ -18,7 +18,9 @@
 //! 1. **Search** (`bins.wesl`). The depths from the farthest receiver to the nearest blocker that a pyramid of the map allows
 //!    are cut into 32 bins. A few taps of every pixel mark the bins with blockers, for all pixels: what one misses its
 //!    neighbour finds. Taps lie at all scales of the light's shape, as in [`pcss`](super::pcss); those of a tile's pixels are
-//!    one set, spread evenly over light and scales.
+//!    one set, spread evenly over light and scales. A blocker marks half a bin's width to either side, too: a tilted surface reaches
+//!    farther in depth than where taps found it (640 × 360: roughness on `window` .0070 and .0061, on `lamp-room` .0052 and .0038,
+//!    umbra leak .0016 and .0013, .0022 and .0013).
 //! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance between the depths of the
 //!    blockers found there. A surface of that texel in the bin blocks it, if the ray is within a texel where it crosses the
 //!    surface's depth; else the texel that it crosses there decides: a wall that rises through a whole bin would darken receivers

@@ -1,6 +1,6 @@
 use antumbra_light::SampleSet;
 
-use crate::contract::params;
+use crate::contract::{MapSize, params};
 
 params! {
     /// Parameters of [`Smrt`](super::Smrt).
@@ -36,7 +36,7 @@ params! {
         shared seed;
         shared bias_scale;
     }
-    Fast { map_size: 640, samples: 16, layers: 2, steps: 4, }
-    High { map_size: 2048, samples: 128, search_samples: 16, layers: 4, steps: 16, }
-    Best { map_size: 4096, samples: 1024, search_samples: 64, layers: 4, steps: 32, }
+    Fast { map_size: MapSize::Texels(640), samples: 16, layers: 2, steps: 4, }
+    High { map_size: MapSize::Texels(2048), samples: 128, search_samples: 16, layers: 4, steps: 16, }
+    Best { map_size: MapSize::Texels(4096), samples: 1024, search_samples: 64, layers: 4, steps: 32, }
 }

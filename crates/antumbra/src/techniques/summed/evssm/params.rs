@@ -1,4 +1,4 @@
-use crate::contract::{param_choice, params};
+use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
     /// What filters the moments.
@@ -40,7 +40,7 @@ params! {
         shared sub;
         shared bias_scale;
     }
-    Fast { map_size: 512, subdivisions: 3, search_scales: 2, }
-    High { map_size: 2048, subdivisions: 7, search_scales: 5, }
-    Best { map_size: 4096, subdivisions: 9, search_scales: 8, }
+    Fast { map_size: MapSize::Texels(512), subdivisions: 3, search_scales: 2, }
+    High { map_size: MapSize::Texels(2048), subdivisions: 7, search_scales: 5, }
+    Best { map_size: MapSize::Texels(4096), subdivisions: 9, search_scales: 8, }
 }

@@ -1,4 +1,4 @@
-use crate::contract::params;
+use crate::contract::{MapSize, params};
 use crate::techniques::summed::TableSums;
 
 params! {
@@ -23,7 +23,7 @@ params! {
         shared sub;
         shared bias_scale;
     }
-    Fast { map_size: 512, search_samples: 16, }
-    High { map_size: 2048, search_samples: 128, }
-    Best { map_size: 4096, search_samples: 512, search_scales: 8, }
+    Fast { map_size: MapSize::Texels(512), search_samples: 16, }
+    High { map_size: MapSize::Texels(2048), search_samples: 128, }
+    Best { map_size: MapSize::Texels(4096), search_samples: 512, search_scales: 8, }
 }

@@ -1,0 +1,224 @@
+//! Number of texels of a map whose size is chosen for each frame.
+//!
+//! No edge of a shadow is sharper than a texel, and none need be sharper than a pixel. So a map has as many texels as make one
+//! half as wide, where receivers are seen, as a pixel is there: few for a small image or a camera far off, many for one that is
+//! near to what a light far off shades. What a penumbra's width would allow is not counted: under any light it is narrow where
+//! things touch.
+//!
+//! Receivers are [`PreparedReceivers::seen_points`](crate::contract::PreparedReceivers::seen_points), the ratio of the two sizes is
+//! the geometric mean over them: a few that are near to the camera, for which hardly any map would do, weigh no more than others.
+//! Where points in the receivers' hull stand for what is seen, all count alike, too: most surfaces are at its far side.
+//! Sizes are steps of √2, and one is left when another is nearer by a quarter of a step, or by a whole one where the host has not said
+//! what is seen: a camera that moves to and fro makes no textures. The most is what the light may spend
+//! ([`Stage::auto_map_bytes`]), but [`USUAL_TEXELS`] are always allowed.
+
+use antumbra_light::Aabb;
+use glam::{Vec2, Vec3};
+
+use super::light_view::{LightView, Window};
+use crate::contract::{Camera, MapSize, PreparedFrame, PreparedReceivers, SeenPoint};
+use crate::gpu::Stage;
+
+/// Sizes in an octave.
+const STEPS_IN_OCTAVE: f32 = 2.0;
+
+/// What is kept is left once it is farther than half a step from what is wanted, and this part of a step more.
+const STAYS_FOR: f32 = 0.25;
+
+/// The same where points in the receivers' hull stand for what is seen.
+const STAYS_UNSEEN_FOR: f32 = 1.0;
+
+/// The least: a texel less saves hardly any time.
+const LEAST_TEXELS: u32 = 256;
+
+/// The most, whatever a light may spend: what draws the map would take longer than all else.
+const MOST_TEXELS: u32 = 4096;
+
+/// What maps have where no camera sees the receivers, and what budgets leave.
+const USUAL_TEXELS: u32 = 1024;
+
+/// Sides are multiples of this, as workgroups are.
+const MULTIPLE: u32 = 8;
+
+/// What a texel's width is to be, in pixels. Of 1, `flight-helmet.glb` and `lantern.glb` have 728 texels at 1280 × 720, of ½ 1448. There
+/// `smrt` has rmse .0241, .0175, .0150, .0133 and .0145, .0095, .0081, .0069 with 512, 1024, 1448 and 2048 texels.
+const PIXELS: f32 = 0.5;
+
+/// Texels along a side of a map in a view of such casters, which with all that goes with it takes `bytes_of` its size.
+pub(crate) fn map_texels(
+    stage: &Stage<'_>,
+    frame: &PreparedFrame<'_>,
+    size: MapSize,
+    bytes_of: impl Fn(u32) -> u64,
+    view: &LightView,
+    casters: &[Aabb],
+) -> u32 {
+    if let MapSize::Texels(texels) = size {
+        return texels;
+    }
+    let of_casters = casters.iter().copied().fold(Aabb::EMPTY, Aabb::union);
+    let receivers = PreparedReceivers { bounds: frame.receivers.bounds.or(Some(of_casters)), ..frame.receivers };
+    let wanted = receivers.camera().and_then(|camera| {
+        let seen = receivers.seen_points(&without_repeats(receivers.corners()));
+        wanted_texels(camera, receivers.size_px.y, &seen, view)
+    });
+    let stays_for = if receivers.seen.is_empty() { STAYS_UNSEEN_FOR } else { STAYS_FOR };
+    let most = most_texels(stage.auto_map_bytes(), bytes_of, stage.device.limits().max_texture_dimension_2d);
+    let texels = step_of(wanted.unwrap_or(USUAL_TEXELS as f32), stage.auto_texels(), stays_for);
+    let texels = texels.clamp(LEAST_TEXELS, most);
+    stage.note_auto_texels(texels);
+    texels
+}
+
+/// Corners without those that come again: of what a camera sees the eye comes with every pair of planes, and points between corners would
+/// crowd before it.
+fn without_repeats(mut corners: Vec<Vec3>) -> Vec<Vec3> {
+    /// Of the size of all.
+    const NEAR: f32 = 1e-4;
+    corners.retain(|corner| corner.is_finite());
+    let near_m = NEAR * Aabb::of(corners.iter().copied()).diagonal();
+    corners.into_iter().fold(Vec::new(), |mut once, corner| {
+        if once.iter().all(|other: &Vec3| other.distance(corner) > near_m) {
+            once.push(corner);
+        }
+        once
+    })
+}
+
+/// The most that the light may spend, and the device has.
+fn most_texels(bytes: u64, bytes_of: impl Fn(u32) -> u64, limit: u32) -> u32 {
+    let steps = (0..=(MOST_TEXELS as f32).log2() as u32 * STEPS_IN_OCTAVE as u32).rev();
+    let affordable = steps.map(|step| texels_of(step as f32)).find(|texels| bytes_of(*texels) <= bytes);
+    affordable.unwrap_or(0).max(USUAL_TEXELS).min(limit)
+}
+
+/// The size nearest to some texels, or the one that was before, where that is nearly as near.
+fn step_of(wanted: f32, before: Option<u32>, stays_for: f32) -> u32 {
+    let step = wanted.max(1.0).log2() * STEPS_IN_OCTAVE;
+    let nearest = texels_of(step.round());
+    let is_near = |texels: &u32| ((*texels as f32).log2() * STEPS_IN_OCTAVE - step).abs() <= 0.5 + stays_for;
+    before.filter(is_near).unwrap_or(nearest)
+}
+
+fn texels_of(step: f32) -> u32 {
+    let texels = (step.clamp(0.0, 31.0) / STEPS_IN_OCTAVE).exp2();
+    ((texels / MULTIPLE as f32).round() as u32).max(1) * MULTIPLE
+}
+
+/// Texels along a side that make those on receivers as wide as [`PIXELS`] are there, in an image of so many rows; `None` where nothing is
+/// seen.
+fn wanted_texels(camera: &Camera, height_px: u32, seen: &[SeenPoint], view: &LightView) -> Option<f32> {
+    let ratios = seen
+        .iter()
+        .map(|point| map_m(view, point.pos_in_world) / (PIXELS * pixel_m(camera, height_px, point.pos_in_world)));
+    let logs: Vec<f32> = ratios.filter(|ratio| *ratio > 0.0 && ratio.is_finite()).map(f32::ln).collect();
+    (!logs.is_empty()).then(|| (logs.iter().sum::<f32>() / logs.len() as f32).exp())
+}
+
+/// How wide a pixel is at a place, across the view.
+fn pixel_m(camera: &Camera, height_px: u32, x: Vec3) -> f32 {
+    let w = (camera.clip_from_view * camera.view_from_world).row(3).dot(x.extend(1.0));
+    2.0 * w / (camera.clip_from_view.y_axis.y.abs() * height_px as f32)
+}
+
+/// How wide a map of one texel is at a place, across the light: the wider of its sides, which blurs the more.
+fn map_m(view: &LightView, x: Vec3) -> f32 {
+    let p = x - view.frame.center;
+    let z = if view.perspective { p.dot(view.frame.axis).max(view.near_m) } else { 1.0 };
+    let in_plane = Vec2::new(p.dot(view.frame.right), p.dot(view.frame.up)) / z;
+    let Window { center, half_size, warp, .. } = view.window;
+    // A step along the warp is longer by w² in the plane, one across it by w.
+    let w = (1.0 + warp.dot(in_plane - center)).max(1e-3);
+    2.0 * z * w * (half_size.x * w).max(half_size.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_light::{Light, LightShape};
+    use glam::camera::rh::{proj, view};
+
+    use super::*;
+    use crate::contract::DepthConvention;
+    use crate::light_map::central_view::fit_light_view;
+
+    const GROUND: Aabb = Aabb { min: Vec3::new(-4.0, 0.0, -4.0), max: Vec3::new(4.0, 0.01, 4.0) };
+
+    fn lamp_above() -> LightView {
+        let light = Light::new(LightShape::Sphere { radius_m: 0.1 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
+        fit_light_view(&light, &[GROUND], &GROUND.corners())
+    }
+
+    /// Looks straight down from a height.
+    fn camera(height_m: f32) -> Camera {
+        Camera {
+            view_from_world: view::look_at_mat4(Vec3::new(0.0, height_m, 0.0), Vec3::ZERO, Vec3::Z),
+            clip_from_view: proj::directx::perspective_infinite_reverse(0.9, 1.0, 0.1),
+            depth_convention: DepthConvention::Reversed,
+        }
+    }
+
+    fn ground() -> Vec<SeenPoint> {
+        let at =
+            |i: i32| SeenPoint { pos_in_world: Vec3::new((i % 9 - 4) as f32, 0.0, (i / 9 - 4) as f32), weight: 1.0 };
+        (0..81).map(at).collect()
+    }
+
+    /// What is chosen makes so many texels a pixel, by the map's own projection and the image's.
+    #[test]
+    fn texels_are_as_wide_as_parts_of_pixels() {
+        let map = lamp_above();
+        for (height_m, rows) in [(6.0, 360), (6.0, 720), (12.0, 720), (3.0, 1080)] {
+            let camera = camera(height_m);
+            let texels = wanted_texels(&camera, rows, &ground(), &map).expect("the ground is seen");
+            let (here, beside) = (Vec3::ZERO, Vec3::new(0.01, 0.0, 0.0));
+            let moved = |clip_from_world: glam::Mat4, across: f32| {
+                let [a, b] = [here, beside].map(|x| clip_from_world.project_point3(x).truncate());
+                0.5 * across * (a - b).length()
+            };
+            let in_pixels = moved(camera.clip_from_view * camera.view_from_world, rows as f32);
+            let in_texels = moved(map.clip_from_world(), texels);
+            let texels_a_pixel = in_texels / in_pixels;
+            assert!((texels_a_pixel * PIXELS - 1.0).abs() < 0.02, "{height_m} m, {rows} rows: {texels_a_pixel}");
+        }
+    }
+
+    /// Many times the map that a few receivers before the camera's nose ask for would change nothing else.
+    #[test]
+    fn what_is_near_the_camera_weighs_no_more() {
+        let mut seen = ground();
+        let usual = wanted_texels(&camera(6.0), 720, &seen, &lamp_above()).expect("seen");
+        seen.push(SeenPoint { pos_in_world: Vec3::new(0.0, 4.9, 0.0), weight: 1.0 });
+        let with_one = wanted_texels(&camera(5.0), 720, &seen, &lamp_above()).expect("seen");
+        assert!(with_one < 1.4 * usual, "{usual} and {with_one}");
+        assert_eq!(wanted_texels(&camera(6.0), 720, &[], &lamp_above()), None);
+    }
+
+    /// A camera that moves to and fro over the border between two sizes keeps one of them.
+    #[test]
+    fn sizes_are_kept_over_their_borders() {
+        let border = 1024.0 * 2f32.powf(0.25);
+        let mut held = Some(1024);
+        for i in 0..100 {
+            held = Some(step_of(border * (1.0 + 0.05 * (i as f32).sin()), held, STAYS_FOR));
+            assert_eq!(held, Some(1024));
+        }
+        assert_eq!(step_of(border * 1.15, held, STAYS_FOR), 1448);
+        assert_eq!(step_of(border * 1.15, held, STAYS_UNSEEN_FOR), 1024);
+        assert_eq!(step_of(border * 0.98, Some(1448), STAYS_FOR), 1448);
+        assert_eq!(step_of(0.0, None, STAYS_FOR), MULTIPLE);
+    }
+
+    /// No map costs more than a light may spend, but what is usual it always may.
+    #[test]
+    fn sizes_keep_within_what_may_be_spent() {
+        let of = |per_texel: u64| move |texels: u32| per_texel * u64::from(texels).pow(2);
+        for (bytes, per_texel, texels) in
+            [(64 << 20, 15, 2048), (63 << 20, 16, 1448), (64 << 20, 50, 1024), (0, 50, 1024)]
+        {
+            assert_eq!(most_texels(bytes, of(per_texel), 8192), texels);
+        }
+        assert_eq!(most_texels(u64::MAX, of(1), 8192), MOST_TEXELS);
+        assert_eq!(most_texels(u64::MAX, of(1), 2048), 2048);
+        assert_eq!(texels_of(22.0), 2048);
+    }
+}
