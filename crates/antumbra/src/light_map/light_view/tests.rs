@@ -288,22 +288,23 @@ fn hulls_have_the_windows_of_their_points() {
         .map(|i| Vec2::new((i * 37 % 101) as f32 / 50.0 - 1.0, (i * 61 % 97) as f32 / 48.0 - 1.0))
         .chain([Vec2::ZERO, Vec2::ZERO, Vec2::NAN])
         .collect();
-    let hull = super::convex_hull(points.clone());
+    let hull = super::hull::convex_hull(points.clone());
     assert!(hull.len() >= 3 && hull.len() < 40 && hull.iter().all(|p| points.contains(p)), "{hull:?}");
     for turn in 0..16 {
         let roll = Vec2::from_angle(0.1 + 0.4 * turn as f32);
         let finite = points.iter().copied().filter(|p| p.is_finite());
-        let (of_points, of_hull) = (super::PlaneWindow::of(finite, roll), super::PlaneWindow::of(hull.clone(), roll));
+        let (of_points, of_hull) =
+            (super::window::PlaneWindow::of(finite, roll), super::window::PlaneWindow::of(hull.clone(), roll));
         assert!(of_points.min.abs_diff_eq(of_hull.min, 1e-6) && of_points.max.abs_diff_eq(of_hull.max, 1e-6));
     }
     for few in [vec![], vec![Vec2::X], vec![Vec2::X, Vec2::Y], vec![Vec2::X; 5]] {
         let mut once = few.clone();
         once.sort_by(|a, b| a.x.total_cmp(&b.x));
         once.dedup();
-        assert_eq!(super::convex_hull(few), once);
+        assert_eq!(super::hull::convex_hull(few), once);
     }
     let line: Vec<Vec2> = (0..9).map(|i| Vec2::splat(i as f32)).collect();
-    assert_eq!(super::convex_hull(line), [Vec2::ZERO, Vec2::splat(8.0)]);
+    assert_eq!(super::hull::convex_hull(line), [Vec2::ZERO, Vec2::splat(8.0)]);
 }
 
 #[test]

@@ -1,0 +1,233 @@
+//! The view that holds what matters of casters and receivers.
+
+use antumbra_light::{Aabb, LightFrame};
+use glam::{Vec2, Vec3};
+
+use super::hull::convex_hull;
+use super::window::PlaneWindow;
+use super::{LightView, WindowShape};
+use crate::light_map::between::Between;
+
+/// What one view holds off its axis where receivers lie all around it (70 degrees): the texels that the last 20 degrees
+/// take are missed everywhere else (under a lamp in Sponza, `multi_view`'s rmse was .194 with all of 80 degrees in one view
+/// and .175 of 70). What lies beyond has views of its own: `cover`.
+pub(crate) const MIDDLE_TANGENT: f32 = 2.75;
+
+/// A view is cut so far off its axis (89 degrees): no planar map can hold a half-space. Receivers beyond are lit.
+pub(crate) const HORIZON_TANGENT: f32 = 64.0;
+
+/// A window is widened by this factor at the most for the sake of segments that leave it, of receivers farthest off its axis:
+/// its texels are missed in its middle. What shades those from so near to the light that it lies beyond, the map's edge stands
+/// for.
+const MOST_WIDENED: f32 = 1.15;
+
+/// The nearest depth a perspective view resolves, as a fraction of its farthest. With reversed 32-bit depth the
+/// precision does not depend on it; it keeps the margin finite for lights that casters cross.
+const MIN_NEAR_FRACTION: f32 = 1e-3;
+
+/// But a view resolves depths from here on, metres, however far it reaches.
+const MOST_LEAST_NEAR_M: f32 = 0.05;
+
+/// What of receivers' segments to the light a technique follows in the map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Followed {
+    /// Those to all of it: they leave the window of the receivers farthest off its axis.
+    All,
+    /// Those to its middle, and what a kernel of fixed width takes for others.
+    Middle,
+}
+
+/// What a view is fitted to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FitTo<'a> {
+    /// World-space boxes of what casts.
+    pub(crate) casters: &'a [Aabb],
+    /// World-space points whose convex hull holds what receives; none where that is unknown.
+    pub(crate) receivers: &'a [Vec3],
+    /// What the window may be.
+    pub(crate) window: WindowShape,
+}
+
+/// What a view is fitted to, as it lies in the light plane: the same for every window that may be tried.
+#[derive(Clone, Debug)]
+pub(crate) struct ViewFit {
+    pub(super) frame: LightFrame,
+    pub(super) perspective: bool,
+    pub(super) near_m: f32,
+    far_m: f32,
+    held_from_m: f32,
+    /// Points whose convex hull is that of what casts: of all its boxes' corners, or the hull's own corners.
+    casters: Vec<Vec2>,
+    /// The same of what receives; `None` where that is unknown.
+    receivers: Option<Vec<Vec2>>,
+    /// How far segments to the light leave the receivers' window.
+    margin: f32,
+    /// The light's own frustum, where it has one: receivers outside it are not asked for.
+    reach_tangent: Option<f32>,
+}
+
+impl ViewFit {
+    /// For a perspective view from `frame.center` that holds what matters of casters and receivers.
+    ///
+    /// Outside the casters' window nothing is occluded, and outside the receivers' nothing is asked; the window is
+    /// where both meet, and the receivers' is widened by `margin_m`, the farthest that a light point lies from the
+    /// origin, since the segments to it leave the receivers' window by as much as `margin_m · (1/near − 1/far)`.
+    ///
+    /// `reach_tangent` is the light's own frustum, where it has one: receivers outside it are not asked for either.
+    pub(crate) fn perspective(
+        frame: LightFrame,
+        followed: Followed,
+        margin_m: f32,
+        reach_tangent: Option<f32>,
+        casters: &Between,
+        receivers: &[Vec3],
+    ) -> Self {
+        let in_light = |point: Vec3| {
+            let p = point - frame.center;
+            Vec3::new(p.dot(frame.right), p.dot(frame.up), p.dot(frame.axis))
+        };
+        let boxes: Vec<[Vec3; 8]> = casters.all().map(|bounds| bounds.corners().map(in_light)).collect();
+        let receivers: Vec<Vec3> = receivers.iter().copied().map(in_light).collect();
+        let (mut near, mut far) = (f32::INFINITY, 0.0f32);
+        for corner in boxes.iter().flatten() {
+            near = near.min(corner.z);
+            far = far.max(corner.z);
+        }
+        far = receivers.iter().fold(far, |far, p| far.max(p.z));
+        // A light with nothing in front still has a view; its map stays empty.
+        let far = if far > 0.0 { far * 1.001 } else { 1.0 };
+        let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MOST_LEAST_NEAR_M), far * 0.99);
+        let mut of_receivers = Vec::new();
+        add_tangents(&mut of_receivers, &receivers, near, HORIZON_TANGENT);
+        // Casters farther off than all receivers and what their segments leave the window by shade them only where they are
+        // close to the light.
+        let held_from_m = margin_depth(near, far, margin_m);
+        let asked = of_receivers.iter().fold(0.0f32, |farthest, p| farthest.max(p.abs().max_element()));
+        let needed = asked + margin_m * (1.0 / held_from_m - 1.0 / far);
+        let (farthest, held_from_m) = match followed {
+            Followed::Middle => (asked.max(MIDDLE_TANGENT), held_from_m),
+            Followed::All => {
+                let widest = MOST_WIDENED * asked.max(MIDDLE_TANGENT);
+                let held_by_widest = margin_m / (widest - asked + margin_m / far);
+                (needed.clamp(MIDDLE_TANGENT, widest), if needed > widest { held_by_widest } else { held_from_m })
+            }
+        };
+        let mut of_casters = Vec::with_capacity(8 * boxes.len());
+        for corners in &boxes {
+            add_tangents(&mut of_casters, corners, near, farthest);
+        }
+        of_casters.retain(|p| p.is_finite());
+        of_receivers.retain(|p| p.is_finite());
+        Self {
+            frame,
+            perspective: true,
+            near_m: near,
+            far_m: far,
+            held_from_m: if held_from_m > near { held_from_m } else { 0.0 },
+            casters: of_casters,
+            receivers: (!receivers.is_empty()).then_some(of_receivers),
+            margin: margin_m * (1.0 / held_from_m - 1.0 / far),
+            reach_tangent,
+        }
+    }
+
+    /// For an orthographic view along the axis that holds what matters of casters and receivers. `margin` is the largest
+    /// tangent between the axis and a direction of the light.
+    ///
+    /// Where casters may be anywhere, depth ends with what receives. Reversed, it is the finest there, however far before it casters
+    /// begin: it takes the bits of a float from the far plane.
+    pub(crate) fn orthographic(frame: LightFrame, margin: f32, casters: &Between, receivers: &[Vec3]) -> Self {
+        let seen = Aabb::of(receivers.iter().copied());
+        let is_by_receivers = casters.unknown.is_some() && !receivers.is_empty();
+        let asked = if is_by_receivers { seen } else { casters.all().fold(seen, Aabb::union) };
+        // The origin is their centre, whatever the light's: small coordinates keep their bits.
+        let origin = if asked.is_empty() { frame.center } else { asked.center() };
+        let frame = LightFrame { center: origin, ..frame };
+        let depth = |x: &Vec3| (*x - origin).dot(frame.axis);
+        let corners = asked.corners();
+        let of_asked = if is_by_receivers { receivers } else { &corners[..] };
+        let (near, far) = of_asked
+            .iter()
+            .map(depth)
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(near, far), depth| (near.min(depth), far.max(depth)));
+        let (near, far) = if near.is_finite() && far.is_finite() { (near, far) } else { (0.0, 1.0) };
+        let nearest_of = |bounds: Aabb| bounds.corners().iter().map(depth).fold(near, f32::min);
+        let near_of_known = casters.known.iter().map(|bounds| nearest_of(*bounds)).fold(near, f32::min);
+        let near = casters.unknown.map_or(near_of_known, |bounds| nearest_of(bounds).min(near_of_known));
+        let pad = 1e-3 * (far - near_of_known).max(1e-3);
+        let (near, near_of_known, far) = (near - pad, near_of_known - pad, far + pad);
+        let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
+        let of_casters = casters.all().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner)));
+        let asked = PlaneWindow::of(receivers.iter().map(in_plane), Vec2::X);
+        // Shadows of what is so far off that they blur over more than all that is asked for may be cut.
+        let most = if receivers.is_empty() { f32::INFINITY } else { 0.5 * (asked.max - asked.min).max_element() };
+        Self {
+            frame,
+            perspective: false,
+            near_m: near,
+            far_m: far,
+            held_from_m: 0.0,
+            casters: of_casters.filter(|p| p.is_finite()).collect(),
+            receivers: (!receivers.is_empty())
+                .then(|| receivers.iter().map(in_plane).filter(|p| p.is_finite()).collect()),
+            // Unknown casters may stand anywhere; no window can hold all that they blur.
+            margin: (margin * (far - near_of_known)).min(most),
+            reach_tangent: None,
+        }
+    }
+
+    /// The same from a depth on.
+    pub(crate) fn beginning_at(self, near_m: f32) -> Self {
+        Self { near_m: self.near_m.max(near_m), ..self }
+    }
+
+    /// The same, with less to look at in every window: worth its time where many are tried.
+    pub(crate) fn for_many_windows(self) -> Self {
+        Self { casters: convex_hull(self.casters), receivers: self.receivers.map(convex_hull), ..self }
+    }
+
+    /// The view in a window of this shape.
+    pub(crate) fn view(&self, window: WindowShape) -> LightView {
+        let roll = window.roll();
+        let casters = PlaneWindow::of(self.casters.iter().copied(), roll);
+        let asked = self.receivers.as_ref().map(|points| PlaneWindow::of(points.iter().copied(), roll));
+        let needed = if self.perspective {
+            let asked = asked.unwrap_or(casters);
+            let reached = self.reach_tangent.map_or(asked, |t| {
+                let corners = [Vec2::new(t, t), Vec2::new(-t, t), Vec2::new(t, -t), Vec2::new(-t, -t)];
+                asked.intersection(PlaneWindow::of(corners, roll))
+            });
+            casters.intersection(reached.grown(self.margin))
+        } else {
+            asked.map_or(casters, |asked| casters.intersection(asked.grown(self.margin)))
+        };
+        let hull = self.receivers.as_deref().filter(|_| self.margin == 0.0).unwrap_or_default();
+        let window = needed.place(window, hull);
+        let Self { frame, perspective, near_m, far_m, held_from_m, .. } = *self;
+        LightView { frame, perspective, window, near_m, far_m, held_from_m }
+    }
+}
+
+/// From which depth on casters are taken to leave the receivers' window. Where a caster's box holds the light, as a room's
+/// does, nothing is known of how near its triangles are; a window that held all segments to the light's rim up to the near
+/// plane would be hundreds of times as wide as what is asked for. What is nearer than the light is large is left to those
+/// receivers before whose window it stands.
+fn margin_depth(near: f32, far: f32, light_radius_m: f32) -> f32 {
+    /// Of lights as large as the way to their receivers.
+    const MOST_OF_FAR: f32 = 1.0 / 8.0;
+    near.max(light_radius_m.min(MOST_OF_FAR * far))
+}
+
+/// Adds the tangents that span what lies beyond depth `near` of the convex hull of some points in light space: those of the
+/// points there, and of the places where the segments between them cross `near`. None is larger than `most`.
+fn add_tangents(tangents: &mut Vec<Vec2>, points: &[Vec3], near: f32, most: f32) {
+    let tangent = |p: Vec3| (p.truncate() / p.z).clamp(Vec2::splat(-most), Vec2::splat(most));
+    for p in points {
+        if p.z >= near {
+            tangents.push(tangent(*p));
+        } else {
+            let beyond = points.iter().filter(|q| q.z >= near);
+            tangents.extend(beyond.map(|q| tangent(p.lerp(*q, (near - p.z) / (q.z - p.z)))));
+        }
+    }
+}
