@@ -109,7 +109,7 @@ impl LightViewGpu {
     }
 
     /// 1 / w of the module's formula over a warped window, affine in uv.
-    fn depth_warp(&self) -> [f32; 3] {
+    pub(super) fn depth_warp(&self) -> [f32; 3] {
         let [a, b, c, d] = self.plane_from_uv;
         let by_uv = -Vec2::new(self.warp.dot(Vec2::new(a, b)), self.warp.dot(Vec2::new(c, d)));
         [1.0 - by_uv.dot(self.uv_origin), by_uv.x, by_uv.y]
