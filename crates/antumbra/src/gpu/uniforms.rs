@@ -71,7 +71,7 @@ struct Numbers {
 
 const NUMBERS: [Numbers; 5] = [
     Numbers { layout: "antumbra splat", binding: 1, name: "group_views" },
-    Numbers { layout: "antumbra multi_layer lookup", binding: 5, name: "ladder" },
+    Numbers { layout: "antumbra multi_layer lookup", binding: 5, name: "settings_ladder" },
     Numbers { layout: "antumbra view-sample table", binding: 1, name: "light_words" },
     Numbers { layout: "antumbra view-sample evaluate", binding: 4, name: "bits_light_words" },
     Numbers { layout: "antumbra view-sample raster", binding: 4, name: "bits_light_words" },

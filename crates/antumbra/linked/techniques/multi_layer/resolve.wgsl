@@ -1,562 +1,13 @@
 // Linked from src/techniques/multi_layer/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
-struct MultiLayerRung {
-    size: vec2u,
-    first: u32,
-    spacing: f32,
-    offset: f32,
-    width: f32,
-    epsilon_slope: f32,
-    epsilon_m: f32,
-    squared: f32,
-    squared_finer: f32,
-    squared_coarser: f32,
-    reach: f32,
-    square_shift: u32,
-    square_first: u32,
-    padding_0: u32,
-    padding_1: u32
-}
-
-struct MultiLayerLadder {
-    rungs: array<MultiLayerRung, 32>
-}
-
-struct MultiLayerUniform {
-    rung_count: u32,
-    filter_per_g: f32,
-    footprint_px: f32,
-    padding_0: u32
-}
-
-@group(1) @binding(1)
-var<uniform> multi_layer: MultiLayerUniform;
-
-@group(1) @binding(2)
-var<storage, read> lists: array<vec2u>;
-
-@group(1) @binding(3)
-var<storage, read> fragments: array<vec2u>;
-
-@group(1) @binding(4)
-var<storage, read> nearest_in: array<f32>;
-
-@group(1) @binding(5)
-var<uniform> ladder: MultiLayerLadder;
-
-override COLORED: u32 = 0u;
-
-override LIST_ACCUMULATION: u32 = 0u;
-
-override LEVEL_ACCUMULATION: u32 = 0u;
-
-override LIGHT_PARTS: u32 = 1u;
-
-override LEVEL_WEIGHTS: u32 = 0u;
-
-override WEIGHTS_FRAGMENTS: bool = false;
-
-override LISTS_APART: u32 = 0u;
-
-override HAS_PLANES: bool = true;
-
 const LEAST_SINE = 0.001;
-
-const PARTS = vec4u(0u, 1u, 2u, 3u);
 
 const MOST_LOOKUPS = 128u;
 
-const CORRELATED = 0u;
-
-const PAIRS = 1u;
-
-const ADD = 2u;
-
-const MULTIPLY = 3u;
-
-const MAX = 4u;
-
-const BY_VARIANCE = 0u;
-
-const BY_DEPTH = 1u;
-
-struct Lookup {
-    z_m: f32,
-    filter_per_g: f32,
-    footprint_squared: f32
-}
-
-fn g_of_z(lookup: Lookup, z_m: f32) -> f32 {
-    return select(lookup.z_m - z_m, 1.0 / z_m - 1.0 / lookup.z_m, map_light_view.perspective == 1u);
-}
-
-fn z_of_filter(lookup: Lookup, filter_squared: f32) -> f32 {
-    let g = sqrt(max(filter_squared - lookup.footprint_squared, 0.0)) / lookup.filter_per_g;
-    return select(lookup.z_m - g, 1.0 / (g + 1.0 / lookup.z_m), map_light_view.perspective == 1u);
-}
-
-fn filter_squared_at(lookup: Lookup, z_m: f32) -> f32 {
-    let filter_size = lookup.filter_per_g * g_of_z(lookup, z_m);
-    return filter_size * filter_size + lookup.footprint_squared;
-}
-
-struct Hat {
-    z_near: f32,
-    z_peak: f32,
-    z_far: f32
-}
-
-fn z_near_of(lookup: Lookup, rung: MultiLayerRung) -> f32 {
-    return select(-3e38, z_of_filter(lookup, rung.squared_coarser), rung.squared_coarser >= 0.0);
-}
-
-fn hat_of(lookup: Lookup, rung: MultiLayerRung) -> Hat {
-    let z_finer = z_of_filter(lookup, rung.squared_finer);
-    return Hat(z_near_of(lookup, rung), z_of_filter(lookup, rung.squared), select(lookup.z_m, z_finer, rung.squared_finer >= 0.0));
-}
-
-struct Occluder {
-    opacity: vec3f,
-    edge: vec2f
-}
-
-struct Share {
-    occluder: Occluder,
-    place_sum: f32,
-    strength: f32
-}
-
-const NOTHING = Occluder(vec3f(0.0), vec2f(0.0));
-
-const NO_SHARE = Share(NOTHING, 0.0, 0.0);
-
-struct LevelShares {
-    coarser: Share,
-    finer: Share
-}
-
-fn place_between(lookup: Lookup, finer_squared: f32, coarser_squared: f32, z_m: f32) -> f32 {
-    switch LEVEL_WEIGHTS {
-        case BY_VARIANCE {
-            return saturate((filter_squared_at(lookup, z_m) - finer_squared) / (coarser_squared - finer_squared));
-        }
-        case BY_DEPTH {
-            let z_finer = z_of_filter(lookup, finer_squared);
-            return saturate((z_finer - z_m) / max(z_finer - z_of_filter(lookup, coarser_squared), 1e-20));
-        }
-        case default {
-            return 0.0;
-        }
-    }
-}
-
-fn largest(color: vec3f) -> f32 {
-    return max(color.r, max(color.g, color.b));
-}
-
-fn combined(a: Occluder, b: Occluder) -> Occluder {
-    let related = clamp(dot(a.edge, b.edge), -1.0, 1.0);
-    let random = a.opacity * b.opacity;
-    let extreme = select(max(a.opacity + b.opacity - 1.0, vec3f(0.0)), min(a.opacity, b.opacity), related > 0.0);
-    let both = mix(random, extreme, abs(related));
-    let random_edge = a.edge * (1.0 - largest(b.opacity)) + b.edge * (1.0 - largest(a.opacity));
-    let larger = select(b.edge, a.edge, largest(a.opacity) > largest(b.opacity));
-    let extreme_edge = select(a.edge + b.edge, larger, related > 0.0);
-    return Occluder(a.opacity + b.opacity - both, mix(random_edge, extreme_edge, abs(related)));
-}
-
-fn combined_in_level(a: Occluder, b: Occluder) -> Occluder {
-    if LEVEL_ACCUMULATION == CORRELATED && !WEIGHTS_FRAGMENTS {
-        return combined(a, b);
-    }
-    return Occluder(fragments_accumulate(LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
-}
-
-fn add_surface(share: Share, surface: Occluder, place: f32) -> Share {
-    let strength = largest(surface.opacity);
-    return Share(combined_in_level(share.occluder, surface), share.place_sum + strength * place, share.strength + strength);
-}
-
-fn add_to_level(shares: LevelShares, lookup: Lookup, rung: MultiLayerRung, z_peak: f32, z_m: f32, surface: Occluder) -> LevelShares {
-    var sum = shares;
-    if WEIGHTS_FRAGMENTS {
-        let weight = own_weight(lookup, rung, z_peak, z_m);
-        sum.finer = add_surface(shares.finer, Occluder(weight * surface.opacity, weight * surface.edge), 0.0);
-    }
-    else if z_m < z_peak {
-        sum.coarser = add_surface(shares.coarser, surface, place_towards_coarser(lookup, rung, z_m));
-    }
-    else {
-        sum.finer = add_surface(shares.finer, surface, place_towards_finer(lookup, rung, z_m));
-    }
-    return sum;
-}
-
-fn own_weight(lookup: Lookup, rung: MultiLayerRung, z_peak: f32, z_m: f32) -> f32 {
-    if z_m < z_peak {
-        return 1.0 - place_towards_coarser(lookup, rung, z_m);
-    }
-    return place_towards_finer(lookup, rung, z_m);
-}
-
-const NONE = 3e38;
-
-struct Corner {
-    z_m: f32,
-    opacity_bits: u32,
-    place: u32,
-    end: u32,
-    z_end: f32
-}
-
-fn set_fragment(corner: ptr<function, Corner>, fragment: vec2u) {
-    let z_m = bitcast<f32>(fragment.x);
-    (*corner).z_m = select(NONE, z_m, z_m < (*corner).z_end);
-    (*corner).opacity_bits = fragment.y;
-}
-
-fn read_next(corner: ptr<function, Corner>) {
-    (*corner).place++;
-    (*corner).z_m = NONE;
-    if (*corner).place < (*corner).end {
-        set_fragment(corner, fragments[(*corner).place]);
-    }
-}
-
-struct Quad {
-    first: vec4u,
-    end: vec4u,
-    z_end: vec4f
-}
-
-fn quad_at(rung: MultiLayerRung, texel: vec2i) -> Quad {
-    let last = vec2i(rung.size) - 1;
-    let near = clamp(texel, vec2i(0), last);
-    let far = clamp(texel + 1, vec2i(0), last);
-    let near_row = rung.first + u32(near.y) * rung.size.x;
-    let far_row = rung.first + u32(far.y) * rung.size.x;
-    let a = lists[near_row + u32(near.x)];
-    let b = lists[near_row + u32(far.x)];
-    let c = lists[far_row + u32(near.x)];
-    let d = lists[far_row + u32(far.x)];
-    let is_inside = (vec4i(near.x, far.x, near.x, far.x) == vec4i(texel.x, texel.x + 1, texel.x, texel.x + 1)) & (vec4i(near.y, near.y, far.y, far.y) == vec4i(texel.y, texel.y, texel.y + 1, texel.y + 1));
-    let first = vec4u(a.x, b.x, c.x, d.x);
-    let end = first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside | vec4<bool>(map_light_view.held_from_m > 0.0));
-    return Quad(first, end, select(vec4f(map_light_view.held_from_m), vec4f(NONE), is_inside));
-}
-
-struct Found {
-    place: vec4u,
-    z_m: vec4f
-}
-
-const MOST_HALVINGS = 33u;
-
-fn first_beyond(quad: Quad, z_near: f32) -> Found {
-    var low = quad.first;
-    var high = quad.end;
-    var found = vec4f(NONE);
-    var halvings = 0u;
-    loop {
-        let middle = (low + high) / 2u;
-        let z_m = bitcast<vec4f>(vec4u(fragments[middle.x].x, fragments[middle.y].x, fragments[middle.z].x, fragments[middle.w].x));
-        let is_open = low < high;
-        let is_near = is_open & (z_m <= vec4f(z_near));
-        let is_far = is_open & (z_m > vec4f(z_near));
-        low = select(low, middle + 1u, is_near);
-        high = select(high, middle, is_far);
-        found = select(found, z_m, is_far);
-        continuing {
-            halvings++;
-            break if all(low >= high) | (halvings >= MOST_HALVINGS);
-        }
-    }
-    return Found(low, found);
-}
-
-fn corner_at(place: u32, end: u32, z_end: f32) -> Corner {
-    var corner = Corner(NONE, 0u, place, end, z_end);
-    if place < end {
-        set_fragment(&corner, fragments[place]);
-    }
-    return corner;
-}
-
-struct DepthSum {
-    z: f32,
-    weight: f32
-}
-
-fn take(corner: ptr<function, Corner>, limit: f32, weight: f32, change: vec2f, surface: ptr<function, Occluder>, depths: ptr<function, DepthSum>) {
-    if (*corner).z_m > limit {
-        return;
-    }
-    var opacity = vec3f();
-    let end = min((*corner).end, arrayLength(&fragments));
-    var place = (*corner).place;
-    loop {
-        let a = fragments_unpack_opacity((*corner).opacity_bits, COLORED);
-        opacity = fragments_accumulate(LIST_ACCUMULATION, opacity, a);
-        (*depths).z += weight * largest(a) * (*corner).z_m;
-        (*depths).weight += weight * largest(a);
-        read_next(corner);
-        continuing {
-            place++;
-            break if !((*corner).z_m <= limit) | (place >= end);
-        }
-    }
-    (*surface).opacity += weight * opacity;
-    (*surface).edge += change * largest(opacity);
-}
-
-const OWN_SURFACE_TEXELS = 1.0;
-
-const OTHER_SURFACE_TEXELS = 4.0;
-
-const LEAST_IN_FRONT = 0.1;
-
-fn share_in_front(lookup: Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f32 {
-    let is_in_front = vec4f(z_m) < z_plane;
-    if !HAS_PLANES || all(is_in_front) {
-        return 1.0;
-    }
-    let share = dot(weight, select(vec4f(0.0), vec4f(1.0), is_in_front));
-    let texel_m = map_light_view.texel_in_plane * select(1.0, lookup.z_m, map_light_view.perspective == 1u);
-    let gap_texels = (lookup.z_m - z_m) / texel_m;
-    return mix(1.0, max(share, LEAST_IN_FRONT), smoothstep(OWN_SURFACE_TEXELS, OTHER_SURFACE_TEXELS, gap_texels));
-}
-
-fn merged_texels(rung: MultiLayerRung) -> f32 {
-    let box = sqrt(max(rung.width * rung.width - 2.0 * rung.spacing * rung.spacing, 1.0));
-    return 0.5 * (box - 1.0);
-}
-
-fn plane_z_at(plane: space_ReceiverPlane, rung: MultiLayerRung, texel: vec2f) -> vec4f {
-    if !HAS_PLANES {
-        return vec4f(space_z_of_depth(map_light_view, saturate(plane.depth)));
-    }
-    let uv_step = rung.spacing / map_light_view.map_size;
-    let step = plane.depth_per_uv * uv_step;
-    let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
-    let rise = map_light_view.depth_sign * merged_texels(rung) * dot(abs(plane.depth_per_uv), 1.0 / map_light_view.map_size);
-    let depth = space_held(map_light_view, plane, near + rise + vec4f(0.0, step.x, step.y, step.x + step.y));
-    return vec4f(space_z_of_depth(map_light_view, depth.x), space_z_of_depth(map_light_view, depth.y), space_z_of_depth(map_light_view, depth.z), space_z_of_depth(map_light_view, depth.w));
-}
-
-fn place_of(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> vec2f {
-    var shift = vec2f();
-    if LIGHT_PARTS > 1u {
-        let side = vec2f(vec2u(part & 1u, part >> 1u)) - 0.5;
-        shift = side * sqrt(max(rung.squared - lookup.footprint_squared, 0.0));
-    }
-    return (plane.uv * map_light_view.map_size + shift) / rung.spacing - rung.offset;
-}
-
-fn nearest_about(plane: space_ReceiverPlane, rung: MultiLayerRung) -> f32 {
-    let map_size = vec2u(map_light_view.map_size);
-    let count = (map_size + ((1u << rung.square_shift) - 1u)) >> vec2u(rung.square_shift);
-    let last = vec2i(map_size) - 1;
-    let pos = plane.uv * map_light_view.map_size;
-    let near = vec2u(clamp(vec2i(floor(pos - rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
-    let far = vec2u(clamp(vec2i(floor(pos + rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
-    let near_row = rung.square_first + near.y * count.x;
-    let far_row = rung.square_first + far.y * count.x;
-    return min(min(nearest_in[near_row + near.x], nearest_in[near_row + far.x]), min(nearest_in[far_row + near.x], nearest_in[far_row + far.x]));
-}
-
-fn candidate_rungs(lookup: Lookup, plane: space_ReceiverPlane) -> u32 {
-    var candidates = 0u;
-    for (var i = 0u; i < multi_layer.rung_count; i++) {
-        let rung = ladder.rungs[i];
-        let hat = hat_of(lookup, rung);
-        if hat.z_far <= map_light_view.near_m {
-            break;
-        }
-        if hat.z_near < lookup.z_m && nearest_about(plane, rung) < hat.z_far {
-            candidates |= 1u << i;
-        }
-    }
-    return candidates;
-}
-
-fn occupied_rungs(lookup: Lookup, plane: space_ReceiverPlane) -> vec4u {
-    var occupied = vec4u();
-    var candidates = candidate_rungs(lookup, plane);
-    if candidates == 0u {
-        return occupied;
-    }
-    loop {
-        let i = firstTrailingBit(candidates);
-        candidates &= candidates - 1u;
-        let rung = ladder.rungs[i];
-        let hat = hat_of(lookup, rung);
-        let is_shared = rung.squared <= lookup.footprint_squared;
-        for (var part = 0u; part < select(LIGHT_PARTS, 1u, is_shared); part++) {
-            let base = floor(place_of(lookup, plane, rung, part));
-            let quad = quad_at(rung, vec2i(base));
-            let found = first_beyond(quad, hat.z_near);
-            let z_end = min(quad.z_end, plane_z_at(plane, rung, base));
-            let is_occupied = any(found.z_m < min(vec4f(hat.z_far), z_end));
-            let is_meant = (PARTS == vec4u(part)) | (vec4<bool>(is_shared) & (PARTS < vec4u(LIGHT_PARTS)));
-            occupied |= select(vec4u(0u), vec4u(1u << i), is_meant & vec4<bool>(is_occupied));
-        }
-        continuing {
-        
-            break if candidates == 0u;
-        }
-    }
-    return occupied;
-}
-
-fn level_shares(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
-    var shares = LevelShares(NO_SHARE, NO_SHARE);
-    let hat = hat_of(lookup, rung);
-    let pos = place_of(lookup, plane, rung, part);
-    let base = floor(pos);
-    let quad = quad_at(rung, vec2i(base));
-    let z_plane = plane_z_at(plane, rung, base);
-    let z_end = min(vec4f(hat.z_far + rung.epsilon_slope * hat.z_far + rung.epsilon_m), min(quad.z_end, z_plane));
-    let place = first_beyond(quad, hat.z_near).place;
-    var a = corner_at(place.x, quad.end.x, z_end.x);
-    var b = corner_at(place.y, quad.end.y, z_end.y);
-    var c = corner_at(place.z, quad.end.z, z_end.z);
-    var d = corner_at(place.w, quad.end.w, z_end.w);
-    let t = pos - base;
-    let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
-    let widths = rung.width / rung.spacing;
-    let change_x = vec4f(t.y - 1.0, 1.0 - t.y, -t.y, t.y) * widths;
-    let change_y = vec4f(t.x - 1.0, -t.x, 1.0 - t.x, t.x) * widths;
-    var nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
-    if !(nearest < hat.z_far) {
-        return shares;
-    }
-    let most = min(dot(quad.end - quad.first, vec4u(1u)), arrayLength(&fragments));
-    var surfaces = 0u;
-    loop {
-        let limit = nearest + abs(rung.epsilon_slope * nearest) + rung.epsilon_m;
-        var surface = Occluder(vec3f(), vec2f());
-        var depths = DepthSum(0.0, 0.0);
-        take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), &surface, &depths);
-        take(&b, limit, weight.y, vec2f(change_x.y, change_y.y), &surface, &depths);
-        take(&c, limit, weight.z, vec2f(change_x.z, change_y.z), &surface, &depths);
-        take(&d, limit, weight.w, vec2f(change_x.w, change_y.w), &surface, &depths);
-        let seen = share_in_front(lookup, weight, z_plane, nearest);
-        surface.opacity = min(surface.opacity / seen, vec3f(1.0));
-        surface.edge /= seen;
-        let z_mean = select(nearest, depths.z / max(depths.weight, 1e-20), depths.weight > 1e-6);
-        shares = add_to_level(shares, lookup, rung, hat.z_peak, z_mean, surface);
-        nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
-        continuing {
-            surfaces++;
-            break if !(nearest < hat.z_far) | (surfaces >= most);
-        }
-    }
-    return shares;
-}
-
-fn place_towards_coarser(lookup: Lookup, rung: MultiLayerRung, z_m: f32) -> f32 {
-    if rung.squared_coarser < 0.0 {
-        return 0.0;
-    }
-    return place_between(lookup, rung.squared, rung.squared_coarser, z_m);
-}
-
-fn place_towards_finer(lookup: Lookup, rung: MultiLayerRung, z_m: f32) -> f32 {
-    if rung.squared_finer < 0.0 {
-        return 1.0;
-    }
-    return place_between(lookup, rung.squared_finer, rung.squared, z_m);
-}
-
-fn of_list(share: Share, list: Share, weight: f32, change: vec2f) -> Share {
-    return Share(Occluder(share.occluder.opacity + weight * list.occluder.opacity, share.occluder.edge + change * largest(list.occluder.opacity)), share.place_sum + weight * list.place_sum, share.strength + weight * list.strength);
-}
-
-fn level_shares_apart(lookup: Lookup, plane: space_ReceiverPlane, rung: MultiLayerRung, part: u32) -> LevelShares {
-    var shares = LevelShares(NO_SHARE, NO_SHARE);
-    let hat = hat_of(lookup, rung);
-    let pos = place_of(lookup, plane, rung, part);
-    let base = floor(pos);
-    let quad = quad_at(rung, vec2i(base));
-    let z_end = min(vec4f(hat.z_far), min(quad.z_end, plane_z_at(plane, rung, base)));
-    let first = first_beyond(quad, hat.z_near).place;
-    let t = pos - base;
-    let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
-    let widths = rung.width / rung.spacing;
-    let change_x = vec4f(t.y - 1.0, 1.0 - t.y, -t.y, t.y) * widths;
-    let change_y = vec4f(t.x - 1.0, -t.x, 1.0 - t.x, t.x) * widths;
-    for (var k = 0u; k < 4u; k++) {
-        var list = LevelShares(NO_SHARE, NO_SHARE);
-        let end = min(quad.end[k], arrayLength(&fragments));
-        for (var place = first[k]; place < end; place++) {
-            let fragment = fragments[place];
-            let z_m = bitcast<f32>(fragment.x);
-            if !(z_m < z_end[k]) {
-                break;
-            }
-            let surface = Occluder(fragments_unpack_opacity(fragment.y, COLORED), vec2f());
-            list = add_to_level(list, lookup, rung, hat.z_peak, z_m, surface);
-        }
-        let change = vec2f(change_x[k], change_y[k]);
-        shares.coarser = of_list(shares.coarser, list.coarser, weight[k], change);
-        shares.finer = of_list(shares.finer, list.finer, weight[k], change);
-    }
-    return shares;
-}
-
-fn mean_place(share: Share) -> f32 {
-    return share.place_sum / max(share.strength, 1e-20);
-}
-
-fn mixed(finer: Share, coarser: Share) -> Occluder {
-    let finer_strength = largest(finer.occluder.opacity);
-    let coarser_strength = largest(coarser.occluder.opacity);
-    let place = (mean_place(finer) * finer_strength + mean_place(coarser) * coarser_strength) / max(finer_strength + coarser_strength, 1e-20);
-    return Occluder(mix(finer.occluder.opacity, coarser.occluder.opacity, place), mix(finer.occluder.edge, coarser.occluder.edge, place));
-}
-
 const OPAQUE = 0.998;
 
-fn accumulated(so_far: Occluder, finer: Share, coarser: Share) -> Occluder {
-    let pair = mixed(finer, coarser);
-    switch LEVEL_ACCUMULATION {
-        case CORRELATED {
-            return combined(so_far, pair);
-        }
-        case PAIRS {
-            return Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity), vec2f());
-        }
-        case ADD {
-            let sum = finer.occluder.opacity * (1.0 - mean_place(finer)) + coarser.occluder.opacity * mean_place(coarser);
-            return Occluder(fragments_accumulate(fragments_ACCUMULATE_ADD, so_far.opacity, sum), vec2f());
-        }
-        case MULTIPLY {
-            let a = finer.occluder.opacity * (1.0 - mean_place(finer));
-            let b = coarser.occluder.opacity * mean_place(coarser);
-            return Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b), vec2f());
-        }
-        case default {
-            return Occluder(max(so_far.opacity, pair.opacity), vec2f());
-        }
-    }
-}
-
-fn between_levels() -> u32 {
-    switch LEVEL_ACCUMULATION {
-        case ADD {
-            return fragments_ACCUMULATE_ADD;
-        }
-        case MAX {
-            return fragments_ACCUMULATE_MAX;
-        }
-        case default {
-            return fragments_ACCUMULATE_MULTIPLY;
-        }
-    }
-}
-
 fn share_above_horizon(receiver: inputs_Receiver) -> f32 {
-    if !HAS_PLANES {
+    if !settings_HAS_PLANES {
         return 1.0;
     }
     if inputs_light_source.kind == light_KIND_POINTS {
@@ -574,7 +25,7 @@ fn footprint_texels(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
         let beside = inputs_position_in_world(pixel + vec2u(1u, 0u), inputs_depth_at(pixel));
         width_m = length(beside - receiver.pos_in_world);
     }
-    return multi_layer.footprint_px * width_m / space_texel_width_m(map_light_view, receiver.pos_in_world);
+    return settings_multi_layer.footprint_px * width_m / space_texel_width_m(map_light_view, receiver.pos_in_world);
 }
 
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
@@ -591,58 +42,58 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
     var plane = receiver_light_biased_plane_within(receiver, 0.0, LEAST_SINE);
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
-    let lookup = Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), multi_layer.filter_per_g, footprint * footprint);
+    let lookup = filter_size_Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), settings_multi_layer.filter_per_g, footprint * footprint);
     return above * (1.0 - occluded_share(lookup, plane));
 }
 
-fn occluded_share(lookup: Lookup, plane: space_ReceiverPlane) -> vec3f {
+fn occluded_share(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> vec3f {
     var sum = vec3f();
-    var left = occupied_rungs(lookup, plane);
+    var left = occupied_occupied_rungs(lookup, plane);
     if all(left == vec4u(0u)) {
         return sum;
     }
-    var so_far = NOTHING;
-    var finer = NO_SHARE;
+    var so_far = occluders_NOTHING;
+    var finer = occluders_NO_SHARE;
     var before = 0u;
     var lookups = 0u;
     loop {
         let part = select(select(select(3u, 2u, left.z != 0u), 1u, left.y != 0u), 0u, left.x != 0u);
         let left_of_part = select(select(select(left.w, left.z, left.z != 0u), left.y, left.y != 0u), left.x, left.x != 0u);
         let rung = firstTrailingBit(left_of_part);
-        var shares: LevelShares;
-        if LISTS_APART == 1u {
-            shares = level_shares_apart(lookup, plane, ladder.rungs[rung], part);
+        var shares: occluders_LevelShares;
+        if settings_LISTS_APART == 1u {
+            shares = level_level_shares_apart(lookup, plane, settings_ladder.rungs[rung], part);
         }
         else {
-            shares = level_shares(lookup, plane, ladder.rungs[rung], part);
+            shares = level_level_shares(lookup, plane, settings_ladder.rungs[rung], part);
         }
         if rung != before + 1u {
-            so_far = accumulated(so_far, finer, NO_SHARE);
-            finer = NO_SHARE;
+            so_far = occluders_accumulated(so_far, finer, occluders_NO_SHARE);
+            finer = occluders_NO_SHARE;
         }
-        if WEIGHTS_FRAGMENTS {
-            so_far.opacity = fragments_accumulate(between_levels(), so_far.opacity, shares.finer.occluder.opacity);
+        if settings_WEIGHTS_FRAGMENTS {
+            so_far.opacity = fragments_accumulate(occluders_between_levels(), so_far.opacity, shares.finer.occluder.opacity);
         }
         else {
-            so_far = accumulated(so_far, finer, shares.finer);
+            so_far = occluders_accumulated(so_far, finer, shares.finer);
             finer = shares.coarser;
         }
         before = rung;
         let is_umbra = all(so_far.opacity >= vec3f(OPAQUE));
         let rest = select(left_of_part & (left_of_part - 1u), 0u, is_umbra);
-        left = select(left, vec4u(rest), PARTS == vec4u(part));
+        left = select(left, vec4u(rest), occupied_PARTS == vec4u(part));
         if rest == 0u {
-            so_far = accumulated(so_far, finer, NO_SHARE);
+            so_far = occluders_accumulated(so_far, finer, occluders_NO_SHARE);
             sum += saturate(so_far.opacity);
-            so_far = NOTHING;
-            finer = NO_SHARE;
+            so_far = occluders_NOTHING;
+            finer = occluders_NO_SHARE;
         }
         continuing {
             lookups++;
             break if all(left == vec4u(0u)) | (lookups >= MOST_LOOKUPS);
         }
     }
-    return sum / f32(LIGHT_PARTS);
+    return sum / f32(settings_LIGHT_PARTS);
 }
 
 @compute @workgroup_size(8, 8)
@@ -1107,3 +558,552 @@ fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
         }
     }
 }
+
+struct filter_size_Lookup {
+    z_m: f32,
+    filter_per_g: f32,
+    footprint_squared: f32
+}
+
+fn filter_size_g_of_z(lookup: filter_size_Lookup, z_m: f32) -> f32 {
+    return select(lookup.z_m - z_m, 1.0 / z_m - 1.0 / lookup.z_m, map_light_view.perspective == 1u);
+}
+
+fn filter_size_z_of_filter(lookup: filter_size_Lookup, filter_squared: f32) -> f32 {
+    let g = sqrt(max(filter_squared - lookup.footprint_squared, 0.0)) / lookup.filter_per_g;
+    return select(lookup.z_m - g, 1.0 / (g + 1.0 / lookup.z_m), map_light_view.perspective == 1u);
+}
+
+fn filter_size_filter_squared_at(lookup: filter_size_Lookup, z_m: f32) -> f32 {
+    let filter_size = lookup.filter_per_g * filter_size_g_of_z(lookup, z_m);
+    return filter_size * filter_size + lookup.footprint_squared;
+}
+
+struct filter_size_Hat {
+    z_near: f32,
+    z_peak: f32,
+    z_far: f32
+}
+
+fn filter_size_z_near_of(lookup: filter_size_Lookup, rung: settings_MultiLayerRung) -> f32 {
+    return select(-3e38, filter_size_z_of_filter(lookup, rung.squared_coarser), rung.squared_coarser >= 0.0);
+}
+
+fn filter_size_hat_of(lookup: filter_size_Lookup, rung: settings_MultiLayerRung) -> filter_size_Hat {
+    let z_finer = filter_size_z_of_filter(lookup, rung.squared_finer);
+    return filter_size_Hat(filter_size_z_near_of(lookup, rung), filter_size_z_of_filter(lookup, rung.squared), select(lookup.z_m, z_finer, rung.squared_finer >= 0.0));
+}
+
+fn filter_size_place_between(lookup: filter_size_Lookup, finer_squared: f32, coarser_squared: f32, z_m: f32) -> f32 {
+    switch settings_LEVEL_WEIGHTS {
+        case settings_BY_VARIANCE {
+            return saturate((filter_size_filter_squared_at(lookup, z_m) - finer_squared) / (coarser_squared - finer_squared));
+        }
+        case settings_BY_DEPTH {
+            let z_finer = filter_size_z_of_filter(lookup, finer_squared);
+            return saturate((z_finer - z_m) / max(z_finer - filter_size_z_of_filter(lookup, coarser_squared), 1e-20));
+        }
+        case default {
+            return 0.0;
+        }
+    }
+}
+
+fn filter_size_own_weight(lookup: filter_size_Lookup, rung: settings_MultiLayerRung, z_peak: f32, z_m: f32) -> f32 {
+    if z_m < z_peak {
+        return 1.0 - filter_size_place_towards_coarser(lookup, rung, z_m);
+    }
+    return filter_size_place_towards_finer(lookup, rung, z_m);
+}
+
+fn filter_size_place_towards_coarser(lookup: filter_size_Lookup, rung: settings_MultiLayerRung, z_m: f32) -> f32 {
+    if rung.squared_coarser < 0.0 {
+        return 0.0;
+    }
+    return filter_size_place_between(lookup, rung.squared, rung.squared_coarser, z_m);
+}
+
+fn filter_size_place_towards_finer(lookup: filter_size_Lookup, rung: settings_MultiLayerRung, z_m: f32) -> f32 {
+    if rung.squared_finer < 0.0 {
+        return 1.0;
+    }
+    return filter_size_place_between(lookup, rung.squared_finer, rung.squared, z_m);
+}
+
+fn level_level_shares(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, part: u32) -> occluders_LevelShares {
+    var shares = occluders_LevelShares(occluders_NO_SHARE, occluders_NO_SHARE);
+    let hat = filter_size_hat_of(lookup, rung);
+    let pos = receiver_plane_place_of(lookup, plane, rung, part);
+    let base = floor(pos);
+    let quad = lists_quad_at(rung, vec2i(base));
+    let z_plane = receiver_plane_plane_z_at(plane, rung, base);
+    let z_end = min(vec4f(hat.z_far + rung.epsilon_slope * hat.z_far + rung.epsilon_m), min(quad.z_end, z_plane));
+    let place = lists_first_beyond(quad, hat.z_near).place;
+    var a = lists_corner_at(place.x, quad.end.x, z_end.x);
+    var b = lists_corner_at(place.y, quad.end.y, z_end.y);
+    var c = lists_corner_at(place.z, quad.end.z, z_end.z);
+    var d = lists_corner_at(place.w, quad.end.w, z_end.w);
+    let t = pos - base;
+    let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
+    let widths = rung.width / rung.spacing;
+    let change_x = vec4f(t.y - 1.0, 1.0 - t.y, -t.y, t.y) * widths;
+    let change_y = vec4f(t.x - 1.0, -t.x, 1.0 - t.x, t.x) * widths;
+    var nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
+    if !(nearest < hat.z_far) {
+        return shares;
+    }
+    let most = min(dot(quad.end - quad.first, vec4u(1u)), arrayLength(&lists_fragments));
+    var surfaces = 0u;
+    loop {
+        let limit = nearest + abs(rung.epsilon_slope * nearest) + rung.epsilon_m;
+        var surface = occluders_Occluder(vec3f(), vec2f());
+        var depths = lists_DepthSum(0.0, 0.0);
+        lists_take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), &surface, &depths);
+        lists_take(&b, limit, weight.y, vec2f(change_x.y, change_y.y), &surface, &depths);
+        lists_take(&c, limit, weight.z, vec2f(change_x.z, change_y.z), &surface, &depths);
+        lists_take(&d, limit, weight.w, vec2f(change_x.w, change_y.w), &surface, &depths);
+        let seen = receiver_plane_share_in_front(lookup, weight, z_plane, nearest);
+        surface.opacity = min(surface.opacity / seen, vec3f(1.0));
+        surface.edge /= seen;
+        let z_mean = select(nearest, depths.z / max(depths.weight, 1e-20), depths.weight > 1e-6);
+        shares = occluders_add_to_level(shares, lookup, rung, hat.z_peak, z_mean, surface);
+        nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
+        continuing {
+            surfaces++;
+            break if !(nearest < hat.z_far) | (surfaces >= most);
+        }
+    }
+    return shares;
+}
+
+fn level_level_shares_apart(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, part: u32) -> occluders_LevelShares {
+    var shares = occluders_LevelShares(occluders_NO_SHARE, occluders_NO_SHARE);
+    let hat = filter_size_hat_of(lookup, rung);
+    let pos = receiver_plane_place_of(lookup, plane, rung, part);
+    let base = floor(pos);
+    let quad = lists_quad_at(rung, vec2i(base));
+    let z_end = min(vec4f(hat.z_far), min(quad.z_end, receiver_plane_plane_z_at(plane, rung, base)));
+    let first = lists_first_beyond(quad, hat.z_near).place;
+    let t = pos - base;
+    let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
+    let widths = rung.width / rung.spacing;
+    let change_x = vec4f(t.y - 1.0, 1.0 - t.y, -t.y, t.y) * widths;
+    let change_y = vec4f(t.x - 1.0, -t.x, 1.0 - t.x, t.x) * widths;
+    for (var k = 0u; k < 4u; k++) {
+        var list = occluders_LevelShares(occluders_NO_SHARE, occluders_NO_SHARE);
+        let end = min(quad.end[k], arrayLength(&lists_fragments));
+        for (var place = first[k]; place < end; place++) {
+            let fragment = lists_fragments[place];
+            let z_m = bitcast<f32>(fragment.x);
+            if !(z_m < z_end[k]) {
+                break;
+            }
+            let surface = occluders_Occluder(fragments_unpack_opacity(fragment.y, settings_COLORED), vec2f());
+            list = occluders_add_to_level(list, lookup, rung, hat.z_peak, z_m, surface);
+        }
+        let change = vec2f(change_x[k], change_y[k]);
+        shares.coarser = occluders_of_list(shares.coarser, list.coarser, weight[k], change);
+        shares.finer = occluders_of_list(shares.finer, list.finer, weight[k], change);
+    }
+    return shares;
+}
+
+@group(1) @binding(2)
+var<storage, read> lists_lists: array<vec2u>;
+
+@group(1) @binding(3)
+var<storage, read> lists_fragments: array<vec2u>;
+
+const lists_NONE = 3e38;
+
+struct lists_Corner {
+    z_m: f32,
+    opacity_bits: u32,
+    place: u32,
+    end: u32,
+    z_end: f32
+}
+
+fn lists_set_fragment(corner: ptr<function, lists_Corner>, fragment: vec2u) {
+    let z_m = bitcast<f32>(fragment.x);
+    (*corner).z_m = select(lists_NONE, z_m, z_m < (*corner).z_end);
+    (*corner).opacity_bits = fragment.y;
+}
+
+fn lists_read_next(corner: ptr<function, lists_Corner>) {
+    (*corner).place++;
+    (*corner).z_m = lists_NONE;
+    if (*corner).place < (*corner).end {
+        lists_set_fragment(corner, lists_fragments[(*corner).place]);
+    }
+}
+
+struct lists_Quad {
+    first: vec4u,
+    end: vec4u,
+    z_end: vec4f
+}
+
+fn lists_quad_at(rung: settings_MultiLayerRung, texel: vec2i) -> lists_Quad {
+    let last = vec2i(rung.size) - 1;
+    let near = clamp(texel, vec2i(0), last);
+    let far = clamp(texel + 1, vec2i(0), last);
+    let near_row = rung.first + u32(near.y) * rung.size.x;
+    let far_row = rung.first + u32(far.y) * rung.size.x;
+    let a = lists_lists[near_row + u32(near.x)];
+    let b = lists_lists[near_row + u32(far.x)];
+    let c = lists_lists[far_row + u32(near.x)];
+    let d = lists_lists[far_row + u32(far.x)];
+    let is_inside = (vec4i(near.x, far.x, near.x, far.x) == vec4i(texel.x, texel.x + 1, texel.x, texel.x + 1)) & (vec4i(near.y, near.y, far.y, far.y) == vec4i(texel.y, texel.y, texel.y + 1, texel.y + 1));
+    let first = vec4u(a.x, b.x, c.x, d.x);
+    let end = first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside | vec4<bool>(map_light_view.held_from_m > 0.0));
+    return lists_Quad(first, end, select(vec4f(map_light_view.held_from_m), vec4f(lists_NONE), is_inside));
+}
+
+struct lists_Found {
+    place: vec4u,
+    z_m: vec4f
+}
+
+const lists_MOST_HALVINGS = 33u;
+
+fn lists_first_beyond(quad: lists_Quad, z_near: f32) -> lists_Found {
+    var low = quad.first;
+    var high = quad.end;
+    var found = vec4f(lists_NONE);
+    var halvings = 0u;
+    loop {
+        let middle = (low + high) / 2u;
+        let z_m = bitcast<vec4f>(vec4u(lists_fragments[middle.x].x, lists_fragments[middle.y].x, lists_fragments[middle.z].x, lists_fragments[middle.w].x));
+        let is_open = low < high;
+        let is_near = is_open & (z_m <= vec4f(z_near));
+        let is_far = is_open & (z_m > vec4f(z_near));
+        low = select(low, middle + 1u, is_near);
+        high = select(high, middle, is_far);
+        found = select(found, z_m, is_far);
+        continuing {
+            halvings++;
+            break if all(low >= high) | (halvings >= lists_MOST_HALVINGS);
+        }
+    }
+    return lists_Found(low, found);
+}
+
+fn lists_corner_at(place: u32, end: u32, z_end: f32) -> lists_Corner {
+    var corner = lists_Corner(lists_NONE, 0u, place, end, z_end);
+    if place < end {
+        lists_set_fragment(&corner, lists_fragments[place]);
+    }
+    return corner;
+}
+
+struct lists_DepthSum {
+    z: f32,
+    weight: f32
+}
+
+fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, change: vec2f, surface: ptr<function, occluders_Occluder>, depths: ptr<function, lists_DepthSum>) {
+    if (*corner).z_m > limit {
+        return;
+    }
+    var opacity = vec3f();
+    let end = min((*corner).end, arrayLength(&lists_fragments));
+    var place = (*corner).place;
+    loop {
+        let a = fragments_unpack_opacity((*corner).opacity_bits, settings_COLORED);
+        opacity = fragments_accumulate(settings_LIST_ACCUMULATION, opacity, a);
+        (*depths).z += weight * occluders_largest(a) * (*corner).z_m;
+        (*depths).weight += weight * occluders_largest(a);
+        lists_read_next(corner);
+        continuing {
+            place++;
+            break if !((*corner).z_m <= limit) | (place >= end);
+        }
+    }
+    (*surface).opacity += weight * opacity;
+    (*surface).edge += change * occluders_largest(opacity);
+}
+
+struct occluders_Occluder {
+    opacity: vec3f,
+    edge: vec2f
+}
+
+struct occluders_Share {
+    occluder: occluders_Occluder,
+    place_sum: f32,
+    strength: f32
+}
+
+const occluders_NOTHING = occluders_Occluder(vec3f(0.0), vec2f(0.0));
+
+const occluders_NO_SHARE = occluders_Share(occluders_NOTHING, 0.0, 0.0);
+
+struct occluders_LevelShares {
+    coarser: occluders_Share,
+    finer: occluders_Share
+}
+
+fn occluders_largest(color: vec3f) -> f32 {
+    return max(color.r, max(color.g, color.b));
+}
+
+fn occluders_combined(a: occluders_Occluder, b: occluders_Occluder) -> occluders_Occluder {
+    let related = clamp(dot(a.edge, b.edge), -1.0, 1.0);
+    let random = a.opacity * b.opacity;
+    let extreme = select(max(a.opacity + b.opacity - 1.0, vec3f(0.0)), min(a.opacity, b.opacity), related > 0.0);
+    let both = mix(random, extreme, abs(related));
+    let random_edge = a.edge * (1.0 - occluders_largest(b.opacity)) + b.edge * (1.0 - occluders_largest(a.opacity));
+    let larger = select(b.edge, a.edge, occluders_largest(a.opacity) > occluders_largest(b.opacity));
+    let extreme_edge = select(a.edge + b.edge, larger, related > 0.0);
+    return occluders_Occluder(a.opacity + b.opacity - both, mix(random_edge, extreme_edge, abs(related)));
+}
+
+fn occluders_combined_in_level(a: occluders_Occluder, b: occluders_Occluder) -> occluders_Occluder {
+    if settings_LEVEL_ACCUMULATION == settings_CORRELATED && !settings_WEIGHTS_FRAGMENTS {
+        return occluders_combined(a, b);
+    }
+    return occluders_Occluder(fragments_accumulate(settings_LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
+}
+
+fn occluders_add_surface(share: occluders_Share, surface: occluders_Occluder, place: f32) -> occluders_Share {
+    let strength = occluders_largest(surface.opacity);
+    return occluders_Share(occluders_combined_in_level(share.occluder, surface), share.place_sum + strength * place, share.strength + strength);
+}
+
+fn occluders_add_to_level(shares: occluders_LevelShares, lookup: filter_size_Lookup, rung: settings_MultiLayerRung, z_peak: f32, z_m: f32, surface: occluders_Occluder) -> occluders_LevelShares {
+    var sum = shares;
+    if settings_WEIGHTS_FRAGMENTS {
+        let weight = filter_size_own_weight(lookup, rung, z_peak, z_m);
+        sum.finer = occluders_add_surface(shares.finer, occluders_Occluder(weight * surface.opacity, weight * surface.edge), 0.0);
+    }
+    else if z_m < z_peak {
+        sum.coarser = occluders_add_surface(shares.coarser, surface, filter_size_place_towards_coarser(lookup, rung, z_m));
+    }
+    else {
+        sum.finer = occluders_add_surface(shares.finer, surface, filter_size_place_towards_finer(lookup, rung, z_m));
+    }
+    return sum;
+}
+
+fn occluders_of_list(share: occluders_Share, list: occluders_Share, weight: f32, change: vec2f) -> occluders_Share {
+    return occluders_Share(occluders_Occluder(share.occluder.opacity + weight * list.occluder.opacity, share.occluder.edge + change * occluders_largest(list.occluder.opacity)), share.place_sum + weight * list.place_sum, share.strength + weight * list.strength);
+}
+
+fn occluders_mean_place(share: occluders_Share) -> f32 {
+    return share.place_sum / max(share.strength, 1e-20);
+}
+
+fn occluders_mixed(finer: occluders_Share, coarser: occluders_Share) -> occluders_Occluder {
+    let finer_strength = occluders_largest(finer.occluder.opacity);
+    let coarser_strength = occluders_largest(coarser.occluder.opacity);
+    let place = (occluders_mean_place(finer) * finer_strength + occluders_mean_place(coarser) * coarser_strength) / max(finer_strength + coarser_strength, 1e-20);
+    return occluders_Occluder(mix(finer.occluder.opacity, coarser.occluder.opacity, place), mix(finer.occluder.edge, coarser.occluder.edge, place));
+}
+
+fn occluders_accumulated(so_far: occluders_Occluder, finer: occluders_Share, coarser: occluders_Share) -> occluders_Occluder {
+    let pair = occluders_mixed(finer, coarser);
+    switch settings_LEVEL_ACCUMULATION {
+        case settings_CORRELATED {
+            return occluders_combined(so_far, pair);
+        }
+        case settings_PAIRS {
+            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity), vec2f());
+        }
+        case settings_ADD {
+            let sum = finer.occluder.opacity * (1.0 - occluders_mean_place(finer)) + coarser.occluder.opacity * occluders_mean_place(coarser);
+            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_ADD, so_far.opacity, sum), vec2f());
+        }
+        case settings_MULTIPLY {
+            let a = finer.occluder.opacity * (1.0 - occluders_mean_place(finer));
+            let b = coarser.occluder.opacity * occluders_mean_place(coarser);
+            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b), vec2f());
+        }
+        case default {
+            return occluders_Occluder(max(so_far.opacity, pair.opacity), vec2f());
+        }
+    }
+}
+
+fn occluders_between_levels() -> u32 {
+    switch settings_LEVEL_ACCUMULATION {
+        case settings_ADD {
+            return fragments_ACCUMULATE_ADD;
+        }
+        case settings_MAX {
+            return fragments_ACCUMULATE_MAX;
+        }
+        case default {
+            return fragments_ACCUMULATE_MULTIPLY;
+        }
+    }
+}
+
+@group(1) @binding(4)
+var<storage, read> occupied_nearest_in: array<f32>;
+
+const occupied_PARTS = vec4u(0u, 1u, 2u, 3u);
+
+fn occupied_nearest_about(plane: space_ReceiverPlane, rung: settings_MultiLayerRung) -> f32 {
+    let map_size = vec2u(map_light_view.map_size);
+    let count = (map_size + ((1u << rung.square_shift) - 1u)) >> vec2u(rung.square_shift);
+    let last = vec2i(map_size) - 1;
+    let pos = plane.uv * map_light_view.map_size;
+    let near = vec2u(clamp(vec2i(floor(pos - rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
+    let far = vec2u(clamp(vec2i(floor(pos + rung.reach)), vec2i(0), last)) >> vec2u(rung.square_shift);
+    let near_row = rung.square_first + near.y * count.x;
+    let far_row = rung.square_first + far.y * count.x;
+    return min(min(occupied_nearest_in[near_row + near.x], occupied_nearest_in[near_row + far.x]), min(occupied_nearest_in[far_row + near.x], occupied_nearest_in[far_row + far.x]));
+}
+
+fn occupied_candidate_rungs(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> u32 {
+    var candidates = 0u;
+    for (var i = 0u; i < settings_multi_layer.rung_count; i++) {
+        let rung = settings_ladder.rungs[i];
+        let hat = filter_size_hat_of(lookup, rung);
+        if hat.z_far <= map_light_view.near_m {
+            break;
+        }
+        if hat.z_near < lookup.z_m && occupied_nearest_about(plane, rung) < hat.z_far {
+            candidates |= 1u << i;
+        }
+    }
+    return candidates;
+}
+
+fn occupied_occupied_rungs(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> vec4u {
+    var occupied = vec4u();
+    var candidates = occupied_candidate_rungs(lookup, plane);
+    if candidates == 0u {
+        return occupied;
+    }
+    loop {
+        let i = firstTrailingBit(candidates);
+        candidates &= candidates - 1u;
+        let rung = settings_ladder.rungs[i];
+        let hat = filter_size_hat_of(lookup, rung);
+        let is_shared = rung.squared <= lookup.footprint_squared;
+        for (var part = 0u; part < select(settings_LIGHT_PARTS, 1u, is_shared); part++) {
+            let base = floor(receiver_plane_place_of(lookup, plane, rung, part));
+            let quad = lists_quad_at(rung, vec2i(base));
+            let found = lists_first_beyond(quad, hat.z_near);
+            let z_end = min(quad.z_end, receiver_plane_plane_z_at(plane, rung, base));
+            let is_occupied = any(found.z_m < min(vec4f(hat.z_far), z_end));
+            let is_meant = (occupied_PARTS == vec4u(part)) | (vec4<bool>(is_shared) & (occupied_PARTS < vec4u(settings_LIGHT_PARTS)));
+            occupied |= select(vec4u(0u), vec4u(1u << i), is_meant & vec4<bool>(is_occupied));
+        }
+        continuing {
+        
+            break if candidates == 0u;
+        }
+    }
+    return occupied;
+}
+
+const receiver_plane_OWN_SURFACE_TEXELS = 1.0;
+
+const receiver_plane_OTHER_SURFACE_TEXELS = 4.0;
+
+const receiver_plane_LEAST_IN_FRONT = 0.1;
+
+fn receiver_plane_share_in_front(lookup: filter_size_Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f32 {
+    let is_in_front = vec4f(z_m) < z_plane;
+    if !settings_HAS_PLANES || all(is_in_front) {
+        return 1.0;
+    }
+    let share = dot(weight, select(vec4f(0.0), vec4f(1.0), is_in_front));
+    let texel_m = map_light_view.texel_in_plane * select(1.0, lookup.z_m, map_light_view.perspective == 1u);
+    let gap_texels = (lookup.z_m - z_m) / texel_m;
+    return mix(1.0, max(share, receiver_plane_LEAST_IN_FRONT), smoothstep(receiver_plane_OWN_SURFACE_TEXELS, receiver_plane_OTHER_SURFACE_TEXELS, gap_texels));
+}
+
+fn receiver_plane_merged_texels(rung: settings_MultiLayerRung) -> f32 {
+    let box = sqrt(max(rung.width * rung.width - 2.0 * rung.spacing * rung.spacing, 1.0));
+    return 0.5 * (box - 1.0);
+}
+
+fn receiver_plane_plane_z_at(plane: space_ReceiverPlane, rung: settings_MultiLayerRung, texel: vec2f) -> vec4f {
+    if !settings_HAS_PLANES {
+        return vec4f(space_z_of_depth(map_light_view, saturate(plane.depth)));
+    }
+    let uv_step = rung.spacing / map_light_view.map_size;
+    let step = plane.depth_per_uv * uv_step;
+    let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
+    let rise = map_light_view.depth_sign * receiver_plane_merged_texels(rung) * dot(abs(plane.depth_per_uv), 1.0 / map_light_view.map_size);
+    let depth = space_held(map_light_view, plane, near + rise + vec4f(0.0, step.x, step.y, step.x + step.y));
+    return vec4f(space_z_of_depth(map_light_view, depth.x), space_z_of_depth(map_light_view, depth.y), space_z_of_depth(map_light_view, depth.z), space_z_of_depth(map_light_view, depth.w));
+}
+
+fn receiver_plane_place_of(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, part: u32) -> vec2f {
+    var shift = vec2f();
+    if settings_LIGHT_PARTS > 1u {
+        let side = vec2f(vec2u(part & 1u, part >> 1u)) - 0.5;
+        shift = side * sqrt(max(rung.squared - lookup.footprint_squared, 0.0));
+    }
+    return (plane.uv * map_light_view.map_size + shift) / rung.spacing - rung.offset;
+}
+
+struct settings_MultiLayerRung {
+    size: vec2u,
+    first: u32,
+    spacing: f32,
+    offset: f32,
+    width: f32,
+    epsilon_slope: f32,
+    epsilon_m: f32,
+    squared: f32,
+    squared_finer: f32,
+    squared_coarser: f32,
+    reach: f32,
+    square_shift: u32,
+    square_first: u32,
+    padding_0: u32,
+    padding_1: u32
+}
+
+struct settings_MultiLayerLadder {
+    rungs: array<settings_MultiLayerRung, 32>
+}
+
+struct settings_MultiLayerUniform {
+    rung_count: u32,
+    filter_per_g: f32,
+    footprint_px: f32,
+    padding_0: u32
+}
+
+@group(1) @binding(1)
+var<uniform> settings_multi_layer: settings_MultiLayerUniform;
+
+@group(1) @binding(5)
+var<uniform> settings_ladder: settings_MultiLayerLadder;
+
+override settings_COLORED: u32 = 0u;
+
+override settings_LIST_ACCUMULATION: u32 = 0u;
+
+override settings_LEVEL_ACCUMULATION: u32 = 0u;
+
+override settings_LIGHT_PARTS: u32 = 1u;
+
+override settings_LEVEL_WEIGHTS: u32 = 0u;
+
+override settings_WEIGHTS_FRAGMENTS: bool = false;
+
+override settings_LISTS_APART: u32 = 0u;
+
+override settings_HAS_PLANES: bool = true;
+
+const settings_CORRELATED = 0u;
+
+const settings_PAIRS = 1u;
+
+const settings_ADD = 2u;
+
+const settings_MULTIPLY = 3u;
+
+const settings_MAX = 4u;
+
+const settings_BY_VARIANCE = 0u;
+
+const settings_BY_DEPTH = 1u;
