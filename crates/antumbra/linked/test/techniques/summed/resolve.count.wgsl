@@ -86,15 +86,24 @@ fn is_summed(piece: sums_Piece) -> bool {
     return max(size.x, size.y) > uniform_soft.direct_texels && sums_area(piece) <= uniform_soft.max_part_texels;
 }
 
+fn is_of_asked(compared: compared_Compared, asked: sums_Piece, piece: sums_Piece, blocker_g: f32) -> bool {
+    let is_beyond = any(asked.low != piece.low) || any(asked.high != piece.high);
+    return !is_beyond || blocker_g > compared.edge_g;
+}
+
 fn piece_blockers(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
     let piece = compared_piece_in_map(compared, asked);
+    var answer = answer_Answer(1.0, 0.0, false);
     if is_summed(piece) {
-        let answer = answer_basis_answer(compared, piece, answer_WHOLE);
-        if answer.is_good || uniform_soft.may_read_map == 0u {
-            return answer;
-        }
+        answer = answer_basis_answer(compared, piece, answer_WHOLE);
     }
-    return map_answer(compared, piece);
+    if !answer.is_good && (uniform_soft.may_read_map != 0u || !is_summed(piece)) {
+        answer = map_answer(compared, piece);
+    }
+    if !is_of_asked(compared, asked, piece, answer.blocker_g) {
+        return answer_Answer(1.0, 0.0, true);
+    }
+    return answer;
 }
 
 fn piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
@@ -102,8 +111,11 @@ fn piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
     if is_summed(piece) {
         let answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, IS_ONE_PIECE || uniform_CUTS_SQUARES));
         if answer.is_good || uniform_soft.may_read_map == 0u {
-            return answer.lit;
+            return select(1.0, answer.lit, is_of_asked(compared, asked, piece, answer.blocker_g));
         }
+    }
+    if compared.goes_on && !is_of_asked(compared, asked, piece, map_answer(compared, piece).blocker_g) {
+        return 1.0;
     }
     return map_lit(compared, piece);
 }
@@ -221,7 +233,9 @@ fn search_taps(search: Search, compared: compared_Compared) -> vec2f {
         let low = search.center - half + size * vec2f(vec2u(i % side, i / side % side));
         let piece = sums_Piece(low, low + size);
         let place = compared_place_in_map(compared_asking_for(compared, window_g(search, k)), sums_middle(piece));
-        let blocks = texel_blocks(compared, about(compared, place), place);
+        let found = texel_blocks(compared, about(compared, place), place);
+        let is_of_asked = all(place == sums_middle(piece)) || found.y > compared.edge_g;
+        let blocks = select(vec2f(), found, is_of_asked);
         sum += counted(search, compared, piece, answer_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
     }
     return sum;
