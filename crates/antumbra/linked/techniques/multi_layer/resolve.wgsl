@@ -1,6 +1,6 @@
 // Linked from src/techniques/multi_layer/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
-const LEAST_SINE = 0.001;
+const LEAST_SINE = 0.006;
 
 const MOST_LOOKUPS = 128u;
 
@@ -1017,11 +1017,6 @@ fn receiver_plane_share_in_front(lookup: filter_size_Lookup, weight: vec4f, z_pl
     return mix(1.0, max(share, receiver_plane_LEAST_IN_FRONT), smoothstep(receiver_plane_OWN_SURFACE_TEXELS, receiver_plane_OTHER_SURFACE_TEXELS, gap_texels));
 }
 
-fn receiver_plane_merged_texels(rung: settings_MultiLayerRung) -> f32 {
-    let box = sqrt(max(rung.width * rung.width - 2.0 * rung.spacing * rung.spacing, 1.0));
-    return 0.5 * (box - 1.0);
-}
-
 fn receiver_plane_plane_z_at(plane: space_ReceiverPlane, rung: settings_MultiLayerRung, texel: vec2f) -> vec4f {
     if !settings_HAS_PLANES {
         return vec4f(space_z_of_depth(map_light_view, saturate(plane.depth)));
@@ -1029,8 +1024,7 @@ fn receiver_plane_plane_z_at(plane: space_ReceiverPlane, rung: settings_MultiLay
     let uv_step = rung.spacing / map_light_view.map_size;
     let step = plane.depth_per_uv * uv_step;
     let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
-    let rise = map_light_view.depth_sign * receiver_plane_merged_texels(rung) * dot(abs(plane.depth_per_uv), 1.0 / map_light_view.map_size);
-    let depth = space_held(map_light_view, plane, near + rise + vec4f(0.0, step.x, step.y, step.x + step.y));
+    let depth = space_held(map_light_view, plane, near + vec4f(0.0, step.x, step.y, step.x + step.y));
     return vec4f(space_z_of_depth(map_light_view, depth.x), space_z_of_depth(map_light_view, depth.y), space_z_of_depth(map_light_view, depth.z), space_z_of_depth(map_light_view, depth.w));
 }
 

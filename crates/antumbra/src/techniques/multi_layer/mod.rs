@@ -61,9 +61,7 @@
 //! - **The receiver's plane.** A fragment must be in front of the receiver's plane at the list's texel, which keeps
 //!   tilted receivers from shading themselves; lists behind that plane at an occluder's depth have no say in its opacity,
 //!   which those before it give (`street` .067 and .063, `tree` .049 and .044: receivers that the light grazes no longer
-//!   miss half of what is above them); and the light's part below the plane counts as occluded. Of a coarse list's texel the plane
-//!   counts where it is nearest to the light, or the receiver's own surface, merged there, would hide a light that lies on it (a bulb that
-//!   touches a wall, `sconce_touch`: .098 and .014).
+//!   miss half of what is above them); and the light's part below the plane counts as occluded.
 //! - **Rectangular maps.** The map has the sides of the window, and `map_size`² texels in all (`street` .073 and .067).
 //!   Texels have the light's own proportions, up to 4 : 1, so that square kernels of them are rectangles of the light's
 //!   shape.
