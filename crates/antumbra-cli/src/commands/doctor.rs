@@ -27,8 +27,10 @@ const FEATURES: [(wgpu::Features, &str, &str); 4] = [
     ),
 ];
 
-/// A limit's name, and its value of some limits.
-const LIMITS: [(&str, fn(&wgpu::Limits) -> u64); 7] = [
+/// A limit's name, and where it is among others.
+type NamedLimit = (&'static str, fn(&wgpu::Limits) -> u64);
+
+const LIMITS: [NamedLimit; 7] = [
     ("side of a texture, texels", |limits| limits.max_texture_dimension_2d.into()),
     ("layers of a texture", |limits| limits.max_texture_array_layers.into()),
     ("size of a buffer, bytes", |limits| limits.max_buffer_size),

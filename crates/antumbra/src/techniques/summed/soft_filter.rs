@@ -1,5 +1,6 @@
 //! The family's passes: map, pyramid, tables, resolve.
 
+use antumbra_light::Aabb;
 use glam::UVec2;
 
 use super::basis_texture::{BasisPass, BasisTexture};
@@ -7,7 +8,7 @@ use super::gpu_types::SoftUniform;
 use super::table_fit::TableFit;
 use super::texture::texture;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
-use crate::contract::{DrawnMap, Error, PreparedFrame};
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, create_uniform, texels, write_uniform};
@@ -149,6 +150,8 @@ impl SoftFilter {
         table_layout: &wgpu::BindGroupLayout,
     ) -> PreparedResolve {
         let specialisation = Specialisation::of(design, settings);
+        // Series of cosines are too coarse over a texel's width.
+        let edge_goes_on = specialisation.edge_goes_on && design.basis != Basis::Convolution && may_be_covered(frame);
         let wgsl = if design.sums() == Sums::Float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
         #[cfg(test)]
         let wgsl = self.test_shader.unwrap_or(wgsl);
@@ -163,7 +166,7 @@ impl SoftFilter {
             ("FOOTPRINT_ENDS", f64::from(u8::from(specialisation.footprint_ends))),
             ("AVERAGES_DEPTH", f64::from(u8::from(specialisation.averages_depth))),
             ("HAS_HORIZON", f64::from(u8::from(specialisation.horizon))),
-            ("EDGE_GOES_ON", f64::from(u8::from(specialisation.edge_goes_on))),
+            ("EDGE_GOES_ON", f64::from(u8::from(edge_goes_on))),
         ];
         if design.filter == Filter::Mips {
             constants.push(("IS_MIPS", 1.0));
@@ -300,6 +303,16 @@ fn bytes_per_texel(design: SoftDesign) -> u32 {
     const BYTES: u32 = 16;
     let tables = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
     BYTES * (tables + u32::from(!design.is_encoded()))
+}
+
+/// Whether a caster may hide the light's rim from beyond the map: one that comes within the light's own radius of its middle.
+fn may_be_covered(frame: &PreparedFrame<'_>) -> bool {
+    let PreparedCasters::Draws(meshes) = &frame.casters else { return false };
+    let (center, radius_m) = (frame.light.center, frame.light.bounding_radius());
+    meshes.iter().any(|mesh| {
+        let Aabb { min, max } = mesh.bounds;
+        center.max(min).min(max).distance(center) < radius_m
+    })
 }
 
 fn soft_uniform(settings: &SoftSettings, light: &LightSpread, fit: TableFit, empty_depth: f32) -> SoftUniform {
