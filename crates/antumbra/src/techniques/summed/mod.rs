@@ -33,10 +33,10 @@
 //! `mssm` loses on `columns`.
 //!
 //! # Covers
-//! Casters nearer to the light than it is large hide its rim where they lie beyond any window of the map. What the map shows at its edge
-//! goes on there, as in `pcss`: a piece beyond the map is answered by a texel's width along the edge, where the blockers that are asked
-//! for are nearer than the map holds them, and so is what is found there. That is so where a caster comes within the light's radius of its
-//! middle, but for `cssm` (`edge_goes_on` of `essm`). A sheet 1 cm before a panel of 60 cm, `cover_0.01`: `essm` .99 and .00.
+//! Casters nearer to the light than it is large hide its rim where they lie beyond any window of the map. Under `essm` what the map shows at
+//! its edge goes on there, as in `pcss` (`edge_goes_on`): a piece beyond the map is answered by a texel's width along the edge, where the
+//! blockers that are asked for are nearer than the map holds them, and so is what is found there; for lights that a caster comes within the
+//! radius of. A sheet 1 cm before a panel of 60 cm, `cover_0.01`: .99 without and .00 with it.
 //!
 //! # Sums that hold
 //! Table entries are integers. Differences of integers are exact however often the sums have wrapped, if the part's own
@@ -198,7 +198,7 @@ impl Default for SoftSettings {
             footprint_ends: true,
             averages_depth: false,
             horizon: true,
-            edge_goes_on: true,
+            edge_goes_on: false,
             // A part that is hardly a texel wide is one comparison.
             direct_texels: 1.5,
             bleeding_reduction: 0.0,

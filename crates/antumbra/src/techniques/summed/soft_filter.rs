@@ -150,8 +150,7 @@ impl SoftFilter {
         table_layout: &wgpu::BindGroupLayout,
     ) -> PreparedResolve {
         let specialisation = Specialisation::of(design, settings);
-        // Series of cosines are too coarse over a texel's width.
-        let edge_goes_on = specialisation.edge_goes_on && design.basis != Basis::Convolution && may_be_covered(frame);
+        let edge_goes_on = specialisation.edge_goes_on && may_be_covered(frame);
         let wgsl = if design.sums() == Sums::Float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
         #[cfg(test)]
         let wgsl = self.test_shader.unwrap_or(wgsl);
