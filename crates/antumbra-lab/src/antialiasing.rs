@@ -5,35 +5,11 @@
 //! one, past an edge, it is shaded anew, and takes its visibility from that of the mask's samples about it whose surface is its own. Truth
 //! and techniques are treated alike.
 
+use antumbra_render::antialiasing::{ALIKE, NORMALS_COUNT};
 use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use crate::picture::{Visibility, VisibilityValues};
 use crate::truth::SurfacePoint;
-
-/// Places within a pixel, from its centre: the standard pattern of eight samples of Direct3D 11, in sixteenths. No two are in one column or
-/// row, so that edges of all directions get eight steps.
-pub(crate) const OFFSETS_PX: [Vec2; 8] = {
-    const fn at(x: f32, y: f32) -> Vec2 {
-        Vec2::new(x / 16.0, y / 16.0)
-    }
-    [
-        at(1.0, -3.0),
-        at(-1.0, 3.0),
-        at(5.0, 1.0),
-        at(-3.0, -5.0),
-        at(-5.0, 5.0),
-        at(-7.0, -1.0),
-        at(3.0, 7.0),
-        at(7.0, -7.0),
-    ]
-};
-
-/// Weight of the difference of normals against that of places in pixels: faces that meet at a right angle differ by more than any of a
-/// pixel's neighbours, whose squared distances from a place within it are at most 4.5.
-const NORMALS_COUNT: f32 = 5.0;
-
-/// The surface at a pixel's centre is the one that is shown beside it where it is less unlike than this.
-const ALIKE: f32 = 0.1;
 
 /// What a mask's samples are of.
 #[derive(Debug)]
@@ -102,17 +78,9 @@ pub(crate) fn gathered(visibility: &Visibility, sources: &[Option<u32>]) -> Visi
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use antumbra_render::antialiasing::OFFSETS_PX;
 
-    #[test]
-    fn places_are_spread_over_the_pixel() {
-        let mean: Vec2 = OFFSETS_PX.iter().sum::<Vec2>() / 8.0;
-        assert!(mean.abs().max_element() < 0.01, "{mean}");
-        for (i, a) in OFFSETS_PX.iter().enumerate() {
-            assert!(a.abs().max_element() < 0.5);
-            assert!(OFFSETS_PX[..i].iter().all(|b| a.x != b.x && a.y != b.y));
-        }
-    }
+    use super::*;
 
     fn samples(z: impl Fn(u32) -> f32, normal: impl Fn(u32) -> Vec3) -> Samples {
         let size_px = UVec2::new(5, 3);

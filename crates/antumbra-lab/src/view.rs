@@ -4,11 +4,12 @@ use std::cell::OnceCell;
 use std::rc::Rc;
 
 use antumbra::{AnyShadow, Casters, MeshCaster};
+use antumbra_render::antialiasing::OFFSETS_PX;
 use antumbra_render::shading::ShadingPrograms;
 use antumbra_scene::{Scene, Setup};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::antialiasing::{OFFSETS_PX, Samples, gathered};
+use crate::antialiasing::{Samples, gathered};
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;

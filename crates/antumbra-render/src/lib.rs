@@ -5,6 +5,7 @@
 //! - [`gpu_scene`] — a scene's geometry, textures and instances, as casters for the techniques.
 //! - [`receivers`] — what a camera sees: depth, exact normals, surfaces.
 //! - [`shading`] — the picture, from receivers, lights and visibility.
+//! - [`antialiasing`] — which sample of a mask a place within a pixel takes.
 //! - [`picture`] — what a picture and a visibility image are on the CPU; plain data.
 //!
 //! The device is the caller's, as [`antumbra::Gpu`]. Passes are recorded into the caller's encoder; nothing here submits,
@@ -12,6 +13,7 @@
 //! anything) is an argument.
 #![forbid(unsafe_code)]
 
+pub mod antialiasing;
 pub mod gpu_scene;
 pub mod picture;
 pub mod receivers;
@@ -78,4 +80,32 @@ pub fn screen_pipeline(
             cache: None,
         },
     )
+}
+
+/// Entry of a buffer in a bind group's layout.
+pub fn buffer_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    ty: wgpu::BufferBindingType,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    }
+}
+
+/// Entry of a 2D texture of one sample that a fragment stage reads.
+pub fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
+    }
 }

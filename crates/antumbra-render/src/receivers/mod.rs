@@ -11,8 +11,8 @@ use antumbra_scene::{Aabb, AlphaMode, Camera};
 use glam::{DMat4, DVec4, Mat4, UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt;
 
-use crate::drawn_texture;
 use crate::gpu_scene::{Draw, Geometry, GpuScene};
+use crate::{buffer_entry, drawn_texture, texture_entry};
 
 /// About how many of the visible points are handed on: enough to weigh a map's texels by.
 const SEEN_POINTS: usize = 512;
@@ -236,16 +236,7 @@ impl ReceiverPass {
             ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
             count: None,
         };
-        let texture = wgpu::BindGroupLayoutEntry {
-            binding: 7,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
+        let texture = texture_entry(7, wgpu::TextureSampleType::Float { filterable: true });
         let draw_layout = programs::create_bind_group_layout(
             device,
             &wgpu::BindGroupLayoutDescriptor {
@@ -455,19 +446,6 @@ pub(crate) fn draw_pipeline(
             cache: None,
         },
     )
-}
-
-pub(crate) fn buffer_entry(
-    binding: u32,
-    visibility: wgpu::ShaderStages,
-    ty: wgpu::BufferBindingType,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    }
 }
 
 pub(crate) fn storage_buffer(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {

@@ -3,10 +3,9 @@
 use antumbra::{Gpu, programs};
 
 use super::{IRRADIANCE_WGSL, LightBuffers};
+use crate::buffer_entry;
 use crate::gpu_scene::{Draw, GpuScene};
-use crate::receivers::{
-    DEPTH_FORMAT, RECEIVERS_WGSL, ReceiverImages, ReceiverPass, buffer_entry, draw_pipeline, uniform_buffer,
-};
+use crate::receivers::{DEPTH_FORMAT, RECEIVERS_WGSL, ReceiverImages, ReceiverPass, draw_pipeline, uniform_buffer};
 
 const BENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 

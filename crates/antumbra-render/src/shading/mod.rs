@@ -21,8 +21,8 @@ use wgpu::util::DeviceExt;
 
 use crate::gpu_scene::GpuScene;
 use crate::picture::{Visibility, VisibilityValues};
-use crate::receivers::{ReceiverImages, buffer_entry, storage_buffer};
-use crate::{drawn_texture, screen_pipeline};
+use crate::receivers::{ReceiverImages, storage_buffer};
+use crate::{buffer_entry, drawn_texture, screen_pipeline, texture_entry};
 
 mod bent;
 mod exposure;
@@ -372,16 +372,6 @@ fn upload(gpu: &Gpu, visibility: &Visibility) -> wgpu::TextureView {
 impl ShadingPrograms {
     /// Makes the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
-        let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
         let float = wgpu::TextureSampleType::Float { filterable: false };
         let depth = wgpu::TextureSampleType::Depth;
         let uint = wgpu::TextureSampleType::Uint;
@@ -391,14 +381,14 @@ impl ShadingPrograms {
             programs::create_bind_group_layout(device, &wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
         let receivers_layout =
-            group_layout("shading: receivers", &[buffer(0, storage), texture(1, depth), texture(2, uint)]);
+            group_layout("shading: receivers", &[buffer(0, storage), texture_entry(1, depth), texture_entry(2, uint)]);
         let light_layout = group_layout(
             "shading: light",
-            &[buffer(0, storage), buffer(1, storage), texture(2, float), texture(3, float)],
+            &[buffer(0, storage), buffer(1, storage), texture_entry(2, float), texture_entry(3, float)],
         );
         let layers_layout = group_layout(
             "shading: layers",
-            &[texture(0, depth), texture(1, uint), texture(2, float), texture(3, float)],
+            &[texture_entry(0, depth), texture_entry(1, uint), texture_entry(2, float), texture_entry(3, float)],
         );
         let module = programs::create_shader_module(
             device,

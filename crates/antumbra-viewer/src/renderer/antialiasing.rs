@@ -7,30 +7,14 @@
 
 use antumbra::{Gpu, Mask, MaskChannels, programs};
 use antumbra_light::Light;
+use antumbra_render::antialiasing::{ALIKE, NORMALS_COUNT, OFFSETS_PX};
 use antumbra_render::gpu_scene::GpuScene;
 use antumbra_render::receivers::{DrawGroups, Layer, ReceiverImages, ReceiverPass};
 use antumbra_render::shading::{PictureTargets, Shading, ShadingPrograms, VisibilitySource};
-use antumbra_render::{drawn_texture, screen_pipeline};
+use antumbra_render::{buffer_entry, drawn_texture, screen_pipeline, texture_entry};
 use antumbra_scene::Camera;
 use glam::{UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt;
-
-/// Places within a pixel, from its centre: the standard pattern of eight samples of Direct3D 11, in sixteenths.
-pub const OFFSETS_PX: [Vec2; 8] = {
-    const fn at(x: f32, y: f32) -> Vec2 {
-        Vec2::new(x / 16.0, y / 16.0)
-    }
-    [
-        at(1.0, -3.0),
-        at(-1.0, 3.0),
-        at(5.0, 1.0),
-        at(-3.0, -5.0),
-        at(-5.0, 5.0),
-        at(-7.0, -1.0),
-        at(3.0, 7.0),
-        at(7.0, -7.0),
-    ]
-};
 
 /// Sums of shares: a format that every adapter can blend.
 const SUM_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -116,37 +100,28 @@ impl Smoothed {
 impl Antialiasing {
     /// Makes the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
-        let texture = |binding, sample_type| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type,
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
         let float = wgpu::TextureSampleType::Float { filterable: false };
         let depth = wgpu::TextureSampleType::Depth;
-        let samples = wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Storage { read_only: true },
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
+        let storage = wgpu::BufferBindingType::Storage { read_only: true };
+        let samples = buffer_entry(0, wgpu::ShaderStages::FRAGMENT, storage);
         let layout = |label, entries: &[wgpu::BindGroupLayoutEntry]| {
             programs::create_bind_group_layout(device, &wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
         };
         let samples_layout = layout(
             "antialiasing: samples",
-            &[samples, texture(1, depth), texture(2, float), texture(3, depth), texture(4, float)],
+            &[
+                samples,
+                texture_entry(1, depth),
+                texture_entry(2, float),
+                texture_entry(3, depth),
+                texture_entry(4, float),
+            ],
         );
-        let values_layout = layout("antialiasing: values", &[texture(0, float), texture(1, float)]);
-        let source = include_str!("antialiasing.wgsl");
+        let values_layout = layout("antialiasing: values", &[texture_entry(0, float), texture_entry(1, float)]);
+        let source = format!(
+            "const NORMALS_COUNT = {NORMALS_COUNT:?};\nconst ALIKE = {ALIKE:?};\n{}",
+            include_str!("antialiasing.wgsl")
+        );
         let module = programs::create_shader_module(device, "antialiasing", source.into());
         let pipeline = |fragment: &str, target: wgpu::ColorTargetState| {
             screen_pipeline(device, &module, fragment, &[Some(&samples_layout), Some(&values_layout)], target)

@@ -1,5 +1,5 @@
 // Antialiasing of a picture whose masks have one sample a pixel: where a pixel that is shifted by a part of itself takes its visibility
-// from, and the sum of what is seen there. As the laboratory's pictures are made.
+// from, and the sum of what is seen there. As the laboratory's pictures are made, whose NORMALS_COUNT and ALIKE precede this text.
 
 struct Samples {
     // Of the image at the pixels' centres.
@@ -26,12 +26,6 @@ struct Samples {
 // A mask; or the picture at the pixels' centres, and the shifted one.
 @group(1) @binding(0) var values_image: texture_2d<f32>;
 @group(1) @binding(1) var shifted_values_image: texture_2d<f32>;
-
-// Weight of the difference of normals against that of places in pixels: faces that meet at a right angle differ by more than any of a
-// pixel's neighbours, whose squared distances from a place within it are at most 4.5.
-const NORMALS_COUNT = 5.0;
-// The surface at a pixel's centre is the one that is shown beside it where it is less unlike than this.
-const ALIKE = 0.1;
 
 @vertex
 fn vertex_screen(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {

@@ -1,7 +1,7 @@
 //! The pass that makes the window's picture of the two sides, and the colours of its error view.
 
 use antumbra::{Gpu, Mask, MaskChannels, programs};
-use antumbra_render::screen_pipeline;
+use antumbra_render::{buffer_entry, screen_pipeline, texture_entry};
 use glam::UVec2;
 use wgpu::util::DeviceExt;
 
@@ -72,26 +72,8 @@ pub struct Present {
 impl Present {
     /// Makes the pipeline.
     pub fn new(device: &wgpu::Device) -> Self {
-        let texture = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            count: None,
-        };
-        let uniform = wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Buffer {
-                ty: wgpu::BufferBindingType::Uniform,
-                has_dynamic_offset: false,
-                min_binding_size: None,
-            },
-            count: None,
-        };
+        let texture = |binding| texture_entry(binding, wgpu::TextureSampleType::Float { filterable: false });
+        let uniform = buffer_entry(0, wgpu::ShaderStages::FRAGMENT, wgpu::BufferBindingType::Uniform);
         let layout = programs::create_bind_group_layout(
             device,
             &wgpu::BindGroupLayoutDescriptor {
