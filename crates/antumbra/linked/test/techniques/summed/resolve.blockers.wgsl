@@ -82,9 +82,12 @@ fn is_summed(piece: sums_Piece) -> bool {
     return max(size.x, size.y) > uniform_soft.direct_texels && sums_area(piece) <= uniform_soft.max_part_texels;
 }
 
+fn is_beyond(asked: sums_Piece, piece: sums_Piece) -> bool {
+    return any(asked.low != piece.low) || any(asked.high != piece.high);
+}
+
 fn is_of_asked(compared: compared_Compared, asked: sums_Piece, piece: sums_Piece, blocker_g: f32) -> bool {
-    let is_beyond = any(asked.low != piece.low) || any(asked.high != piece.high);
-    return !is_beyond || blocker_g > compared.edge_g;
+    return !is_beyond(asked, piece) || blocker_g > compared.edge_g;
 }
 
 fn piece_blockers(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
@@ -110,7 +113,7 @@ fn piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
             return select(1.0, answer.lit, is_of_asked(compared, asked, piece, answer.blocker_g));
         }
     }
-    if compared.goes_on && !is_of_asked(compared, asked, piece, map_answer(compared, piece).blocker_g) {
+    if is_beyond(asked, piece) && !is_of_asked(compared, asked, piece, map_answer(compared, piece).blocker_g) {
         return 1.0;
     }
     return map_lit(compared, piece);
