@@ -6,7 +6,7 @@
 //! is made here are described as modules, and named.
 
 mod description;
-mod make_programs;
+mod makings;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use antumbra::Gpu;
 
 use description::{Entry, Programs};
-use make_programs::Extent;
+use makings::Extent;
 
 fn main() -> ExitCode {
     let Some(file) = std::env::args_os().nth(1) else {
@@ -41,7 +41,7 @@ fn write(file: &Path) -> Result<[usize; 2], String> {
     // Browsers have light maps that cut off what is before them, or do not.
     let most = wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::TIMESTAMP_QUERY;
     for (features, extent) in [(most, Extent::Parameters), (wgpu::Features::empty(), Extent::Qualities)] {
-        make_programs::make_all(&device(features)?, extent)?;
+        makings::make_all(&device(features)?, extent)?;
     }
     let mut programs = std::mem::take(&mut *programs.lock().unwrap_or_else(PoisonError::into_inner));
     let linked = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra/linked");
