@@ -63,11 +63,9 @@ shaders! {
     DEPTH_LAYERS_OPAQUE = "light_map/depth_layers/layer_opaque";
     /// Layers of casters with holes.
     DEPTH_LAYERS_CUTOUT = "light_map/depth_layers/layer_cutout";
-    /// The first level of a depth pyramid.
-    DEPTH_PYRAMID_FIRST = "light_map/depth_pyramid/first";
-    /// Its further levels.
-    DEPTH_PYRAMID_NEXT = "light_map/depth_pyramid/next";
-    /// Its last level.
+    /// Four levels of a depth pyramid.
+    DEPTH_PYRAMID_LEVELS = "light_map/depth_pyramid/levels";
+    /// Its last four.
     DEPTH_PYRAMID_LAST = "light_map/depth_pyramid/last";
     /// Prefix sums: one level down.
     PREFIX_SCAN = "primitives/prefix_scan/scan";
@@ -89,8 +87,10 @@ shaders! {
     SUMMED_AREA_DOUBLING_INTEGER = "techniques/summed/summed_area_table/doubling";
     /// One direction of a packed map's blur.
     PACKED_BLUR = "primitives/packed_map/blur";
-    /// A packed map's mips.
+    /// One of a packed map's mips.
     PACKED_HALVE = "primitives/packed_map/halve";
+    /// Four of them.
+    PACKED_HALVE_FOUR = "primitives/packed_map/halve_four";
     /// The truth of the filterable techniques.
     FILTERABLE_EXACT = "techniques/filterable/exact";
     /// The same of a multisampled map.

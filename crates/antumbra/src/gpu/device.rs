@@ -71,6 +71,8 @@ pub(crate) enum Scratch {
     LayersBehind,
     /// Pyramid of a light map.
     DepthPyramid,
+    /// Rows of a map whose columns are blurred next.
+    BlurredRows,
     /// Cursors of lists per texel.
     ListCursors,
     /// Fragments of lists per texel.

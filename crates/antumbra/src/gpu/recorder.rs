@@ -245,6 +245,18 @@ impl<'a> Recorder<'a> {
         record(&mut pass);
     }
 
+    /// A compute pass of wgpu's own, wherever steps are joined.
+    pub(crate) fn compute_apart(
+        &mut self,
+        label: &'static str,
+        span: Span,
+        record: impl FnOnce(&mut wgpu::ComputePass<'_>),
+    ) {
+        self.open = None;
+        self.compute(label, span, record);
+        self.open = None;
+    }
+
     /// Commands outside of any pass, as part of a timed step; empty passes carry the clock.
     pub(crate) fn commands(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
         if matches!(span, Span::Only | Span::First) {

@@ -6,16 +6,10 @@ struct NearLight {
     padding: f32
 }
 
-@group(0) @binding(0)
+@group(0) @binding(6)
 var nodes: texture_2d<f32>;
 
-@group(0) @binding(1)
-var level: texture_storage_2d<rg32float, write>;
-
-@group(0) @binding(2)
-var<uniform> view: space_LightViewGpu;
-
-@group(0) @binding(3)
+@group(0) @binding(7)
 var<uniform> light: NearLight;
 
 const THREADS = 256u;
@@ -34,20 +28,18 @@ const MUST_GAIN = 2.0;
 
 var<workgroup> hidden: array<atomic<u32>, BINS>;
 
-var<workgroup> lows: array<f32, THREADS>;
-
-var<workgroup> highs: array<f32, THREADS>;
+var<workgroup> ends_of_threads: array<vec2f, THREADS>;
 
 fn parts_hidden(node: vec2u, z: f32) -> u32 {
-    let uv = min((vec2f(node) + 0.5) * light.node_texels / view.map_size, vec2f(1.0));
-    let from_center = space_warped_plane(view, uv) / space_inverse_divisor(view, uv);
-    let width = space_texel_in_plane_at(view, from_center) * light.node_texels * z;
+    let uv = min((vec2f(node) + 0.5) * light.node_texels / halving_view.map_size, vec2f(1.0));
+    let from_center = space_warped_plane(halving_view, uv) / space_inverse_divisor(halving_view, uv);
+    let width = space_texel_in_plane_at(halving_view, from_center) * light.node_texels * z;
     let share = min(width / (2.0 * light.half_extent), vec2f(1.0));
     return u32(ceil(min(share.x * share.y * PARTS, MOST_OF_NODE)));
 }
 
 fn bin_of(z: f32) -> u32 {
-    return u32(clamp(BINS_PER_OCTAVE * log2(z / view.near_m), 0.0, f32(BINS - 1u)));
+    return u32(clamp(BINS_PER_OCTAVE * log2(z / halving_view.near_m), 0.0, f32(BINS - 1u)));
 }
 
 fn near_end(nearest: f32, farthest: f32) -> f32 {
@@ -59,44 +51,133 @@ fn near_end(nearest: f32, farthest: f32) -> f32 {
             break;
         }
     }
-    let z = min(view.near_m * exp2(f32(bin) / BINS_PER_OCTAVE), space_z_of_depth(view, farthest));
-    return select(nearest, space_depth_of_z(view, z), z >= MUST_GAIN * space_z_of_depth(view, nearest));
+    let z = min(halving_view.near_m * exp2(f32(bin) / BINS_PER_OCTAVE), space_z_of_depth(halving_view, farthest));
+    return select(nearest, space_depth_of_z(halving_view, z), z >= MUST_GAIN * space_z_of_depth(halving_view, nearest));
+}
+
+fn ends_of_all(own: vec2f, thread: u32) -> vec2f {
+    ends_of_threads[thread] = own;
+    for (var pairs = THREADS / 2u; pairs > 0u; pairs /= 2u) {
+        workgroupBarrier();
+        if thread < pairs {
+            ends_of_threads[thread] = halving_joined(ends_of_threads[thread], ends_of_threads[thread + pairs]);
+        }
+    }
+    workgroupBarrier();
+    return ends_of_threads[0];
 }
 
 @compute @workgroup_size(256)
-fn last(@builtin(local_invocation_index) t: u32) {
+fn make_last(@builtin(local_invocation_index) thread: u32) {
+    halving_make_three_levels(vec2u(0u), thread);
     let size = textureDimensions(nodes);
     let count = size.x * size.y;
-    let is_cut = view.perspective == 1u && all(light.half_extent > vec2f(0.0));
-    var low = 1e30;
-    var high = -1e30;
-    for (var i = t; i < count; i += THREADS) {
+    let is_cut = halving_view.perspective == 1u && all(light.half_extent > vec2f(0.0));
+    var own = vec2f(1e30, -1e30);
+    for (var i = thread; i < count; i += THREADS) {
         let node = vec2u(i % size.x, i / size.x);
         let ends = textureLoad(nodes, node, 0).xy;
-        low = min(low, ends.x);
-        high = max(high, ends.y);
+        own = halving_joined(own, ends);
         if is_cut {
-            let z = space_z_of_depth(view, select(ends.x, ends.y, view.depth_sign > 0.0));
+            let z = space_z_of_depth(halving_view, select(ends.x, ends.y, halving_view.depth_sign > 0.0));
             atomicAdd(&hidden[bin_of(z)], parts_hidden(node, z));
         }
     }
-    lows[t] = low;
-    highs[t] = high;
-    workgroupBarrier();
-    if t != 0u {
+    var ends = ends_of_all(own, thread);
+    if thread != 0u {
         return;
     }
-    for (var i = 1u; i < THREADS; i++) {
-        low = min(low, lows[i]);
-        high = max(high, highs[i]);
-    }
-    if is_cut && view.depth_sign > 0.0 {
-        high = near_end(high, low);
+    if is_cut && halving_view.depth_sign > 0.0 {
+        ends.y = near_end(ends.y, ends.x);
     }
     else if is_cut {
-        low = near_end(low, high);
+        ends.x = near_end(ends.x, ends.y);
     }
-    textureStore(level, vec2u(0u), vec4f(low, high, 0.0, 0.0));
+    textureStore(halving_fourth_level, vec2u(0u), halving_held(ends));
+}
+
+override halving_IS_OF_MAP: bool = false;
+
+@group(0) @binding(0)
+var halving_source: texture_2d<f32>;
+
+@group(0) @binding(1)
+var<uniform> halving_view: space_LightViewGpu;
+
+@group(0) @binding(2)
+var halving_first_level: texture_storage_2d<rg32float, write>;
+
+@group(0) @binding(3)
+var halving_second_level: texture_storage_2d<rg32float, write>;
+
+@group(0) @binding(4)
+var halving_third_level: texture_storage_2d<rg32float, write>;
+
+@group(0) @binding(5)
+var halving_fourth_level: texture_storage_2d<rg32float, write>;
+
+const halving_MAKERS = 64u;
+
+var<workgroup> halving_of_second: array<vec2f, 64>;
+
+var<workgroup> halving_of_third: array<vec2f, 16>;
+
+fn halving_joined(a: vec2f, b: vec2f) -> vec2f {
+    return vec2f(min(a.x, b.x), max(a.y, b.y));
+}
+
+fn halving_source_ends(texel: vec2u) -> vec2f {
+    let inside = min(texel, textureDimensions(halving_source) - 1u);
+    let value = textureLoad(halving_source, inside, 0);
+    if halving_IS_OF_MAP {
+        return vec2f(space_unwarped_depth(halving_view, value.x, (vec2f(inside) + 0.5) / halving_view.map_size));
+    }
+    return value.xy;
+}
+
+fn halving_held(ends: vec2f) -> vec4f {
+    return vec4f(ends, 0.0, 0.0);
+}
+
+fn halving_is_within(texel: vec2u, size: vec2u) -> bool {
+    return all(texel < size);
+}
+
+fn halving_make_first(texel: vec2u) -> vec2f {
+    let corner = 2u * texel;
+    let upper = halving_joined(halving_source_ends(corner), halving_source_ends(corner + vec2u(1, 0)));
+    let lower = halving_joined(halving_source_ends(corner + vec2u(0, 1)), halving_source_ends(corner + vec2u(1, 1)));
+    let ends = halving_joined(upper, lower);
+    if halving_is_within(texel, textureDimensions(halving_first_level)) {
+        textureStore(halving_first_level, texel, halving_held(ends));
+    }
+    return ends;
+}
+
+fn halving_make_three_levels(group: vec2u, thread: u32) {
+    if thread < halving_MAKERS {
+        let texel = 8u * group + vec2u(thread % 8u, thread / 8u);
+        let corner = 2u * texel;
+        let upper = halving_joined(halving_make_first(corner), halving_make_first(corner + vec2u(1, 0)));
+        let lower = halving_joined(halving_make_first(corner + vec2u(0, 1)), halving_make_first(corner + vec2u(1, 1)));
+        let ends = halving_joined(upper, lower);
+        halving_of_second[thread] = ends;
+        if halving_is_within(texel, textureDimensions(halving_second_level)) {
+            textureStore(halving_second_level, texel, halving_held(ends));
+        }
+    }
+    workgroupBarrier();
+    if thread < halving_MAKERS / 4u {
+        let place = vec2u(thread % 4u, thread / 4u);
+        let texel = 4u * group + place;
+        let corner = 16u * place.y + 2u * place.x;
+        let ends = halving_joined(halving_joined(halving_of_second[corner], halving_of_second[corner + 1u]), halving_joined(halving_of_second[corner + 8u], halving_of_second[corner + 9u]));
+        halving_of_third[thread] = ends;
+        if halving_is_within(texel, textureDimensions(halving_third_level)) {
+            textureStore(halving_third_level, texel, halving_held(ends));
+        }
+    }
+    workgroupBarrier();
 }
 
 struct space_LightViewGpu {
@@ -145,6 +226,13 @@ fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
 
 fn space_inverse_divisor(view: space_LightViewGpu, uv: vec2f) -> f32 {
     return max(1.0 - dot(view.warp, space_warped_plane(view, uv)), 0.0001);
+}
+
+fn space_unwarped_depth(view: space_LightViewGpu, depth: f32, uv: vec2f) -> f32 {
+    if !space_is_warped(view) {
+        return depth;
+    }
+    return depth / space_inverse_divisor(view, uv);
 }
 
 fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {

@@ -17,40 +17,43 @@ var<uniform> blur: BlurUniform;
 var<storage, read> weights: array<f32>;
 
 @group(0) @binding(2)
-var source: texture_2d<u32>;
+var source: texture_2d_array<u32>;
 
 @group(0) @binding(3)
-var target_layer: texture_storage_2d<r32uint, write>;
+var target_layers: texture_storage_2d_array<r32uint, write>;
 
 var<workgroup> words: array<u32, 3840>;
 
 @compute @workgroup_size(16, 16)
 fn blur_line(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_id) local: vec3u, @builtin(workgroup_id) group: vec3u) {
-    let size = vec2i(textureDimensions(target_layer));
+    let size = vec2i(textureDimensions(target_layers));
     let first = vec2i(group.xy) * TILE;
-    let is_row = blur.direction.x == 1;
     let count = TILE + 2 * blur.radius;
+    let is_row = blur.direction.x == 1;
+    let step = select(TILE, 1, is_row);
+    var start = i32(local.x);
     if is_row {
+        start = i32(local.y) * count;
         for (var i = i32(local.x); i < count; i += TILE) {
             let texel = clamp(first + vec2i(i - blur.radius, i32(local.y)), vec2i(0), size - 1);
-            words[i * TILE + i32(local.y)] = textureLoad(source, texel, 0).x;
+            words[start + i] = textureLoad(source, texel, group.z, 0).x;
         }
+        start += i32(local.x);
     }
     else {
         for (var i = i32(local.y); i < count; i += TILE) {
             let texel = clamp(first + vec2i(i32(local.x), i - blur.radius), vec2i(0), size - 1);
-            words[i * TILE + i32(local.x)] = textureLoad(source, texel, 0).x;
+            words[start + i * TILE] = textureLoad(source, texel, group.z, 0).x;
         }
+        start += i32(local.y) * TILE;
     }
     workgroupBarrier();
-    let place = select(local.y, local.x, is_row);
-    let line = select(local.x, local.y, is_row);
     var sum = vec4f();
     for (var i = 0; i <= 2 * blur.radius; i++) {
-        sum += weights[i] * packing_unpack_word(words[(i32(place) + i) * TILE + i32(line)], PACKING);
+        sum += weights[i] * packing_unpack_word(words[start + i * step], PACKING);
     }
     if all(vec2i(id.xy) < size) {
-        textureStore(target_layer, id.xy, vec4u(packing_pack_word(sum, PACKING)));
+        textureStore(target_layers, id.xy, group.z, vec4u(packing_pack_word(sum, PACKING)));
     }
 }
 

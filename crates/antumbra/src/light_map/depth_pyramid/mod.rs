@@ -5,6 +5,9 @@
 //! scale of depth holds for the whole map; which end is nearer is the reader's affair.
 //!
 //! The last level, of one texel, leaves out what is so near the light that it hides hardly anything of it: `last.wesl`.
+//!
+//! A dispatch makes four levels, as many as WebGPU's default limits let it write: three dispatches serve maps of 512 to 4096
+//! texels.
 
 use std::sync::Arc;
 
@@ -12,8 +15,8 @@ use glam::{UVec2, Vec2};
 
 use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
-    Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, create_uniform, gpu_structs,
-    texels, write_uniform,
+    Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, bindings, compute_entry, compute_pipeline, create_uniform,
+    gpu_structs, texels, write_uniform,
 };
 use crate::shaders;
 
@@ -22,25 +25,29 @@ mod cpu;
 #[cfg(test)]
 mod tests;
 
-/// Threads along each side of a workgroup.
-const TILE: u32 = 8;
+/// Levels that a dispatch makes.
+const AT_ONCE: usize = 4;
+
+/// Texels along a side of what a workgroup makes of the first of its levels.
+const TILE: u32 = 16;
 
 bindings! {
-    struct Levelled = "depth pyramid", COMPUTE, group 0 of [DEPTH_PYRAMID_FIRST] {
+    struct Halving = "depth pyramid", COMPUTE, group 0 of [DEPTH_PYRAMID_LEVELS] {
         /// The map, or the level before.
-        0 map: Texture(texels::FLOAT),
-        1 level: WrittenTexture(DepthPyramid::FORMAT),
-        2 view: Uniform,
+        0 source: Texture(texels::FLOAT),
+        1 view: Uniform,
+        2 first_level: WrittenTexture(DepthPyramid::FORMAT),
+        3 second_level: WrittenTexture(DepthPyramid::FORMAT),
+        4 third_level: WrittenTexture(DepthPyramid::FORMAT),
+        5 fourth_level: WrittenTexture(DepthPyramid::FORMAT),
     }
 }
 
 bindings! {
-    struct Last = "depth pyramid's last level", COMPUTE, group 0 of [DEPTH_PYRAMID_LAST] {
+    struct Last = "depth pyramid's last levels", COMPUTE, group 0 of [DEPTH_PYRAMID_LAST], with halving: Halving {
         /// The level that is summed over.
-        0 nodes: Texture(texels::FLOAT),
-        1 level: WrittenTexture(DepthPyramid::FORMAT),
-        2 view: Uniform,
-        3 light: Uniform,
+        6 nodes: Texture(texels::FLOAT),
+        7 light: Uniform,
     }
 }
 
@@ -58,8 +65,8 @@ gpu_structs! {
 pub(crate) struct DepthPyramid {
     layout: wgpu::BindGroupLayout,
     last_layout: wgpu::BindGroupLayout,
-    first: wgpu::ComputePipeline,
-    next: wgpu::ComputePipeline,
+    of_map: wgpu::ComputePipeline,
+    of_level: wgpu::ComputePipeline,
     last: wgpu::ComputePipeline,
     light: wgpu::Buffer,
     levels: Option<Levels>,
@@ -73,15 +80,16 @@ struct Levels {
     texture: Arc<wgpu::Texture>,
     /// What they are bound to: the map, and its view.
     of: (wgpu::TextureView, wgpu::Buffer),
+    /// From the map on; the last levels follow.
     steps: Vec<Step>,
-    /// Makes the last level in place of its step; none where that is the first, too.
-    last: Option<wgpu::BindGroup>,
+    last: wgpu::BindGroup,
 }
 
-/// What makes one level from the one before, or from the map.
+/// What makes four levels from the one before, or from the map.
 #[derive(Debug)]
 struct Step {
     bind_group: wgpu::BindGroup,
+    /// Of the first of them.
     size: UVec2,
 }
 
@@ -93,14 +101,18 @@ impl DepthPyramid {
     const NODES: u32 = 128;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let layout = Levelled::layout(gpu);
+        let layout = Halving::layout(gpu);
         let last_layout = Last::layout(gpu);
+        let levels = |label, is_of_map: bool| {
+            let constants = [("IS_OF_MAP", f64::from(u8::from(is_of_map)))];
+            compute_entry(gpu, label, shaders::DEPTH_PYRAMID_LEVELS, None, &constants, &[&layout])
+        };
         Self {
-            last: compute_pipeline(gpu, "depth pyramid last", shaders::DEPTH_PYRAMID_LAST, &[&last_layout]),
+            of_map: levels("depth pyramid first levels", true),
+            of_level: levels("depth pyramid further levels", false),
+            last: compute_pipeline(gpu, "depth pyramid last levels", shaders::DEPTH_PYRAMID_LAST, &[&last_layout]),
             light: create_uniform::<NearLight>(gpu, "antumbra depth pyramid light"),
             last_layout,
-            first: compute_pipeline(gpu, "depth pyramid first", shaders::DEPTH_PYRAMID_FIRST, &[&layout]),
-            next: compute_pipeline(gpu, "depth pyramid next", shaders::DEPTH_PYRAMID_NEXT, &[&layout]),
             layout,
             levels: None,
         }
@@ -119,13 +131,9 @@ impl DepthPyramid {
         light_half_extent_m: Vec2,
     ) {
         let sizes = level_sizes(map_size);
-        let top = sizes.len() as u32 - 1;
-        let nodes = (0..top).find(|i| sizes[*i as usize].max_element() <= Self::NODES);
-        if let Some(i) = nodes {
-            let node_texels = 2.0 * (1u32 << i) as f32;
-            let light = NearLight { half_extent: light_half_extent_m, node_texels, padding: 0.0 };
-            write_uniform(stage, &self.light, &light);
-        }
+        let nodes = nodes_level(&sizes);
+        let node_texels = 2.0 * (1u32 << nodes) as f32;
+        write_uniform(stage, &self.light, &NearLight { half_extent: light_half_extent_m, node_texels, padding: 0.0 });
         let is_bound = |levels: &Levels| levels.map_size == map_size && levels.of.0 == *map && levels.of.1 == *view;
         if self.levels.as_ref().is_some_and(is_bound) {
             return;
@@ -134,30 +142,34 @@ impl DepthPyramid {
             Some(levels) if levels.map_size == map_size => levels.texture,
             _ => lease.texture(&stage.device, Scratch::DepthPyramid, &descriptor(&sizes)),
         };
-        let level = |i: u32| {
-            stage.create_view(
-                &texture,
-                &wgpu::TextureViewDescriptor {
-                    base_mip_level: i,
-                    mip_level_count: Some(1),
-                    ..wgpu::TextureViewDescriptor::default()
-                },
-            )
-        };
-        let steps = (0..)
-            .zip(&sizes)
-            .map(|(i, size)| {
-                let previous = (i > 0).then(|| level(i - 1));
-                let levelled = Levelled { map: previous.as_ref().unwrap_or(map), level: &level(i), view };
-                let bind_group = levelled.group(stage, &self.layout);
-                Step { bind_group, size: *size }
+        let views: Vec<_> = (0..sizes.len() as u32)
+            .map(|base_mip_level| {
+                let alone = Some(1);
+                let level =
+                    wgpu::TextureViewDescriptor { base_mip_level, mip_level_count: alone, ..Default::default() };
+                stage.create_view(&texture, &level)
             })
             .collect();
-        let last = nodes.map(|i| {
-            Last { nodes: &level(i), level: &level(top), view, light: &self.light }.group(stage, &self.last_layout)
-        });
+        let halving = |first: usize| Halving {
+            source: if first == 0 { map } else { &views[first - 1] },
+            view,
+            first_level: &views[first],
+            second_level: &views[first + 1],
+            third_level: &views[first + 2],
+            fourth_level: &views[first + 3],
+        };
+        let step = |first: usize| Step { bind_group: halving(first).group(stage, &self.layout), size: sizes[first] };
+        let first_of_last = sizes.len() - AT_ONCE;
+        let last = Last { halving: halving(first_of_last), nodes: &views[nodes], light: &self.light };
         let all = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
-        self.levels = Some(Levels { map_size, all, texture, of: (map.clone(), view.clone()), steps, last });
+        self.levels = Some(Levels {
+            map_size,
+            all,
+            of: (map.clone(), view.clone()),
+            steps: (0..first_of_last).step_by(AT_ONCE).map(step).collect(),
+            last: last.group(stage, &self.last_layout),
+            texture,
+        });
     }
 
     /// All levels, for shaders; after [`Self::prepare`].
@@ -184,17 +196,14 @@ impl DepthPyramid {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let Some(levels) = &self.levels else { return };
         recorder.compute("depth pyramid", Span::Only, |pass| {
-            let halved = levels.steps.len() - usize::from(levels.last.is_some());
-            for (i, step) in levels.steps[..halved].iter().enumerate() {
-                pass.set_pipeline(if i == 0 { &self.first } else { &self.next });
+            for (i, step) in levels.steps.iter().enumerate() {
+                pass.set_pipeline(if i == 0 { &self.of_map } else { &self.of_level });
                 pass.set_bind_group(0, &step.bind_group, &[]);
                 pass.dispatch_workgroups(step.size.x.div_ceil(TILE), step.size.y.div_ceil(TILE), 1);
             }
-            if let Some(last) = &levels.last {
-                pass.set_pipeline(&self.last);
-                pass.set_bind_group(0, last, &[]);
-                pass.dispatch_workgroups(1, 1, 1);
-            }
+            pass.set_pipeline(&self.last);
+            pass.set_bind_group(0, &levels.last, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
         });
     }
 
@@ -226,9 +235,10 @@ fn descriptor(sizes: &[UVec2]) -> wgpu::TextureDescriptor<'static> {
 }
 
 /// The levels' sizes, from half the map's to 1 × 1. A texture's mip chain halves rounding down, so level 0 is rounded
-/// up to a power of two: what it has beyond the map repeats the map's edge.
+/// up to a power of two: what it has beyond the map repeats the map's edge. Of small maps, too, there are more levels than
+/// a dispatch makes, so that the last are made of one before them.
 fn level_sizes(map_size: UVec2) -> Vec<UVec2> {
-    let mut size = UVec2::new(map_size.x.next_power_of_two(), map_size.y.next_power_of_two());
+    let mut size = map_size.map(|texels| texels.next_power_of_two().max(2 << AT_ONCE));
     let mut sizes = Vec::new();
     loop {
         size = (size / 2).max(UVec2::ONE);
@@ -237,4 +247,9 @@ fn level_sizes(map_size: UVec2) -> Vec<UVec2> {
             return sizes;
         }
     }
+}
+
+/// The finest level that is small enough to be summed over.
+fn nodes_level(sizes: &[UVec2]) -> usize {
+    sizes.iter().position(|size| size.max_element() <= DepthPyramid::NODES).expect("the last is one texel")
 }

@@ -10,8 +10,8 @@ use glam::{IVec2, UVec2};
 
 use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
-    Bindings, Cached, Gpu, Recorder, Span, Stage, array_view, bindings, compute_entry, create_uniform, gpu_structs,
-    level_views, slice_views, texels, upload_storage, write_uniform,
+    Bindings, Cached, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_entry, create_uniform,
+    gpu_structs, level_views, slice_views, texels, texture_bytes, upload_storage, write_uniform,
 };
 use crate::shaders;
 
@@ -130,13 +130,21 @@ bindings! {
     struct Blur = "packed blur", COMPUTE, group 0 of [PACKED_BLUR] {
         0 blur: Uniform,
         1 weights: Storage,
-        2 source: Texture(texels::UINT),
-        3 target_layer: WrittenTexture(PackedMap::FORMAT),
+        2 source: TextureArray(texels::UINT),
+        3 target_layers: WrittenArray(PackedMap::FORMAT),
     }
 
     struct Halve = "packed mips", COMPUTE, group 0 of [PACKED_HALVE] {
         0 previous: TextureArray(texels::UINT),
         1 level: WrittenArray(PackedMap::FORMAT),
+    }
+
+    struct HalveFour = "four packed mips", COMPUTE, group 0 of [PACKED_HALVE_FOUR] {
+        0 previous: TextureArray(texels::UINT),
+        1 first_level: WrittenArray(PackedMap::FORMAT),
+        2 second_level: WrittenArray(PackedMap::FORMAT),
+        3 third_level: WrittenArray(PackedMap::FORMAT),
+        4 fourth_level: WrittenArray(PackedMap::FORMAT),
     }
 }
 
@@ -159,17 +167,38 @@ struct Maps {
     all: wgpu::TextureView,
     /// Of the first level, for writing.
     first: wgpu::TextureView,
-    /// Rows, then columns, of each word.
-    blurs: Vec<[wgpu::BindGroup; 2]>,
-    halves: Vec<wgpu::BindGroup>,
+    /// Rows, then columns; none without a blur.
+    blurs: Vec<wgpu::BindGroup>,
+    /// What rows write and columns read, shared by all maps of the size, is kept for as long as it is bound.
+    _rows: Option<Arc<wgpu::Texture>>,
+    mips: Vec<Mips>,
     /// Of the first level of each word, where passes that draw write it.
     drawn: Vec<wgpu::TextureView>,
+}
+
+/// What makes some levels from the one before them.
+#[derive(Debug)]
+struct Mips {
+    bind_group: wgpu::BindGroup,
+    step: MipStep,
+    /// Of the first of them.
+    size: UVec2,
+}
+
+/// A dispatch that makes mip levels, by the level before them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MipStep {
+    /// The next level, of any size.
+    One(u32),
+    /// The next four, where the level before has multiples of 16 texels.
+    Four(u32),
 }
 
 #[derive(Clone, Debug)]
 struct Pipelines {
     blur: wgpu::ComputePipeline,
     halve: wgpu::ComputePipeline,
+    halve_four: wgpu::ComputePipeline,
 }
 
 /// A map, its blur and its mips.
@@ -177,6 +206,7 @@ struct Pipelines {
 pub(crate) struct PackedMap {
     blur_layout: wgpu::BindGroupLayout,
     halve_layout: wgpu::BindGroupLayout,
+    halve_four_layout: wgpu::BindGroupLayout,
     /// For the packing that is prepared.
     pipelines: Cached<Packing, Pipelines>,
     rows: wgpu::Buffer,
@@ -195,20 +225,22 @@ pub(crate) struct PreparedPackedMap {
 }
 
 impl Pipelines {
-    /// `layouts` are of the blur and of the mips.
-    fn new(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 2], packing: Packing) -> Self {
+    /// `layouts` are of the blur, of one level and of four.
+    fn new(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 3], packing: Packing) -> Self {
         let constants = [("PACKING", f64::from(packing as u32))];
         let make = |label, wgsl, layout| compute_entry(gpu, label, wgsl, None, &constants, &[layout]);
         Self {
             blur: make("packed blur", shaders::PACKED_BLUR, layouts[0]),
             halve: make("packed mips", shaders::PACKED_HALVE, layouts[1]),
+            halve_four: make("four packed mips", shaders::PACKED_HALVE_FOUR, layouts[2]),
         }
     }
 }
 
-/// Threads along each side of a workgroup of the blur, and of the mips.
+/// Texels along each side of what a workgroup makes: of the blur, of one level, and of the first of four.
 const BLUR_TILE: u32 = 16;
 const HALVE_TILE: u32 = 8;
+const HALVE_FOUR_TILE: u32 = 16;
 
 impl PackedMap {
     /// The texture's format.
@@ -219,6 +251,7 @@ impl PackedMap {
             pipelines: Cached::default(),
             blur_layout: Blur::layout(gpu),
             halve_layout: Halve::layout(gpu),
+            halve_four_layout: HalveFour::layout(gpu),
             rows: create_uniform::<BlurUniform>(gpu, "antumbra blur rows"),
             columns: create_uniform::<BlurUniform>(gpu, "antumbra blur columns"),
             weights: None,
@@ -248,7 +281,7 @@ impl PackedMap {
             let uniform = BlurUniform { direction, radius: kernel.radius() as i32, padding: 0 };
             write_uniform(stage, buffer, &uniform);
         }
-        let layouts = [&self.blur_layout, &self.halve_layout];
+        let layouts = [&self.blur_layout, &self.halve_layout, &self.halve_four_layout];
         let pipelines = self.pipelines.get_or_make(packing, || Pipelines::new(stage, layouts, packing)).clone();
         let weights = kernel.with_running_sums();
         let bytes = size_of_val(weights.as_slice()) as u64;
@@ -261,15 +294,24 @@ impl PackedMap {
     }
 
     fn allocate(&self, gpu: &Gpu, shape: Shape, weights: &wgpu::Buffer) -> Maps {
-        let texture = create_texture(gpu, "antumbra packed map", shape, shape.words, shape.levels);
+        let texture = gpu.device.create_texture(&descriptor("antumbra packed map", shape));
         let levels = level_views(gpu, &texture);
-        let halve = |pair: &[wgpu::TextureView]| {
-            Halve { previous: &pair[0], level: &pair[1] }.kept_group(gpu, &self.halve_layout)
-        };
+        let rows = shape.blurred.then(|| {
+            let shape = Shape { levels: 1, drawn: false, ..shape };
+            gpu.device.scratch_texture(Scratch::BlurredRows, &descriptor("antumbra blurred rows", shape))
+        });
+        let blurs = rows.iter().flat_map(|rows| {
+            let rows = array_view(gpu, rows);
+            let blur = |uniform, source, target_layers| {
+                Blur { blur: uniform, weights, source, target_layers }.kept_group(gpu, &self.blur_layout)
+            };
+            [blur(&self.rows, &levels[0], &rows), blur(&self.columns, &rows, &levels[0])]
+        });
         Maps {
             shape,
-            blurs: if shape.blurred { self.blurs(gpu, shape, &texture, weights) } else { Vec::new() },
-            halves: levels.windows(2).map(halve).collect(),
+            blurs: blurs.collect(),
+            mips: mip_steps(shape.size, shape.levels).map(|step| self.mips(gpu, shape, &levels, step)).collect(),
+            _rows: rows,
             all: array_view(gpu, &texture),
             first: levels[0].clone(),
             drawn: if shape.drawn { slice_views(gpu, &texture) } else { Vec::new() },
@@ -277,16 +319,22 @@ impl PackedMap {
         }
     }
 
-    /// Rows, then columns, of each word of a map.
-    fn blurs(&self, gpu: &Gpu, shape: Shape, map: &wgpu::Texture, weights: &wgpu::Buffer) -> Vec<[wgpu::BindGroup; 2]> {
-        // One word's rows at a time: the map in between has one layer, whatever the number of words.
-        let between = create_texture(gpu, "antumbra packed blur", Shape { drawn: false, ..shape }, 1, 1);
-        let between = gpu.device.create_view(&between, &wgpu::TextureViewDescriptor::default());
-        let blur = |uniform, source, target_layer| {
-            Blur { blur: uniform, weights, source, target_layer }.kept_group(gpu, &self.blur_layout)
+    /// A dispatch that makes levels of a map.
+    fn mips(&self, gpu: &Gpu, shape: Shape, levels: &[wgpu::TextureView], step: MipStep) -> Mips {
+        let (MipStep::One(before) | MipStep::Four(before)) = step;
+        let level = |i: u32| &levels[(before + i) as usize];
+        let bind_group = match step {
+            MipStep::One(_) => Halve { previous: level(0), level: level(1) }.kept_group(gpu, &self.halve_layout),
+            MipStep::Four(_) => HalveFour {
+                previous: level(0),
+                first_level: level(1),
+                second_level: level(2),
+                third_level: level(3),
+                fourth_level: level(4),
+            }
+            .kept_group(gpu, &self.halve_four_layout),
         };
-        let of_word = |word| [blur(&self.rows, word, &between), blur(&self.columns, &between, word)];
-        slice_views(gpu, map).iter().map(of_word).collect()
+        Mips { bind_group, step, size: shape.level_size(before + 1) }
     }
 
     /// Each level's first word alone, for whoever wants to look at it.
@@ -300,7 +348,7 @@ impl PackedMap {
                 array_layer_count: Some(1),
                 ..wgpu::TextureViewDescriptor::default()
             }),
-            size_px: (maps.shape.size >> base_mip_level).max(UVec2::ONE),
+            size_px: maps.shape.level_size(base_mip_level),
             texels: match packing {
                 Packing::Float32 => LevelTexels::Float32,
                 Packing::Float16 => LevelTexels::Float16,
@@ -311,16 +359,9 @@ impl PackedMap {
         (0..maps.shape.levels).map(level).collect()
     }
 
-    /// Bytes of the map with its levels, and of the map between rows and columns.
+    /// Bytes of the map with its levels; what rows of its blur are written to is shared by all maps.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        self.maps.as_ref().map_or(0, |maps| {
-            let texels = |level: u32| {
-                let size = (maps.shape.size >> level).max(UVec2::ONE);
-                u64::from(size.x) * u64::from(size.y)
-            };
-            let map: u64 = (0..maps.shape.levels).map(texels).sum::<u64>() * u64::from(maps.shape.words);
-            4 * (map + if maps.shape.blurred { texels(0) } else { 0 })
-        })
+        self.maps.as_ref().map_or(0, |maps| texture_bytes(&maps.texture))
     }
 
     /// The texture, for tests.
@@ -354,41 +395,60 @@ impl PreparedPackedMap {
     /// Blurs the first level, where the kernel has a width, and makes the further levels, where there are any.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let Self { maps, pipelines, .. } = self;
-        let size = maps.shape.size;
-        if maps.shape.blurred {
-            recorder.compute("blur", Span::Only, |pass| {
+        let Shape { size, words, .. } = maps.shape;
+        // A pass for each dispatch, here and below: within one, wgpu 30 loses a texture array's layouts from level to level, as
+        // the validation layers see it.
+        for (i, group) in maps.blurs.iter().enumerate() {
+            recorder.compute_apart("blur", Span::of(i, maps.blurs.len()), |pass| {
                 pass.set_pipeline(&pipelines.blur);
-                for group in maps.blurs.iter().flatten() {
-                    pass.set_bind_group(0, group, &[]);
-                    pass.dispatch_workgroups(size.x.div_ceil(BLUR_TILE), size.y.div_ceil(BLUR_TILE), 1);
-                }
+                pass.set_bind_group(0, group, &[]);
+                pass.dispatch_workgroups(size.x.div_ceil(BLUR_TILE), size.y.div_ceil(BLUR_TILE), words);
             });
         }
-        if !maps.halves.is_empty() {
-            // A pass for each level: within one, wgpu 30 loses a texture array's layouts from level to level, as the
-            // validation layers see it.
-            let count = maps.halves.len();
-            for (i, group) in maps.halves.iter().enumerate() {
-                recorder.compute("mips", Span::of(i, count), |pass| {
-                    let level = (size >> (i as u32 + 1)).max(UVec2::ONE);
-                    pass.set_pipeline(&pipelines.halve);
-                    pass.set_bind_group(0, group, &[]);
-                    pass.dispatch_workgroups(
-                        level.x.div_ceil(HALVE_TILE),
-                        level.y.div_ceil(HALVE_TILE),
-                        maps.shape.words,
-                    );
-                });
-            }
+        for (i, Mips { bind_group, step, size }) in maps.mips.iter().enumerate() {
+            recorder.compute_apart("mips", Span::of(i, maps.mips.len()), |pass| {
+                let (pipeline, tile) = match step {
+                    MipStep::One(_) => (&pipelines.halve, HALVE_TILE),
+                    MipStep::Four(_) => (&pipelines.halve_four, HALVE_FOUR_TILE),
+                };
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, bind_group, &[]);
+                pass.dispatch_workgroups(size.x.div_ceil(tile), size.y.div_ceil(tile), words);
+            });
         }
     }
 }
 
-fn create_texture(gpu: &Gpu, label: &str, shape: Shape, layers: u32, levels: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
+impl Shape {
+    fn level_size(&self, level: u32) -> UVec2 {
+        (self.size >> level).max(UVec2::ONE)
+    }
+}
+
+/// The dispatches that make all levels after the first: four at once where sizes allow, if need be some of them once more.
+fn mip_steps(size: UVec2, levels: u32) -> impl Iterator<Item = MipStep> {
+    let is_start = move |level: u32| {
+        let texels = size >> level;
+        level + 4 < levels && texels % 16 == UVec2::ZERO && texels.min_element() > 0
+    };
+    let mut made = 0;
+    std::iter::from_fn(move || {
+        if made + 1 >= levels {
+            return None;
+        }
+        let start = (made.saturating_sub(3)..=made).rev().find(|level| is_start(*level));
+        let step = start.map_or(MipStep::One(made), MipStep::Four);
+        made = start.map_or(made + 1, |level| level + 4);
+        Some(step)
+    })
+}
+
+/// The texture of a map, or of one between the directions of its blur.
+fn descriptor(label: &str, shape: Shape) -> wgpu::TextureDescriptor<'_> {
+    wgpu::TextureDescriptor {
         label: Some(label),
-        size: wgpu::Extent3d { width: shape.size.x, height: shape.size.y, depth_or_array_layers: layers },
-        mip_level_count: levels,
+        size: wgpu::Extent3d { width: shape.size.x, height: shape.size.y, depth_or_array_layers: shape.words },
+        mip_level_count: shape.levels,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: PackedMap::FORMAT,
@@ -398,5 +458,5 @@ fn create_texture(gpu: &Gpu, label: &str, shape: Shape, layers: u32, levels: u32
             | wgpu::TextureUsages::COPY_DST
             | if shape.drawn { wgpu::TextureUsages::RENDER_ATTACHMENT } else { wgpu::TextureUsages::empty() },
         view_formats: &[],
-    })
+    }
 }

@@ -64,9 +64,9 @@ impl<P: GpuStruct> Filterable<P> {
     }
 }
 
-/// What a map takes with the basis of most techniques: depths, four channels in two words, their levels, and a blurred copy.
+/// What a map takes with the basis of most techniques: depths, and four channels in two words with their levels.
 fn bytes_of(size: u32, sample_count: u32) -> u64 {
-    const OF_BASIS: u32 = 8 * 4 / 3 + 4;
+    const OF_BASIS: u32 = 8 * 4 / 3;
     u64::from(4 * sample_count + OF_BASIS) * u64::from(size).pow(2)
 }
 
