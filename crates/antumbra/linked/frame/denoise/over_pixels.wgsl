@@ -16,6 +16,29 @@ struct Fit {
 
 const REACH = 3;
 
+const TILE = 8;
+
+const SIDE = TILE + 2 * REACH;
+
+var<workgroup> fetched: array<vec3f, SIDE * SIDE>;
+
+struct Place {
+    pixel: vec2u,
+    in_fetched: i32
+}
+
+fn fetch(group: vec2u, thread: u32, layer: u32) {
+    for (var i = i32(thread); i < SIDE * SIDE; i += TILE * TILE) {
+        let pixel = surface_neighbour(8u * group, vec2i(i % SIDE, i / SIDE) - REACH);
+        fetched[i] = vec3f(textureLoad(means, pixel, layer, 0).xz, inputs_depth_at(pixel));
+    }
+    workgroupBarrier();
+}
+
+fn fetched_at(place: Place, away: vec2i) -> vec3f {
+    return fetched[place.in_fetched + away.y * SIDE + away.x];
+}
+
 struct Window {
     reach: i32,
     falloff: f32,
@@ -24,21 +47,21 @@ struct Window {
     most_off: f32
 }
 
-fn fit(pixel: vec2u, layer: u32, surface: surface_Surface, window: Window) -> Fit {
+fn fit(place: Place, surface: surface_Surface, window: Window) -> Fit {
     var sums = Fit(0.0, vec2f(), vec3f(), 0.0, vec2f(), 0.0, 1.0, 0.0);
     for (var y = max(-window.reach, -REACH); y <= min(window.reach, REACH); y++) {
         for (var x = max(-window.reach, -REACH); x <= min(window.reach, REACH); x++) {
-            let other = surface_neighbour(pixel, vec2i(x, y));
-            if !surface_is_on_surface(surface, vec2i(other) - vec2i(pixel), inputs_depth_at(other)) {
+            let known = fetched_at(place, vec2i(x, y));
+            let other = surface_neighbour(place.pixel, vec2i(x, y));
+            if !surface_is_on_surface(surface, vec2i(other) - vec2i(place.pixel), known.z) {
                 continue;
             }
-            let known = textureLoad(means, other, layer, 0);
             let at = vec2f(f32(x), f32(y));
             if abs(known.x - window.value - dot(window.slope, at)) > window.most_off {
                 continue;
             }
             let share = exp(-window.falloff * dot(at, at));
-            let weight = known.z * share;
+            let weight = known.y * share;
             sums.weight += weight;
             sums.first += weight * at;
             sums.second += weight * at.xxy * at.xyy;
@@ -86,17 +109,16 @@ const ALIKE_DEVIATIONS = 3.0;
 
 const LEAST_DEVIATION = 0.3;
 
-fn smoothed(pixel: vec2u, layer: u32, known: vec3f) -> f32 {
+fn smoothed(place: Place, known: vec3f) -> f32 {
     var differs = false;
     for (var i = 0; i < 9; i++) {
-        let other = surface_neighbour(pixel, 2 * (vec2i(i % 3, i / 3) - 1));
-        differs |= textureLoad(means, other, layer, 0).x != known.x;
+        differs |= fetched_at(place, 2 * (vec2i(i % 3, i / 3) - 1)).x != known.x;
     }
     if !differs {
         return known.x;
     }
-    let surface = surface_surface_of(pixel, inputs_load_receiver(pixel));
-    let wide = fit(pixel, layer, surface, Window(2, 0.0, 0.0, vec2f(), 2.0));
+    let surface = surface_surface_of(place.pixel, inputs_load_receiver(place.pixel));
+    let wide = fit(place, surface, Window(2, 0.0, 0.0, vec2f(), 2.0));
     let ramp = plane_of(wide);
     let own_variance = max(known.y - known.x * known.x, 0.0) / (known.z * sqrt(known.z));
     let variance = select(own_variance, ramp.variance, known.z < TELLING_FRAMES);
@@ -106,21 +128,23 @@ fn smoothed(pixel: vec2u, layer: u32, known: vec3f) -> f32 {
     }
     let reach = i32(ceil(1.5 * deviation));
     let most_off = ALIKE_DEVIATIONS * sqrt(variance) + NOISE_LEFT;
-    let sums = fit(pixel, layer, surface, Window(reach, 0.5 / (deviation * deviation), known.x, ramp.slope, most_off));
+    let sums = fit(place, surface, Window(reach, 0.5 / (deviation * deviation), known.x, ramp.slope, most_off));
     return clamp(plane_of(sums).value, sums.low, sums.high);
 }
 
 @compute @workgroup_size(8, 8)
-fn smooth_out(@builtin(global_invocation_id) id: vec3u) {
+fn smooth_out(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u, @builtin(local_invocation_index) thread: u32) {
     let pixel = id.xy;
     let layer = id.z;
+    fetch(group.xy, thread, layer);
     if !inputs_is_inside(pixel) {
         return;
     }
     let known = textureLoad(means, pixel, layer, 0).xyz;
     var visibility = 1.0;
     if known.z > 0.0 {
-        visibility = smoothed(pixel, layer, known);
+        let in_fetched = vec2i(local.xy) + REACH;
+        visibility = smoothed(Place(pixel, in_fetched.y * SIDE + in_fetched.x), known);
     }
     inputs_store_mask(pixel, layer, visibility);
 }

@@ -46,11 +46,33 @@ struct Around {
 
 const AROUND = 2;
 
-fn around(pixel: vec2u, layer: u32, surface: surface_Surface, now: f32) -> Around {
+const TILE = 8;
+
+const SIDE = TILE + 2 * AROUND;
+
+var<workgroup> fetched: array<vec2f, SIDE * SIDE>;
+
+struct Place {
+    pixel: vec2u,
+    in_fetched: i32
+}
+
+fn fetch(group: vec2u, thread: u32, layer: u32) {
+    for (var i = i32(thread); i < SIDE * SIDE; i += TILE * TILE) {
+        let pixel = surface_neighbour(8u * group, vec2i(i % SIDE, i / SIDE) - AROUND);
+        fetched[i] = vec2f(textureLoad(noisy, pixel, layer, 0).x, inputs_depth_at(pixel));
+    }
+    workgroupBarrier();
+}
+
+fn fetched_at(place: Place, away: vec2i) -> vec2f {
+    return fetched[place.in_fetched + away.y * SIDE + away.x];
+}
+
+fn around(place: Place, surface: surface_Surface, now: f32) -> Around {
     var differs = false;
     for (var i = 0; i < 9; i++) {
-        let other = surface_neighbour(pixel, AROUND * (vec2i(i % 3, i / 3) - 1));
-        differs |= textureLoad(noisy, other, layer, 0).x != now;
+        differs |= fetched_at(place, AROUND * (vec2i(i % 3, i / 3) - 1)).x != now;
     }
     if !differs {
         return Around(now, 0.0, 25.0);
@@ -60,9 +82,10 @@ fn around(pixel: vec2u, layer: u32, surface: surface_Surface, now: f32) -> Aroun
     var count = 0.0;
     for (var y = -AROUND; y <= AROUND; y++) {
         for (var x = -AROUND; x <= AROUND; x++) {
-            let other = surface_neighbour(pixel, vec2i(x, y));
-            if surface_is_on_surface(surface, vec2i(other) - vec2i(pixel), inputs_depth_at(other)) {
-                let visibility = textureLoad(noisy, other, layer, 0).x;
+            let seen = fetched_at(place, vec2i(x, y));
+            let other = surface_neighbour(place.pixel, vec2i(x, y));
+            if surface_is_on_surface(surface, vec2i(other) - vec2i(place.pixel), seen.y) {
+                let visibility = seen.x;
                 sum += visibility;
                 squares += visibility * visibility;
                 count += 1.0;
@@ -162,25 +185,29 @@ fn joined(held: Known, now: f32) -> Known {
 }
 
 @compute @workgroup_size(8, 8)
-fn accumulate(@builtin(global_invocation_id) id: vec3u) {
+fn accumulate(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u, @builtin(local_invocation_index) thread: u32) {
     let pixel = id.xy;
     let layer = id.z;
+    fetch(group.xy, thread, layer);
     if !inputs_is_inside(pixel) {
         return;
     }
+    let in_fetched = vec2i(local.xy) + AROUND;
+    let place = Place(pixel, in_fetched.y * SIDE + in_fetched.x);
+    let seen = fetched_at(place, vec2i());
     if layer == 0u {
-        textureStore(depth_now, pixel, vec4f(inputs_depth_at(pixel)));
+        textureStore(depth_now, pixel, vec4f(seen.y));
     }
     let receiver = inputs_load_receiver(pixel);
     if receiver.is_background {
         textureStore(means_now, pixel, layer, vec4f(1.0, 1.0, 0.0, 0.0));
         return;
     }
-    let now = textureLoad(noisy, pixel, layer, 0).x;
+    let now = seen.x;
     let surface = surface_surface_of(pixel, receiver);
     var known = before(pixel, layer, receiver, surface);
-    if known.frames >= 1.0 {
-        known = kept(known, around(pixel, layer, surface, now), now);
+    if known.frames >= 1.0 && known.mean != now {
+        known = kept(known, around(place, surface, now), now);
     }
     known = joined(known, now);
     textureStore(means_now, pixel, layer, vec4f(known.mean, known.square, known.frames, 0.0));

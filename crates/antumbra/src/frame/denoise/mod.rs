@@ -17,8 +17,9 @@
 //! What is filtered is shown, not kept, so that nothing is filtered twice.
 //!
 //! Per pixel and channel, over time: reads 4 bytes of the noisy mask, 12 of what is kept, four times, and 4 of depth; writes 12.
-//! Over pixels: reads 8, writes 4. That is all where a pixel and its neighbours are lit or dark; elsewhere 25 neighbours' mask and
-//! depth each, and up to 49 neighbours' means and depths. Memory: 24 bytes a pixel, 8 a pixel and channel more where there are three.
+//! Over pixels: reads 8 and 4 of depth, writes 4. Workgroups fetch once what is about their pixels: 2.3 times as much over time, 3.1
+//! times over pixels. Neither looks about where a pixel is lit or dark and was so. Memory: 24 bytes a pixel, 8 a pixel and channel
+//! more where there are three.
 //!
 //! # Limits
 //! Bias is no noise: a blocker search of few taps misses faint blockers in most frames, so that the outer penumbra stays too
@@ -35,8 +36,8 @@ use crate::contract::{Camera, Denoise, Mask, PreparedFrame};
 use crate::frame::DEPTH_FORMAT;
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline, create_uniform, gpu_structs,
-    texels, write_uniform,
+    Bindings, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline_without_zeroing,
+    create_uniform, gpu_structs, texels, write_uniform,
 };
 use crate::shaders;
 
@@ -130,7 +131,9 @@ impl Denoiser {
         let inputs = FrameInputs::new(gpu);
         let over_time_layout = OverTime::layout(gpu);
         let over_pixels_layout = OverPixels::layout(gpu);
-        let pipeline = |label, shader, layout| compute_pipeline(gpu, label, shader, &[&inputs.layout, layout]);
+        let pipeline = |label, shader, layout| {
+            compute_pipeline_without_zeroing(gpu, label, shader, &[], &[&inputs.layout, layout])
+        };
         Self {
             over_time: pipeline("denoise over time", shaders::DENOISE_OVER_TIME, &over_time_layout),
             over_pixels: pipeline("denoise over pixels", shaders::DENOISE_OVER_PIXELS, &over_pixels_layout),
