@@ -17,12 +17,16 @@ macro_rules! params_in_full {
     ([$($head:tt)*] [$($done:tt)*] [$($rest:tt)*]) => {
         $crate::contract::declare_params! { $($head)* { $($done)* } $($rest)* }
     };
-    ($head:tt [$($done:tt)*] $rest:tt shared map_size, more $more:literal; $($body:tt)*) => {
+    ($head:tt $done:tt $rest:tt shared map_size, more $more:literal; $($body:tt)*) => {
+        $crate::contract::params_in_full! { $head $done $rest
+            shared map_size = $crate::contract::MapSize::Texels(1024), more $more; $($body)*
+        }
+    };
+    ($head:tt [$($done:tt)*] $rest:tt shared map_size = $size:expr, more $more:literal; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Texels along a side of the shadow map; with `auto` as many as make a texel about half as wide as a pixel where
-            /// receivers are seen.
-            map_size: $crate::contract::MapSize = $crate::contract::MapSize::Texels(1024), in 16..=8192, unit "texels",
-                scale Log, more $more;
+            /// receivers are seen, and 1024 at least.
+            map_size: $crate::contract::MapSize = $size, in 16..=8192, unit "texels", scale Log, more $more;
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared map_size of lists; $($body:tt)*) => {

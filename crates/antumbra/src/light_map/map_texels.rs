@@ -1,8 +1,8 @@
 //! Number of texels of a map whose size is chosen for each frame.
 //!
 //! No edge of a shadow is sharper than a texel, and none need be sharper than a pixel. So a map has as many texels as make one
-//! half as wide, where receivers are seen, as a pixel is there: few for a small image or a camera far off, many for one that is
-//! near to what a light far off shades. What a penumbra's width would allow is not counted: under any light it is narrow where
+//! half as wide, where receivers are seen, as a pixel is there: many for a large image of a camera that is near to what a light far
+//! off shades. What a penumbra's width would allow is not counted: under any light it is narrow where
 //! things touch.
 //!
 //! Receivers are [`PreparedReceivers::seen_points`](crate::contract::PreparedReceivers::seen_points), the ratio of the two sizes is
@@ -10,7 +10,7 @@
 //! Where points in the receivers' hull stand for what is seen, all count alike, too: most surfaces are at its far side.
 //! Sizes are steps of √2, and one is left when another is nearer by a quarter of a step, or by a whole one where the host has not said
 //! what is seen: a camera that moves to and fro makes no textures. The most is what the light may spend
-//! ([`Stage::auto_map_bytes`]), but [`USUAL_TEXELS`] are always allowed.
+//! ([`Stage::auto_map_bytes`]), the least is [`USUAL_TEXELS`].
 
 use antumbra_light::Aabb;
 use glam::{Vec2, Vec3};
@@ -28,13 +28,11 @@ const STAYS_FOR: f32 = 0.25;
 /// The same where points in the receivers' hull stand for what is seen.
 const STAYS_UNSEEN_FOR: f32 = 1.0;
 
-/// The least: a texel less saves hardly any time.
-const LEAST_TEXELS: u32 = 256;
-
 /// The most, whatever a light may spend: what draws the map would take longer than all else.
 const MOST_TEXELS: u32 = 4096;
 
-/// What maps have where no camera sees the receivers, and what budgets leave.
+/// What maps have where no camera sees the receivers, and the least: budgets leave as much, and for an image of fewer pixels the
+/// penumbrae of what casts shadows from afar would be noisier.
 const USUAL_TEXELS: u32 = 1024;
 
 /// Sides are multiples of this, as workgroups are.
@@ -65,7 +63,7 @@ pub(crate) fn map_texels(
     let stays_for = if receivers.seen.is_empty() { STAYS_UNSEEN_FOR } else { STAYS_FOR };
     let most = most_texels(stage.auto_map_bytes(), bytes_of, stage.device.limits().max_texture_dimension_2d);
     let texels = step_of(wanted.unwrap_or(USUAL_TEXELS as f32), stage.auto_texels(), stays_for);
-    let texels = texels.clamp(LEAST_TEXELS, most);
+    let texels = texels.clamp(USUAL_TEXELS.min(most), most);
     stage.note_auto_texels(texels);
     texels
 }

@@ -5,7 +5,7 @@ use crate::contract::{MapSize, params};
 params! {
     /// Parameters of [`Smrt`](super::Smrt).
     pub struct SmrtParams {
-        shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        shared map_size = MapSize::Auto, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
         /// Number of rays to the light; with `smooth`, a quarter of them where penumbrae are wide, at least 16.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
