@@ -282,6 +282,17 @@ pub fn lit_loss(mask: &[f32], truth: &Truth) -> f64 {
     losses.iter().sum::<f64>() / losses.len() as f64
 }
 
+/// The mean of a mask over what is dark.
+///
+/// # Panics
+/// Where less than a tenth of the pixels is dark: then it says nothing.
+pub fn umbra_leak(mask: &[f32], truth: &Truth) -> f64 {
+    let dark = mask.iter().zip(truth).filter(|(_, right)| **right == Some(0.0));
+    let leaks: Vec<f64> = dark.map(|(had, _)| f64::from(*had)).collect();
+    assert!(leaks.len() * 10 >= mask.len(), "only {} of {} pixels are dark", leaks.len(), mask.len());
+    leaks.iter().sum::<f64>() / leaks.len() as f64
+}
+
 /// The share of judged pixels in a range of visibility.
 pub fn share_between(truth: &Truth, low: f32, high: f32) -> f64 {
     let judged: Vec<f32> = truth.iter().flatten().copied().collect();

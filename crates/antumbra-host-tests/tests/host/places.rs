@@ -4,7 +4,7 @@ use antumbra::light::{Light, LightShape};
 use antumbra_host_tests::device::Device;
 use antumbra_host_tests::host::{HostCasters, kind_of, mask_of};
 use antumbra_host_tests::raster::Picture;
-use antumbra_host_tests::rays::{Rays, Truth, lit_loss, rmse};
+use antumbra_host_tests::rays::{Rays, Truth, lit_loss, rmse, umbra_leak};
 use antumbra_host_tests::scene::{Camera, Mesh, Object, Scene, base_light, base_light_of};
 use glam::{Vec2, Vec3};
 
@@ -156,6 +156,22 @@ fn tall_walls_do_not_darken_what_they_face() {
     let lost = lit_loss(&place.mask_by("smrt"), &place.truth);
     println!("a tall wall: {lost} of what is lit is dark");
     assert!(lost <= 0.0003, "a tall wall: {lost} of what is lit is dark");
+}
+
+/// Benches with eaves, whose walls are edge-on to the lamp above them, and a plate close below it: most of the range of depths lies
+/// between the two.
+#[test]
+fn no_light_comes_below_eaves() {
+    let bench = |x: f32| Mesh::cuboid(Vec3::new(x, 0.0, -2.0), Vec3::new(x + 0.3, 0.4, 2.0));
+    let plate = Mesh::cuboid(Vec3::new(-0.1, 8.5, -0.1), Vec3::new(0.1, 8.52, 0.1));
+    let shelf = |x: f32| Mesh::cuboid(Vec3::new(x - 0.6, 0.4, -2.0), Vec3::new(x + 0.9, 0.45, 2.0));
+    let scene = base_with([bench(-3.0), bench(0.0), bench(3.0), shelf(-3.0), shelf(0.0), shelf(3.0), plate]);
+    let light = Light::new(LightShape::Rectangle { size_m: Vec2::splat(3.0) }, Vec3::Y * 9.0, Vec3::ZERO);
+    let camera = Camera { eye: Vec3::new(2.0, 0.35, 2.8), target: Vec3::new(-0.5, 0.1, 0.0), ..Camera::base() };
+    let Some(place) = Place::new(&scene, &camera, light) else { return };
+    let leak = umbra_leak(&place.mask_by("smrt"), &place.truth);
+    println!("eaves under a lamp: {leak} of what is dark is lit");
+    assert!(leak <= 0.003, "eaves under a lamp: {leak} of what is dark is lit");
 }
 
 /// A room of walls of five millimetres around the receivers, and the lamp outside.

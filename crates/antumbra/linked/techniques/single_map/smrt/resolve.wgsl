@@ -82,18 +82,20 @@ fn texel_at(fan: fan_Fan, offset: vec2f, g: f32, jitter: vec2f) -> vec2f {
 }
 
 fn blocker_g_in_step(fan: fan_Fan, offset: vec2f, steps: bins_Steps, step: u32, along: f32, jitter: vec2f) -> f32 {
-    let begin_g = steps.begin_g + steps.width_g * f32(step);
-    let end_g = begin_g + steps.width_g;
-    let texel = texel_at(fan, offset, bins_g_in_step(fan.at, steps, step, along), jitter);
-    let hit_g = fan_blocker_g_in(fan, texel, begin_g, end_g);
+    let begin_g = fan_g_of(fan.at, bins_begin_of_step(steps, step));
+    let end_g = fan_g_of(fan.at, bins_begin_of_step(steps, step + 1u));
+    let read_g = bins_g_in_step(fan.at, steps, step, along);
+    let texel = texel_at(fan, offset, read_g, jitter);
+    let hit_g = fan_blocker_g_about(fan, texel, read_g, begin_g, end_g);
     if hit_g == map_receiver_NO_G {
         return map_receiver_NO_G;
     }
-    let passed = texel_at(fan, offset, clamp(hit_g, max(begin_g, 0.0), end_g), jitter);
+    let passed_g = clamp(hit_g, max(begin_g, 0.0), end_g);
+    let passed = texel_at(fan, offset, passed_g, jitter);
     if all(abs(passed - texel) <= vec2f(1.0)) {
         return hit_g;
     }
-    return fan_blocker_g_in(fan, passed, begin_g, end_g);
+    return fan_blocker_g_about(fan, passed, passed_g, begin_g, end_g);
 }
 
 fn blocker_g(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> f32 {
@@ -955,15 +957,24 @@ var<workgroup> bins_found_between: array<vec2f, 2u * bins_BIN_COUNT>;
 
 struct bins_Bins {
     begin: f32,
-    per_depth: f32
+    range: f32
 }
 
 fn bins_bins_between(begin: f32, end: f32) -> bins_Bins {
-    return bins_Bins(begin, f32(bins_BIN_COUNT) / max(end - begin, 1e-20));
+    return bins_Bins(begin, max(end - begin, 1e-20));
 }
 
-fn bins_bin_of(bins: bins_Bins, depth: f32) -> u32 {
-    return u32(clamp((depth - bins.begin) * bins.per_depth, 0.0, f32(bins_BIN_COUNT) - 1.0));
+fn bins_place_among(bins: bins_Bins, depth: f32) -> f32 {
+    return f32(bins_BIN_COUNT) * sqrt(saturate((depth - bins.begin) / bins.range));
+}
+
+fn bins_depth_at(bins: bins_Bins, place: f32) -> f32 {
+    let share = place / f32(bins_BIN_COUNT);
+    return bins.begin + bins.range * share * share;
+}
+
+fn bins_bin_at(place: f32) -> u32 {
+    return u32(clamp(place, 0.0, f32(bins_BIN_COUNT) - 1.0));
 }
 
 fn bins_depth_bits(depth: f32) -> u32 {
@@ -1008,9 +1019,9 @@ fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_
             break;
         }
         if fan_g_of(receiver, depth) >= look.hiding_g {
-            let bin = bins_bin_of(bins, depth);
-            let room = bins_ROOM / bins.per_depth;
-            let beside = (1u << bins_bin_of(bins, depth - room)) | (1u << bins_bin_of(bins, depth + room));
+            let place = bins_place_among(bins, depth);
+            let bin = bins_bin_at(place);
+            let beside = (1u << bins_bin_at(place - bins_ROOM)) | (1u << bins_bin_at(place + bins_ROOM));
             atomicOr(&bins_bins_found, (1u << bin) | beside);
             atomicMin(&bins_least_found[bin], bins_depth_bits(depth));
             atomicMax(&bins_greatest_found[bin], bins_depth_bits(depth));
@@ -1033,29 +1044,31 @@ fn bins_join_bins(lane: u32) {
 }
 
 struct bins_Steps {
-    begin_g: f32,
-    width_g: f32,
+    bins: bins_Bins,
+    width: f32,
     some: u32,
     first: u32
 }
 
 fn bins_steps_of(receiver: map_receiver_MapReceiver, bins: bins_Bins, most: u32) -> bins_Steps {
-    let found = atomicLoad(&bins_bins_found);
-    var steps = bins_Steps(fan_g_of(receiver, bins.begin), receiver.g_per_depth / bins.per_depth, found, 0u);
-    let behind = u32(clamp(floor(-steps.begin_g / steps.width_g), 0.0, f32(bins_BIN_COUNT) - 1.0));
-    steps.some &= 4294967295u << behind;
+    var steps = bins_Steps(bins, 1.0, atomicLoad(&bins_bins_found), 0u);
+    steps.some &= 4294967295u << bins_bin_at(bins_place_among(bins, receiver.depth));
     for (var i = 0; i < 5 && countOneBits(steps.some) > most; i++) {
         steps.some = bins_of_pairs(steps.some);
-        steps.width_g *= 2.0;
+        steps.width *= 2.0;
         steps.first = 32u + steps.first / 2u;
     }
     return steps;
 }
 
+fn bins_begin_of_step(steps: bins_Steps, step: u32) -> f32 {
+    return bins_depth_at(steps.bins, steps.width * f32(step));
+}
+
 fn bins_g_in_step(receiver: map_receiver_MapReceiver, steps: bins_Steps, step: u32, along: f32) -> f32 {
-    let between = bins_found_between[steps.first + step];
+    var between = bins_found_between[steps.first + step];
     if between.y <= map_receiver_least_depth() {
-        return max(steps.begin_g + steps.width_g * (f32(step) + along), 0.0);
+        between = vec2f(bins_begin_of_step(steps, step), bins_begin_of_step(steps, step + 1u));
     }
     return max(fan_g_of(receiver, mix(between.x, between.y, along)), 0.0);
 }
@@ -1095,15 +1108,18 @@ fn fan_stored_depth(texel: vec2f, layer: u32) -> f32 {
     return map_light_view.depth_sign * textureLoad(behind_further_layers, vec2i(texel), layer - 1u, 0);
 }
 
+const fan_BEHIND_PLANE_G = 2e20;
+
 fn fan_blocker_g_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> f32 {
     if !map_receiver_is_texel(texel) {
         return map_receiver_NO_G;
     }
-    let least = max(map_receiver_plane_depth(fan.at, texel), fan.at.depth + begin_g / fan.at.g_per_depth);
+    let begin = max(fan.at.depth, fan_depth_at_g(fan, begin_g));
+    let least = max(map_receiver_plane_depth(fan.at, texel), begin);
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(texel, layer);
         if depth <= least {
-            return map_receiver_NO_G;
+            return select(map_receiver_NO_G, fan_BEHIND_PLANE_G, depth > begin);
         }
         let g = fan_g_of(fan.at, depth);
         if fan_far_side(fan, g, layer) <= end_g {
@@ -1111,6 +1127,22 @@ fn fan_blocker_g_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> f32
         }
     }
     return map_receiver_NO_G;
+}
+
+fn fan_blocker_g_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: f32) -> f32 {
+    let blocker_g = fan_blocker_g_in(fan, texel, begin_g, end_g);
+    if blocker_g != fan_BEHIND_PLANE_G {
+        return blocker_g;
+    }
+    let steepness = max(length(fan.at.slope), 1e-30);
+    let forward = -fan.at.slope / steepness;
+    let behind = max(fan.at.depth_at_origin + dot(fan.at.slope, texel) - fan_depth_at_g(fan, g), 0.0) / steepness;
+    let in_front = texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y)));
+    return min(fan_blocker_g_in(fan, floor(in_front), begin_g, end_g), map_receiver_NO_G);
+}
+
+fn fan_depth_at_g(fan: fan_Fan, g: f32) -> f32 {
+    return fan.at.depth + g / fan.at.g_per_depth;
 }
 
 fn fan_far_side(fan: fan_Fan, g: f32, layer: u32) -> f32 {

@@ -16,7 +16,9 @@
 //! a straight line in the map along `g` (`map_receiver.wesl`, `fan.wesl`). For each tile of 8 × 8 pixels:
 //!
 //! 1. **Search** (`bins.wesl`). The depths from the farthest receiver to the nearest blocker that a pyramid of the map allows
-//!    are cut into 32 bins. A few taps of every pixel mark the bins with blockers, for all pixels: what one misses its
+//!    are cut into 32 bins, wider the farther they lie from the receiver, as shadows are blurred: with bins of one width all that
+//!    is near the receiver shares one where something is near the light (`sponza.glb`, 640 × 360: umbra leak .178 and .076,
+//!    roughness .019 and .011). A few taps of every pixel mark the bins with blockers, for all pixels: what one misses its
 //!    neighbour finds. Taps lie at all scales of the light's shape, as in [`pcss`](super::pcss); those of a tile's pixels are
 //!    one set, spread evenly over light and scales. A blocker marks half a bin's width to either side, too: a tilted surface reaches
 //!    farther in depth than where taps found it (640 × 360: roughness on `window` .0070 and .0061, on `lamp-room` .0052 and .0038,
@@ -41,6 +43,10 @@
 //! the ray's bin. A map shows fronts alone: without a thickness light leaks through steep surfaces, with an infinite one all
 //! that lies behind an occluder is dark (in a prototype over six scenes rmse .025 with none, .085 with an infinite one, .015
 //! with four texels). Behind the last layer nothing is known, and its slab is thicker (`last_thickness`).
+//!
+//! Where a surface hides the ray but is behind the receiver's plane at the texel's centre, the nearest texel in front of that plane
+//! decides: of a wall that is edge-on to the light, texels' centres lie to either side (eaves under a lamp, a host test: .101 and .001
+//! of what is dark was lit; 640 × 360: roughness on `window` .0023 and .0010).
 //!
 //! The automatic bias is one texel's width, twice that of the techniques that gather texels by fours: a single texel shows a
 //! surface that lies up to half a texel away.
