@@ -1,0 +1,255 @@
+//! `cargo xtask portability`, its part that knows the pipelines: translates each program as wgpu does on other systems, and has their
+//! compilers judge it. DXC compiles HLSL, spirv-val judges SPIR-V; MSL is translated alone, for Apple's compiler runs nowhere else.
+
+mod compilers;
+mod dxc;
+mod translation;
+
+use std::collections::HashMap;
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::device;
+use crate::makings::{self, Extent};
+use crate::recorder::{Pipeline, Program, Recorder};
+use compilers::Compilers;
+use translation::{Translation, Validated};
+
+pub use compilers::DXIL;
+pub use dxc::compile as compile_hlsl;
+
+/// What is checked, and by what.
+pub struct Options {
+    /// Folder that translations are written to, emptied first.
+    pub folder: PathBuf,
+    /// DXC's library; without it HLSL is not compiled.
+    pub dxc: Option<OsString>,
+    /// The command spirv-val; without it SPIR-V is not judged.
+    pub spirv_val: Option<OsString>,
+    /// A part of the label, module or entry point of the programs to check.
+    pub only: Option<String>,
+}
+
+/// A step that a program can fail at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step {
+    Constants,
+    Hlsl,
+    Msl,
+    Spirv,
+    Dxc,
+    SpirvVal,
+}
+
+impl Step {
+    const ALL: [Self; 6] = [Self::Constants, Self::Hlsl, Self::Msl, Self::Spirv, Self::Dxc, Self::SpirvVal];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Constants => "naga, override constants",
+            Self::Hlsl => "naga, HLSL for shader model 6.0",
+            Self::Msl => "naga, MSL 2.4",
+            Self::Spirv => "naga, SPIR-V 1.3",
+            Self::Dxc => "DXC, DXIL",
+            Self::SpirvVal => "spirv-val, Vulkan 1.1",
+        }
+    }
+
+    /// Whether it is taken with these options.
+    fn is_taken(self, options: &Options) -> bool {
+        match self {
+            Self::Dxc => options.dxc.is_some(),
+            Self::SpirvVal => options.spirv_val.is_some(),
+            Self::Constants | Self::Hlsl | Self::Msl | Self::Spirv => true,
+        }
+    }
+}
+
+/// A step that a program failed at, and the first error.
+type Failure = (Step, String);
+
+/// Translates every program and has it judged; prints each failure and the count of each step.
+///
+/// # Errors
+/// Where a program fails, or nothing could be checked.
+pub fn check(options: &Options) -> Result<(), String> {
+    let programs = programs(options.only.as_deref())?;
+    if programs.is_empty() {
+        return Err("there is no such program".to_owned());
+    }
+    empty(&options.folder)?;
+    let modules = validated_modules(&programs);
+    let compilers = Compilers::new(options)?;
+    let failures = in_parallel(programs.len(), |place| {
+        let (_, program) = &programs[place];
+        let module = modules[&program.wgsl].as_ref().map_err(Clone::clone);
+        let translation = module.and_then(|module| translation::translate(module, program));
+        judge(&compilers, &options.folder.join(format!("{place:04}")), program, translation)
+    });
+    for ((label, program), failures) in programs.iter().zip(&failures) {
+        for (step, error) in failures {
+            println!("{label} | {program:?}: {}: {error}", step.name());
+        }
+    }
+    let mut count = 0;
+    for step in Step::ALL {
+        let failed = failures.iter().flatten().filter(|(of, _)| *of == step).count();
+        if step.is_taken(options) {
+            println!("{:32} {} programs, {failed} failures", step.name(), programs.len());
+        } else {
+            println!("{:32} SKIPPED", step.name());
+        }
+        count += failed;
+    }
+    match count {
+        0 => Ok(()),
+        _ => Err(format!("{count} failures; translations are in {}", options.folder.display())),
+    }
+}
+
+/// The programs of all pipelines, each once, with the label of a pipeline that has it.
+fn programs(only: Option<&str>) -> Result<Vec<(String, Program)>, String> {
+    let made: Arc<Mutex<(Recorder, Vec<Pipeline>)>> = Arc::default();
+    let kept = made.clone();
+    antumbra::programs::listen(move |made| {
+        let (recorder, pipelines) = &mut *kept.lock().unwrap_or_else(PoisonError::into_inner);
+        pipelines.extend(recorder.record(&made));
+    });
+    makings::make_all(&device::no_op(device::FEATURES)?, Extent::Parameters)?;
+    let (_, pipelines) = std::mem::take(&mut *made.lock().unwrap_or_else(PoisonError::into_inner));
+    let mut programs = distinct(pipelines);
+    if let Some(only) = only {
+        programs
+            .retain(|(label, program)| [label, &program.module, &program.entry].iter().any(|text| text.contains(only)));
+    }
+    Ok(programs)
+}
+
+/// Programs in order of their first pipelines.
+fn distinct(pipelines: Vec<Pipeline>) -> Vec<(String, Program)> {
+    let mut known = std::collections::HashSet::new();
+    let all = pipelines
+        .into_iter()
+        .flat_map(|Pipeline { label, programs, .. }| programs.into_iter().map(move |program| (label.clone(), program)));
+    all.filter(|(_, program)| known.insert((program.wgsl.clone(), format!("{program:?}")))).collect()
+}
+
+/// Each module's text, read once.
+fn validated_modules(programs: &[(String, Program)]) -> HashMap<Arc<str>, Result<Validated, String>> {
+    let mut modules = HashMap::new();
+    for (_, program) in programs {
+        modules.entry(program.wgsl.clone()).or_insert_with_key(|wgsl| translation::validated(wgsl));
+    }
+    modules
+}
+
+/// A program's failures. Its translations are written beside `stem`.
+fn judge(
+    compilers: &Compilers,
+    stem: &Path,
+    program: &Program,
+    translation: Result<Translation, String>,
+) -> Vec<Failure> {
+    let Translation { hlsl, msl, spirv } = match translation {
+        Ok(translation) => translation,
+        Err(error) => return vec![(Step::Constants, one_line(&error))],
+    };
+    let mut failures = Vec::new();
+    let mut written = |step, text: Result<translation::Text, String>, extension: &str| {
+        let file = stem.with_extension(extension);
+        let outcome = text.and_then(|text| {
+            fs::write(&file, &text.bytes).map_err(|error| format!("{}: {error}", file.display()))?;
+            Ok((file, text.entry))
+        });
+        outcome.map_err(|error| failures.push((step, one_line(&error)))).ok()
+    };
+    let hlsl = written(Step::Hlsl, hlsl, "hlsl");
+    written(Step::Msl, msl, "metal");
+    let spirv = written(Step::Spirv, spirv, "spv");
+    let judged = [
+        hlsl.and_then(|(file, entry)| Some((Step::Dxc, compilers.dxc(&file, &entry, program.stage)?))),
+        spirv.and_then(|(file, _)| Some((Step::SpirvVal, compilers.spirv_val(&file)?))),
+    ];
+    failures.extend(judged.into_iter().flatten());
+    failures
+}
+
+/// The first line of an error, short enough for a line of output.
+fn one_line(error: &str) -> String {
+    error.lines().next().unwrap_or_default().chars().take(300).collect()
+}
+
+fn empty(folder: &Path) -> Result<(), String> {
+    let outcome = if folder.exists() { fs::remove_dir_all(folder) } else { Ok(()) };
+    outcome.and_then(|()| fs::create_dir_all(folder)).map_err(|error| format!("{}: {error}", folder.display()))
+}
+
+/// The results of `count` jobs, in order, by as many threads as there are processors.
+fn in_parallel<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let mut done = Vec::new();
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            if place >= count {
+                return done;
+            }
+            done.push((place, job(place)));
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut done: Vec<(usize, T)> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        workers.into_iter().flat_map(|worker| worker.join().expect("jobs do not panic")).collect()
+    });
+    done.sort_by_key(|(place, _)| *place);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use naga::ShaderStage;
+
+    use super::*;
+
+    fn pipeline(label: &str, wgsl: &str, constant: f64) -> Pipeline {
+        let program = Program {
+            stage: ShaderStage::Compute,
+            module: "module".into(),
+            wgsl: wgsl.into(),
+            entry: "run".into(),
+            constants: vec![("0".into(), constant)],
+        };
+        Pipeline { label: label.into(), programs: vec![program], state: String::new() }
+    }
+
+    #[test]
+    fn identical_programs_are_judged_once() {
+        let pipelines = vec![
+            pipeline("a", "text", 1.0),
+            pipeline("b", "text", 1.0),
+            pipeline("c", "text", 2.0),
+            pipeline("d", "other", 1.0),
+        ];
+        let labels: Vec<String> = distinct(pipelines).into_iter().map(|(label, _)| label).collect();
+        assert_eq!(labels, ["a", "c", "d"]);
+    }
+
+    #[test]
+    fn jobs_are_done_once_and_in_order() {
+        assert_eq!(in_parallel(100, |place| place * 2), (0..100).map(|place| place * 2).collect::<Vec<_>>());
+        assert!(in_parallel(0, |place| place).is_empty());
+    }
+
+    #[test]
+    fn a_program_that_naga_refuses_fails_at_its_constants() {
+        let options = Options { folder: PathBuf::new(), dxc: None, spirv_val: None, only: None };
+        let program = pipeline("a", "text", 1.0).programs.remove(0);
+        let failures =
+            judge(&Compilers::new(&options).unwrap(), Path::new("none"), &program, Err("no such id\nhere".into()));
+        assert_eq!(failures, [(Step::Constants, "no such id".to_owned())]);
+    }
+}
