@@ -58,6 +58,7 @@ fn count(purpose: &Purpose, missing: Missing) -> Result<(), String> {
     command.arg("--driver").arg(file).arg("--null-device").arg(null_device);
     if let Purpose::Page { earlier } = purpose {
         command.arg("--page").arg(root.join("bench/gpu-cost.md"));
+        command.arg("--antumbra").arg(shell::built_of_workspace("antumbra")?);
         if let Some(earlier) = earlier {
             command.arg("--diff").arg(std::path::absolute(PathBuf::from(earlier)).unwrap_or_default());
         }

@@ -87,8 +87,9 @@ Development commands of Antumbra. They install what is missing where they can, a
         their names, only prints the table of some.
 
     cargo xtask gpu-cost [--diff TABLE | --check]
-        Counts registers, waves, instructions and workgroup memory of every pipeline as Mesa's compiler for AMD does, without a GPU, and
-        writes bench/gpu-cost.md and tables in target/gpu-cost: two minutes. --diff: compares with an earlier table of target/gpu-cost.
+        Counts registers, waves, instructions and workgroup memory of every pipeline as Mesa's compiler for AMD does, without a GPU,
+        and dispatches, barriers and passes of a frame of each technique. Writes bench/gpu-cost.md, and tables in target/gpu-cost: two
+        minutes. --diff: compares with an earlier table of target/gpu-cost.
         --check: writes no page, and fails on a spill or on more than 128 registers, but for xtask/programs/exceptions.toml.
 
     cargo xtask figures [TECHNIQUE ...]

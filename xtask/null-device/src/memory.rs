@@ -173,3 +173,25 @@ fn next_handle() -> u64 {
     static LAST: AtomicU64 = AtomicU64::new(1);
     LAST.fetch_add(1, Ordering::Relaxed)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_device_without_memory_is_given_some() {
+        let mut none = vk::PhysicalDeviceMemoryProperties::default();
+        complete(&mut none);
+        assert_eq!((none.memory_heap_count, none.memory_type_count), (1, 3));
+        assert!(none.memory_types[1].property_flags.contains(vk::MemoryPropertyFlags::HOST_VISIBLE));
+        let mut own = vk::PhysicalDeviceMemoryProperties { memory_type_count: 1, ..Default::default() };
+        complete(&mut own);
+        assert_eq!((own.memory_heap_count, own.memory_type_count), (0, 1));
+    }
+
+    #[test]
+    fn handles_are_never_null_nor_the_same() {
+        let (first, second) = (next_handle(), next_handle());
+        assert!(first != 0 && second != 0 && first != second);
+    }
+}

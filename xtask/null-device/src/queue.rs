@@ -69,6 +69,7 @@ unsafe extern "system" fn submit(
     submits: *const vk::SubmitInfo<'_>,
     _: vk::Fence,
 ) -> vk::Result {
+    crate::commands::print_submission();
     // SAFETY: by the caller; wgpu submits from one thread at a time.
     unsafe {
         for submit in slice(submits, count) {
@@ -100,4 +101,44 @@ unsafe fn extensions(first: *const std::ffi::c_void) -> impl Iterator<Item = *co
     let link = |at: *const vk::BaseInStructure<'static>| (!at.is_null()).then_some(at);
     // SAFETY: by the caller, who passes a chain as Vulkan has them.
     std::iter::successors(link(first.cast()), move |at| link(unsafe { (**at).p_next }))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ptr;
+
+    use super::*;
+
+    #[test]
+    fn a_submission_raises_its_timeline_semaphores() {
+        let mut timeline = vk::SemaphoreTypeCreateInfo::default().initial_value(3);
+        let info = vk::SemaphoreCreateInfo::default().push_next(&mut timeline);
+        let device = vk::Device::null();
+        let mut semaphores = [vk::Semaphore::null(); 2];
+        let value = |semaphore| {
+            let mut value = 0;
+            // SAFETY: a semaphore of `create_semaphore`.
+            let result = unsafe { semaphore_value(device, semaphore, &mut value) };
+            assert_eq!(result, vk::Result::SUCCESS);
+            value
+        };
+        // SAFETY: whole structures, and semaphores that are made before they are used and destroyed last.
+        unsafe {
+            for semaphore in &mut semaphores {
+                assert_eq!(create_semaphore(device, &info, ptr::null(), semaphore), vk::Result::SUCCESS);
+            }
+            let values = [9, 0];
+            let mut raised = vk::TimelineSemaphoreSubmitInfo::default().signal_semaphore_values(&values);
+            let submits = [
+                vk::SubmitInfo::default(),
+                vk::SubmitInfo::default().signal_semaphores(&semaphores).push_next(&mut raised),
+            ];
+            assert_eq!(submit(vk::Queue::null(), 2, submits.as_ptr(), vk::Fence::null()), vk::Result::SUCCESS);
+            assert_eq!(semaphores.map(value), [9, 3]);
+            for semaphore in semaphores {
+                destroy_semaphore(device, semaphore, ptr::null());
+            }
+            destroy_semaphore(device, vk::Semaphore::null(), ptr::null());
+        }
+    }
 }

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::description::{Entry, Programs};
 use crate::device;
-use crate::makings::{self, Extent};
+use crate::makings;
 
 /// Writes all to a file; the number of modules and of pipelines.
 ///
@@ -19,8 +19,7 @@ pub fn write(file: &Path) -> Result<[usize; 2], String> {
     let programs = Arc::new(Mutex::new(Programs::default()));
     let kept = programs.clone();
     antumbra::programs::listen(move |made| kept.lock().unwrap_or_else(PoisonError::into_inner).add(made));
-    // Browsers have light maps that cut off what is before them, or do not.
-    for (features, extent) in [(device::FEATURES, Extent::Parameters), (wgpu::Features::empty(), Extent::Qualities)] {
+    for (features, extent) in device::VARIANTS {
         makings::make_all(&device::no_op(features)?, extent)?;
     }
     let mut programs = std::mem::take(&mut *programs.lock().unwrap_or_else(PoisonError::into_inner));

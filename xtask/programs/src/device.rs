@@ -2,8 +2,14 @@
 
 use antumbra::Gpu;
 
+use crate::makings::Extent;
+
 /// Every optional feature that the library's pipelines depend on.
 pub const FEATURES: wgpu::Features = wgpu::Features::DEPTH_CLIP_CONTROL.union(wgpu::Features::TIMESTAMP_QUERY);
+
+/// What is made of all programs: hosts have light maps that cut off what is before them, or do not.
+pub const VARIANTS: [(wgpu::Features, Extent); 2] =
+    [(FEATURES, Extent::Parameters), (wgpu::Features::empty(), Extent::Qualities)];
 
 /// wgpu's own device that does nothing, with these features: all is validated and nothing compiled.
 ///

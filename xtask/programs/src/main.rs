@@ -6,6 +6,7 @@ mod describe;
 mod description;
 mod device;
 mod makings;
+mod parallel;
 mod portability;
 mod recorder;
 
@@ -18,7 +19,7 @@ const USAGE: &str = "\
 antumbra-programs describe FILE
 antumbra-programs portability FOLDER [--dxc LIBRARY] [--spirv-val PROGRAM] [--only TEXT]
 antumbra-programs dxil LIBRARY FILE ENTRY PROFILE
-antumbra-programs costs FOLDER --driver LIBRARY --null-device LIBRARY [--page FILE] [--diff TABLE]
+antumbra-programs costs FOLDER --driver LIBRARY --null-device LIBRARY [--page FILE --antumbra PROGRAM] [--diff TABLE]
 antumbra-programs announce";
 
 fn main() -> ExitCode {
@@ -56,10 +57,11 @@ fn run(words: &[OsString]) -> Result<(), String> {
             }
         }
         (Some("costs"), [folder, rest @ ..]) => {
-            let [driver, null_device, page, earlier] =
-                options(rest, ["--driver", "--null-device", "--page", "--diff"])?;
+            let [driver, null_device, page, antumbra, earlier] =
+                options(rest, ["--driver", "--null-device", "--page", "--antumbra", "--diff"])?;
             let (Some(driver), Some(null_device)) = (driver, null_device) else { return Err(USAGE.to_owned()) };
-            let [page, earlier] = [page, earlier].map(|file| file.map(PathBuf::from));
+            let [page, antumbra, earlier] = [page, antumbra, earlier].map(|file| file.map(PathBuf::from));
+            let page = page.zip(antumbra);
             costs::run(&costs::Options { folder: PathBuf::from(folder), driver, null_device, page, earlier })
         }
         (Some(costs::ANNOUNCE), []) => costs::announcement::announce_all(),

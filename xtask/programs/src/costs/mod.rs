@@ -2,18 +2,20 @@
 //! RADV, which the driver in `xtask/null-device` wraps.
 
 pub mod announcement;
+mod frames;
 mod limits;
 mod log;
+mod null_device;
 mod page;
 mod table;
 
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use limits::Exceptions;
 use log::Log;
+use null_device::NullDevice;
 use page::Title;
 use table::Table;
 
@@ -37,8 +39,8 @@ pub struct Options {
     pub driver: OsString,
     /// The library of the driver that wraps it.
     pub null_device: OsString,
-    /// The page to write.
-    pub page: Option<PathBuf>,
+    /// The page to write, and the command `antumbra`, which draws the frames that are on it.
+    pub page: Option<(PathBuf, PathBuf)>,
     /// An earlier table to compare with.
     pub earlier: Option<PathBuf>,
 }
@@ -51,8 +53,9 @@ pub fn run(options: &Options) -> Result<(), String> {
     let exceptions = Exceptions::read()?;
     let earlier = options.earlier.as_deref().map(read_table).transpose()?;
     fs::create_dir_all(&options.folder).map_err(|error| format!("{}: {error}", options.folder.display()))?;
+    let device = &NullDevice::new(options)?;
     let logs = std::thread::scope(|scope| {
-        let runs = FAMILIES.map(|family| scope.spawn(move || measure(options, &family)));
+        let runs = FAMILIES.map(|family| scope.spawn(move || measure(options, device, &family)));
         runs.map(|run| run.join().expect("runs do not panic")).into_iter().collect::<Result<Vec<_>, _>>()
     })?;
     let logs: Vec<(Title, Log)> = logs.into_iter().flatten().collect();
@@ -64,8 +67,12 @@ pub fn run(options: &Options) -> Result<(), String> {
             print!("{}", log.table.difference(earlier));
         }
     }
-    if let Some(file) = &options.page {
-        write(file, &page::page(&logs, &exceptions)?)?;
+    if let Some((file, antumbra)) = &options.page {
+        let techniques: Vec<&str> = logs
+            .first()
+            .map_or_else(Vec::new, |(_, log)| log.techniques.iter().map(|(technique, _)| technique.as_str()).collect());
+        let frames = frames::count(device, antumbra, FAMILIES[0].names[0], &options.folder, &techniques)?;
+        write(file, &page::page(&logs, &frames, &exceptions)?)?;
     }
     judge(&exceptions, logs.into_iter().map(|(_, log)| log.table).collect(), options.page.is_none())
 }
@@ -91,11 +98,11 @@ fn judge(exceptions: &Exceptions, tables: Vec<Table>, fails: bool) -> Result<(),
 }
 
 /// What the driver counts for a family; none where it does not know the family, which is said.
-fn measure(options: &Options, family: &Family) -> Result<Option<(Title, Log)>, String> {
+fn measure(options: &Options, device: &NullDevice<'_>, family: &Family) -> Result<Option<(Title, Log)>, String> {
     let mut problem = String::new();
     for name in family.names {
         let file = options.folder.join(format!("{name}.log"));
-        let text = log_of(options, name)?;
+        let text = log_of(device, name)?;
         write(&file, &text)?;
         match Log::read(&text) {
             Ok(log) => return Ok(Some((Title(family.title), log))),
@@ -108,18 +115,11 @@ fn measure(options: &Options, family: &Family) -> Result<Option<(Title, Log)>, S
 }
 
 /// What a run of this program on the null device prints.
-fn log_of(options: &Options, name: &str) -> Result<String, String> {
+fn log_of(device: &NullDevice<'_>, family: &str) -> Result<String, String> {
     let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program is: {error}"))?;
-    let manifest = options.folder.join("null_device.json");
-    let library = options.null_device.to_string_lossy();
-    let icd = serde_json::json!({ "library_path": library, "api_version": "1.3.0" });
-    write(&manifest, &serde_json::json!({ "file_format_version": "1.0.0", "ICD": icd }).to_string())?;
-    let mut command = Command::new(own);
-    // Vulkan's loader has gone by both names.
-    command.arg(ANNOUNCE).env("VK_DRIVER_FILES", &manifest).env("VK_ICD_FILENAMES", &manifest);
-    command.env("ANTUMBRA_NULL_DEVICE_DRIVER", &options.driver).env("RADV_FORCE_FAMILY", name);
+    let mut command = device.command(&own, family);
     // A pipeline out of a cache prints nothing.
-    command.env("RADV_DEBUG", "shaderstats,nocache").env("MESA_SHADER_CACHE_DISABLE", "true");
+    command.arg(ANNOUNCE).env("RADV_DEBUG", "shaderstats,nocache").env("MESA_SHADER_CACHE_DISABLE", "true");
     let output = command.output().map_err(|error| format!("cannot run on the null device: {error}"))?;
     Ok(String::from_utf8_lossy(&output.stderr).into_owned())
 }

@@ -1,5 +1,6 @@
 //! The page `bench/gpu-cost.md`.
 
+use super::frames::{Frame, SCENE, SIZE};
 use super::limits::{Exceptions, MOST_REGISTERS};
 use super::log::Log;
 use super::table::{Counts, Name, Row, Table};
@@ -10,11 +11,11 @@ const MANY_REGISTERS: u32 = 96;
 /// What a family is called by people.
 pub struct Title(pub &'static str);
 
-/// Writes the page of a log for each family.
+/// Writes the page of a log for each family and of each technique's frame.
 ///
 /// # Errors
 /// Where a technique draws with a pipeline that was not counted.
-pub fn page(logs: &[(Title, Log)], exceptions: &Exceptions) -> Result<String, String> {
+pub fn page(logs: &[(Title, Log)], frames: &[Frame], exceptions: &Exceptions) -> Result<String, String> {
     let families: Vec<String> = logs.iter().map(|(title, log)| format!("{} ({})", log.table.family, title.0)).collect();
     let driver = logs.first().map_or("", |(_, log)| log.table.driver.as_str());
     let mut text = format!(
@@ -29,6 +30,7 @@ pub fn page(logs: &[(Title, Log)], exceptions: &Exceptions) -> Result<String, St
         families.join(" and ")
     );
     text += &techniques(logs)?;
+    text += &commands(frames);
     text += &wide_pipelines(logs);
     text += &exceptions_of(logs, exceptions);
     Ok(text)
@@ -81,6 +83,41 @@ fn techniques(logs: &[(Title, Log)]) -> Result<String, String> {
     }
     text.push('\n');
     Ok(text)
+}
+
+/// Commands of a frame of each technique.
+fn commands(frames: &[Frame]) -> String {
+    let mut text = format!(
+        "## Commands of a frame\n\nOf `{SCENE}` at {SIZE} with default settings, after the first frames; MiB that the technique keeps. \
+         wgpu adds a dispatch to each\nindirect one, to check it. What a technique would have read back is zero here, and commands that \
+         follow from it are missing.\n\n"
+    );
+    let columns = [
+        "technique",
+        "dispatches",
+        "indirect dispatches",
+        "barriers",
+        "render passes",
+        "draws",
+        "copies and fills",
+        "MiB",
+    ];
+    text += &head(&[], &columns, &[], &[]);
+    for frame in frames {
+        let counts = [
+            frame.dispatches,
+            frame.indirect_dispatches,
+            frame.barriers,
+            frame.render_passes,
+            frame.draws,
+            frame.copies,
+        ];
+        let memory = format!("{:.1}", frame.memory_bytes as f64 / f64::from(1 << 20));
+        let counts = counts.into_iter().map(|count| count.to_string());
+        text += &line(std::iter::once(format!("`{}`", frame.technique)).chain(counts).chain([memory]));
+    }
+    text.push('\n');
+    text
 }
 
 /// What was counted for a technique's stages.
@@ -182,13 +219,16 @@ mod tests {
         let techniques = vec![("savsm".to_owned(), vec![shared, rows[1].name.clone()])];
         let table = Table { family: "NAVI21".into(), driver: "Mesa 25.0.7".into(), rows };
         let exceptions = Exceptions::read().unwrap();
-        let text = page(&[(Title("RDNA 2"), Log { table: table.clone(), techniques })], &exceptions).unwrap();
+        let frame = Frame { technique: "savsm".into(), barriers: 7, memory_bytes: 3 << 19, ..Frame::default() };
+        let log = Log { table: table.clone(), techniques };
+        let text = page(&[(Title("RDNA 2"), log)], &[frame], &exceptions).unwrap();
+        assert!(text.contains("| `savsm` | 0 | 0 | 7 | 0 | 0 | 0 | 1.5 |"), "{text}");
         assert!(text.contains("| `savsm` | 2 | 128 | 8 | 1280 | 64 |"), "{text}");
         let wide: Vec<&str> =
             text.lines().filter(|line| line.starts_with("| `other") || line.starts_with("| `map")).collect();
         assert_eq!(wide, ["| `other, compute ` | 256 | 4 | 0 | 2560 |", "| `map, vertex ` | 128 | 8 | 0 | 1280 |"]);
         assert!(text.contains("| `essm` | 64 | 0 |"), "{text}");
         let unknown = vec![("savsm".to_owned(), vec![row("unknown", "compute", 8).name])];
-        assert!(page(&[(Title("RDNA 2"), Log { table, techniques: unknown })], &exceptions).is_err());
+        assert!(page(&[(Title("RDNA 2"), Log { table, techniques: unknown })], &[], &exceptions).is_err());
     }
 }

@@ -9,11 +9,11 @@ use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::device;
-use crate::makings::{self, Extent};
+use crate::makings;
+use crate::parallel::in_parallel;
 use crate::recorder::{Pipeline, Program, Recorder};
 use compilers::Compilers;
 use translation::{Translation, Validated};
@@ -89,9 +89,9 @@ pub fn check(options: &Options) -> Result<(), String> {
         let translation = module.and_then(|module| translation::translate(module, program));
         judge(&compilers, &options.folder.join(format!("{place:04}")), program, translation)
     });
-    for ((label, program), failures) in programs.iter().zip(&failures) {
+    for (place, ((label, program), failures)) in programs.iter().zip(&failures).enumerate() {
         for (step, error) in failures {
-            println!("{label} | {program:?}: {}: {error}", step.name());
+            println!("{label} | {program:?}: {}: {error} ({place:04})", step.name());
         }
     }
     let mut count = 0;
@@ -106,7 +106,7 @@ pub fn check(options: &Options) -> Result<(), String> {
     }
     match count {
         0 => Ok(()),
-        _ => Err(format!("{count} failures; translations are in {}", options.folder.display())),
+        _ => Err(format!("{count} failures; translations are in {}, by the numbers above", options.folder.display())),
     }
 }
 
@@ -118,7 +118,9 @@ fn programs(only: Option<&str>) -> Result<Vec<(String, Program)>, String> {
         let (recorder, pipelines) = &mut *kept.lock().unwrap_or_else(PoisonError::into_inner);
         pipelines.extend(recorder.record(&made));
     });
-    makings::make_all(&device::no_op(device::FEATURES)?, Extent::Parameters)?;
+    for (features, extent) in device::VARIANTS {
+        makings::make_all(&device::no_op(features)?, extent)?;
+    }
     let (_, pipelines) = std::mem::take(&mut *made.lock().unwrap_or_else(PoisonError::into_inner));
     let mut programs = distinct(pipelines);
     if let Some(only) = only {
@@ -187,28 +189,6 @@ fn empty(folder: &Path) -> Result<(), String> {
     outcome.and_then(|()| fs::create_dir_all(folder)).map_err(|error| format!("{}: {error}", folder.display()))
 }
 
-/// The results of `count` jobs, in order, by as many threads as there are processors.
-fn in_parallel<T: Send>(count: usize, job: impl Fn(usize) -> T + Sync) -> Vec<T> {
-    let next = AtomicUsize::new(0);
-    let worker = || {
-        let mut done = Vec::new();
-        loop {
-            let place = next.fetch_add(1, Ordering::Relaxed);
-            if place >= count {
-                return done;
-            }
-            done.push((place, job(place)));
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut done: Vec<(usize, T)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
-        workers.into_iter().flat_map(|worker| worker.join().expect("jobs do not panic")).collect()
-    });
-    done.sort_by_key(|(place, _)| *place);
-    done.into_iter().map(|(_, result)| result).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use naga::ShaderStage;
@@ -236,12 +216,6 @@ mod tests {
         ];
         let labels: Vec<String> = distinct(pipelines).into_iter().map(|(label, _)| label).collect();
         assert_eq!(labels, ["a", "c", "d"]);
-    }
-
-    #[test]
-    fn jobs_are_done_once_and_in_order() {
-        assert_eq!(in_parallel(100, |place| place * 2), (0..100).map(|place| place * 2).collect::<Vec<_>>());
-        assert!(in_parallel(0, |place| place).is_empty());
     }
 
     #[test]
