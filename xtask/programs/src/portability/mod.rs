@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::device;
 use crate::makings;
@@ -81,11 +81,14 @@ pub fn check(options: &Options) -> Result<(), String> {
         return Err("there is no such program".to_owned());
     }
     empty(&options.folder)?;
-    let modules = validated_modules(&programs);
+    // Each text is read once, by the first job that needs it.
+    let modules: HashMap<Arc<str>, OnceLock<Result<Validated, String>>> =
+        programs.iter().map(|(_, program)| (program.wgsl.clone(), OnceLock::new())).collect();
     let compilers = Compilers::new(options)?;
     let failures = in_parallel(programs.len(), |place| {
         let (_, program) = &programs[place];
-        let module = modules[&program.wgsl].as_ref().map_err(Clone::clone);
+        let module = modules[&program.wgsl].get_or_init(|| translation::validated(&program.wgsl));
+        let module = module.as_ref().map_err(Clone::clone);
         let translation = module.and_then(|module| translation::translate(module, program));
         judge(&compilers, &options.folder.join(format!("{place:04}")), program, translation)
     });
@@ -137,15 +140,6 @@ fn distinct(pipelines: Vec<Pipeline>) -> Vec<(String, Program)> {
         .into_iter()
         .flat_map(|Pipeline { label, programs, .. }| programs.into_iter().map(move |program| (label.clone(), program)));
     all.filter(|(_, program)| known.insert((program.wgsl.clone(), format!("{program:?}")))).collect()
-}
-
-/// Each module's text, read once.
-fn validated_modules(programs: &[(String, Program)]) -> HashMap<Arc<str>, Result<Validated, String>> {
-    let mut modules = HashMap::new();
-    for (_, program) in programs {
-        modules.entry(program.wgsl.clone()).or_insert_with_key(|wgsl| translation::validated(wgsl));
-    }
-    modules
 }
 
 /// A program's failures. Its translations are written beside `stem`.
