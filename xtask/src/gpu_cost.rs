@@ -1,4 +1,4 @@
-//! `cargo xtask gpu-cost`: what Mesa's compiler for AMD makes of every pipeline, counted without a GPU, into `bench/gpu-cost.md`.
+//! `cargo xtask gpu-cost`: registers and instructions of every pipeline by Mesa's compiler for AMD, without a GPU, into `bench/gpu-cost.md`.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -8,7 +8,7 @@ use crate::driver::{self, Library};
 use crate::machine::{self, Missing};
 use crate::shell::{self, cargo};
 
-/// What is done with the counts.
+/// Use of the counts.
 enum Purpose {
     /// The page is written, and a table compared with an earlier one where there is one.
     Page { earlier: Option<String> },

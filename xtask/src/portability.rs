@@ -1,7 +1,7 @@
 //! `cargo xtask portability`: whether the compilers of Direct3D 12, Metal and Vulkan take the programs of every pipeline.
 //!
-//! `xtask/programs` translates and judges. Here is what brings the compilers: spirv-val from Debian's spirv-tools, and DXC's library
-//! from a package of Python that has it, since Linux distributions do not.
+//! `xtask/programs` translates and judges. This module installs the compilers: spirv-val from Debian's spirv-tools, and DXC's library
+//! from a package of Python, since Debian has none.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

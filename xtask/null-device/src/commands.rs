@@ -16,7 +16,7 @@ fn print(command: &str) {
     }
 }
 
-/// A submission, which ends what was recorded before it.
+/// Prints a submission, which ends a frame's commands.
 pub fn print_submission() {
     print("submit");
 }
@@ -24,7 +24,7 @@ pub fn print_submission() {
 /// Functions that print a word and do nothing.
 macro_rules! printed {
     ($($word:ident: $($name:literal)|+,)*) => {
-        /// What is called in place of a command that is counted.
+        /// Replacement of a command that is counted.
         fn counted(name: &[u8]) -> Option<Function> {
             match name {
                 $($($name)|+ => {
@@ -50,7 +50,7 @@ printed! {
     timestamp: b"vkCmdWriteTimestamp" | b"vkCmdWriteTimestamp2",
 }
 
-/// What is called in place of a function of command buffers.
+/// Replacement of a function of command buffers.
 pub fn replaced(name: &[u8]) -> Option<Function> {
     let is_of_buffers = matches!(
         name,

@@ -126,12 +126,12 @@ unsafe extern "system" fn device_function(device: vk::Device, name: *const c_cha
     }
 }
 
-/// What is called in place of a function of a device.
+/// Replacement of a device's function, if it has one.
 fn replaced(name: &[u8], real: Function) -> Option<Function> {
     queue::replaced(name).or_else(|| memory::replaced(name, real)).or_else(|| commands::replaced(name))
 }
 
-/// Does nothing, in place of functions that return nothing or a result. The calling convention lets any arguments pass.
+/// A function that does nothing, in place of those that return nothing or a result. The calling convention lets any arguments pass.
 unsafe extern "system" fn nothing() -> vk::Result {
     vk::Result::SUCCESS
 }

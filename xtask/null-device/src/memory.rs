@@ -27,7 +27,7 @@ static PROPERTIES_2: OnceLock<vk::PFN_vkGetPhysicalDeviceMemoryProperties2> = On
 static BUFFER_NEEDS: OnceLock<vk::PFN_vkGetBufferMemoryRequirements> = OnceLock::new();
 static BUFFER_NEEDS_2: OnceLock<vk::PFN_vkGetBufferMemoryRequirements2> = OnceLock::new();
 
-/// What is called in place of a function of an instance.
+/// Replacement of an instance's function.
 pub fn of_instance(name: &[u8], real: Function) -> Option<Function> {
     match name {
         b"vkGetPhysicalDeviceMemoryProperties" => {
@@ -44,7 +44,7 @@ pub fn of_instance(name: &[u8], real: Function) -> Option<Function> {
     }
 }
 
-/// What is called in place of a function of a device.
+/// Replacement of a device's function.
 pub fn replaced(name: &[u8], real: Function) -> Option<Function> {
     match name {
         b"vkGetBufferMemoryRequirements" => {
@@ -73,7 +73,7 @@ pub fn replaced(name: &[u8], real: Function) -> Option<Function> {
     }
 }
 
-/// Gives a device memory types, where it has none of its own.
+/// Memory types for a device that has none of its own.
 fn complete(properties: &mut vk::PhysicalDeviceMemoryProperties) {
     if properties.memory_type_count > 0 {
         return;
@@ -131,7 +131,7 @@ fn allow_all_types(needs: &mut vk::MemoryRequirements) {
     }
 }
 
-/// Of an image that is never laid out: anything that memory can be found for.
+/// Requirements of an image that is never laid out: any that can be met.
 const IMAGE_NEEDS: vk::MemoryRequirements =
     vk::MemoryRequirements { size: 1 << 16, alignment: 1 << 12, memory_type_bits: ALL_TYPES };
 

@@ -4,6 +4,7 @@ use ash::vk::{self, Handle};
 
 use crate::{Function, does_nothing, erased};
 
+/// Replacement of a function of queues, semaphores and fences.
 pub fn replaced(name: &[u8]) -> Option<Function> {
     match name {
         b"vkCreateSemaphore" => erased!(create_semaphore, vk::PFN_vkCreateSemaphore),
@@ -90,13 +91,13 @@ unsafe extern "system" fn submit(
     vk::Result::SUCCESS
 }
 
-/// An array of Vulkan's, which may be empty and nowhere.
+/// Array of Vulkan's; its pointer may be null where it is empty.
 unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
     // SAFETY: by the caller.
     if count == 0 { &[] } else { unsafe { std::slice::from_raw_parts(first, count as usize) } }
 }
 
-/// The structures of a chain.
+/// Structures of a `pNext` chain.
 unsafe fn extensions(first: *const std::ffi::c_void) -> impl Iterator<Item = *const vk::BaseInStructure<'static>> {
     let link = |at: *const vk::BaseInStructure<'static>| (!at.is_null()).then_some(at);
     // SAFETY: by the caller, who passes a chain as Vulkan has them.

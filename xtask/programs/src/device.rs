@@ -7,7 +7,7 @@ use crate::makings::Extent;
 /// Every optional feature that the library's pipelines depend on.
 pub const FEATURES: wgpu::Features = wgpu::Features::DEPTH_CLIP_CONTROL.union(wgpu::Features::TIMESTAMP_QUERY);
 
-/// What is made of all programs: hosts have light maps that cut off what is before them, or do not.
+/// Features and extents by which every program is made: hosts have light maps that clip depths, or do not.
 pub const VARIANTS: [(wgpu::Features, Extent); 2] =
     [(FEATURES, Extent::Parameters), (wgpu::Features::empty(), Extent::Qualities)];
 

@@ -59,7 +59,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Remembers modules, and returns what is made of them.
+    /// Remembers modules, and returns pipelines.
     ///
     /// # Panics
     /// For a pipeline whose module was not recorded: all are made by `antumbra::programs`.

@@ -15,7 +15,7 @@ pub const TECHNIQUE: &str = "@technique ";
 pub const PIPELINE: &str = "@pipeline ";
 pub const END: &str = "@end";
 
-/// The device of the pipelines to be announced.
+/// Device that pipelines are made on.
 #[derive(Clone)]
 enum Place {
     /// wgpu's own, for which nothing is compiled: these are a technique's pipelines at its default settings.

@@ -1,6 +1,6 @@
 //! Commands of one frame of each technique, by `antumbra bench` on the null device, whose driver prints them.
 //!
-//! Nothing is drawn: what techniques read back is zero, and commands that would follow from it are missing.
+//! Nothing is drawn: values that techniques read back are zero, and commands that depend on them are missing.
 
 use std::path::Path;
 
@@ -9,23 +9,24 @@ use serde_json::Value;
 use super::null_device::NullDevice;
 use crate::parallel::in_parallel;
 
-/// What is drawn.
+/// Scene of the frames.
 pub const SCENE: &str = "builtin:street";
+/// Image size.
 pub const SIZE: &str = "1920x1080";
 
-/// What one frame of a technique asks of a GPU.
+/// Commands of one frame of a technique.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Frame {
     pub technique: String,
-    /// With the one that wgpu adds to each indirect dispatch, to check it.
+    /// Direct dispatches, with those by which wgpu checks indirect ones.
     pub dispatches: usize,
     pub indirect_dispatches: usize,
-    /// Those that wait for a buffer or an image.
+    /// Barriers on memory, buffers or images.
     pub barriers: usize,
     pub render_passes: usize,
     pub draws: usize,
     pub copies: usize,
-    /// What the technique keeps.
+    /// Bytes of the technique's textures and buffers.
     pub memory_bytes: u64,
 }
 

@@ -1,4 +1,4 @@
-//! Limits on what a driver's compiler may need, and the exceptions to them, from `exceptions.toml`.
+//! Limits of registers and spills, and exceptions to them from `exceptions.toml`.
 
 use serde::Deserialize;
 
@@ -20,7 +20,7 @@ pub struct Exceptions {
     all: Vec<Exception>,
 }
 
-/// What pipelines of a label may need beyond the limits.
+/// Higher limits for pipelines of a label.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Exception {
@@ -67,7 +67,7 @@ impl Exceptions {
         self.all.iter().find(|exception| exception.label == label)
     }
 
-    /// What is beyond the limits and the exceptions to them, and exceptions that nothing needs.
+    /// Faults: programs beyond the limits and their exceptions, and exceptions that no program needs.
     pub fn judge(&self, tables: &[Table]) -> Vec<String> {
         let mut faults = Vec::new();
         for table in tables {
@@ -95,7 +95,7 @@ impl Exceptions {
 }
 
 impl Exception {
-    /// What of it no pipeline needs.
+    /// Faults of an exception that no program needs.
     fn in_vain(&self, tables: &[Table]) -> Vec<String> {
         let most = |count: fn(&Counts) -> u32| {
             let rows = tables.iter().flat_map(|table| &table.rows).filter(|row| row.name.label == self.label);

@@ -1,4 +1,4 @@
-//! The log of a run: our announcements, and after each of a pipeline what Mesa's driver prints of it with `RADV_DEBUG=shaderstats`, a
+//! Log of a run: announcements of pipelines, and after each the statistics that Mesa's driver prints with `RADV_DEBUG=shaderstats`, a
 //! block for each stage.
 
 use std::collections::HashMap;
@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::announcement::{DEVICE, END, PIPELINE, TECHNIQUE};
 use super::table::{Counts, Name, Row, Table};
 
-/// What a run found.
+/// Results of a run.
 #[derive(Debug, Default, PartialEq)]
 pub struct Log {
     pub table: Table,

@@ -1,5 +1,5 @@
-//! `cargo xtask gpu-cost`, its part that knows the pipelines: what Mesa's compiler for AMD counts of each, on the null device of Mesa's
-//! RADV, which the driver in `xtask/null-device` wraps.
+//! Pipelines' part of `cargo xtask gpu-cost`: counts by Mesa's compiler for AMD, on the null device of Mesa's RADV, which the driver in
+//! `xtask/null-device` wraps.
 
 pub mod announcement;
 mod frames;
@@ -22,7 +22,7 @@ use table::Table;
 /// A family of devices.
 struct Family {
     title: &'static str,
-    /// What versions of Mesa call it, the newest first.
+    /// Names in versions of Mesa, the newest first.
     names: &'static [&'static str],
 }
 
@@ -31,7 +31,7 @@ const FAMILIES: [Family; 2] = [
     Family { title: "RDNA 3, 2022", names: &["navi31", "gfx1100"] },
 ];
 
-/// What is counted, and what is made of it.
+/// Inputs and outputs of a run.
 pub struct Options {
     /// Folder that tables and the drivers' logs are written to.
     pub folder: PathBuf,
@@ -97,7 +97,7 @@ fn judge(exceptions: &Exceptions, tables: Vec<Table>, fails: bool) -> Result<(),
     }
 }
 
-/// What the driver counts for a family; none where it does not know the family, which is said.
+/// The driver's counts for a family; none, and a message, where it does not know the family.
 fn measure(options: &Options, device: &NullDevice<'_>, family: &Family) -> Result<Option<(Title, Log)>, String> {
     let mut problem = String::new();
     for name in family.names {
@@ -114,7 +114,7 @@ fn measure(options: &Options, device: &NullDevice<'_>, family: &Family) -> Resul
     Ok(None)
 }
 
-/// What a run of this program on the null device prints.
+/// Standard error of this program on the null device.
 fn log_of(device: &NullDevice<'_>, family: &str) -> Result<String, String> {
     let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program is: {error}"))?;
     let mut command = device.command(&own, family);

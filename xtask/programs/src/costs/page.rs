@@ -8,7 +8,7 @@ use super::table::{Counts, Name, Row, Table};
 /// Registers that a pipeline is listed with.
 const MANY_REGISTERS: u32 = 96;
 
-/// What a family is called by people.
+/// A family's architecture and year.
 pub struct Title(pub &'static str);
 
 /// Writes the page of a log for each family and of each technique's frame.
@@ -20,13 +20,13 @@ pub fn page(logs: &[(Title, Log)], frames: &[Frame], exceptions: &Exceptions) ->
     let driver = logs.first().map_or("", |(_, log)| log.table.driver.as_str());
     let mut text = format!(
         "# Static costs\n\n\
-         Registers, waves, instructions and workgroup memory of every pipeline, by `cargo xtask gpu-cost`: what {driver} counts when it \
-         compiles for\n{}. No GPU is needed, nothing is run, and nothing is timed. Compare a pipeline with its own past:\n\
-         `cargo xtask gpu-cost --diff TABLE`. Other vendors' compilers count otherwise.\n\n\
-         - Registers: vector registers of a thread. With more than {MOST_REGISTERS}, too few waves are left to hide loads, and \
-         `cargo xtask gpu-cost --check` fails,\n  but for the exceptions below.\n\
+         Registers, waves, instructions and workgroup memory of every pipeline, as the compiler of {driver} counts them for\n\
+         {}. `cargo xtask gpu-cost` writes this page. It needs no GPU: nothing is run, and nothing\n\
+         is timed. Compare a pipeline with its own past, by `cargo xtask gpu-cost --diff TABLE`. Other vendors' compilers count otherwise.\n\n\
+         - Registers: vector registers of a thread. With more than {MOST_REGISTERS}, too few waves remain to hide loads, and \
+         `cargo xtask gpu-cost --check`\n  fails, except for the pipelines at the end of this page.\n\
          - Waves: how many a SIMD unit holds at a time, in Mesa's count, which ends at 32.\n\
-         - Instructions are those of the program, however often a loop runs them.\n\n",
+         - Instructions: those of the program, however often a loop runs them.\n\n",
         families.join(" and ")
     );
     text += &techniques(logs)?;
@@ -89,8 +89,8 @@ fn techniques(logs: &[(Title, Log)]) -> Result<String, String> {
 fn commands(frames: &[Frame]) -> String {
     let mut text = format!(
         "## Commands of a frame\n\nOf `{SCENE}` at {SIZE} with default settings, after the first frames; MiB that the technique keeps. \
-         wgpu adds a dispatch to each\nindirect one, to check it. What a technique would have read back is zero here, and commands that \
-         follow from it are missing.\n\n"
+         wgpu adds a dispatch to each\nindirect one, to check it. Values that techniques read back are zero here, \
+         and commands that depend on them are missing.\n\n"
     );
     let columns = [
         "technique",
@@ -120,7 +120,7 @@ fn commands(frames: &[Frame]) -> String {
     text
 }
 
-/// What was counted for a technique's stages.
+/// Rows of a technique's stages.
 fn rows_of<'a>(table: &'a Table, stages: &[Name]) -> Result<Vec<&'a Row>, String> {
     let mut rows = Vec::new();
     for stage in stages {
@@ -168,7 +168,7 @@ fn wide_pipelines(logs: &[(Title, Log)]) -> String {
     text
 }
 
-/// The exceptions' reasons, and what they are for.
+/// Exceptions with their counts and reasons.
 fn exceptions_of(logs: &[(Title, Log)], exceptions: &Exceptions) -> String {
     let mut labels: Vec<&str> = Vec::new();
     for Row { name, .. } in logs.iter().flat_map(|(_, log)| &log.table.rows) {

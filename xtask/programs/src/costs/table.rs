@@ -1,10 +1,10 @@
-//! Tables of what a driver's compiler counted, a row for each stage of a pipeline, as text with tabs between columns.
+//! Tables of a compiler's counts, a row for each stage of a pipeline, as text with tabs between columns.
 
 use std::collections::HashMap;
 
 use std::fmt::Write;
 
-/// What a row is of.
+/// Name of a row.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Name {
     pub label: String,
@@ -37,14 +37,14 @@ impl Name {
     }
 }
 
-/// What was counted.
+/// Counts of one program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Counts {
     /// Vector registers of a thread.
     pub registers: u32,
     /// Waves that a SIMD unit holds at a time.
     pub waves: u32,
-    /// Vector registers that are kept in memory for want of room.
+    /// Vector registers that are kept in memory instead.
     pub spills: u32,
     /// Scalar registers that are kept in lanes of vector registers.
     pub scalar_spills: u32,
@@ -77,7 +77,7 @@ pub struct Row {
     pub counts: Counts,
 }
 
-/// What a driver counted for a family of devices.
+/// Counts for a family of devices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     /// As Mesa names it.
@@ -121,7 +121,7 @@ impl Table {
         Ok(Self { rows: rows.collect::<Result<_, _>>()?, ..empty })
     }
 
-    /// What changed since an earlier table, a line a count.
+    /// Changes since an earlier table, a line for each count.
     pub fn difference(&self, earlier: &Self) -> String {
         let mut text = format!("{}: {} → {}\n", self.family, earlier.driver, self.driver);
         let (before, after) = (earlier.by_place(), self.by_place());

@@ -16,7 +16,7 @@ pub const DXIL: &str = "dxil";
 /// Far more than the slowest program takes.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Those that are at hand.
+/// Compilers that are available.
 pub struct Compilers {
     /// This program, which calls DXC's library.
     own: PathBuf,
@@ -70,7 +70,7 @@ fn run(command: &mut Command, log: &Path) -> Option<String> {
     })
 }
 
-/// None where it is not done in time.
+/// Exit status of a command; none where it takes longer than [`PATIENCE`].
 fn limited(command: &mut Command, log: &Path) -> std::io::Result<Option<ExitStatus>> {
     let messages = File::create(log)?;
     let mut running = command.stdout(messages.try_clone()?).stderr(messages).spawn()?;

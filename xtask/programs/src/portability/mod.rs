@@ -1,5 +1,4 @@
-//! `cargo xtask portability`, its part that knows the pipelines: translates each program as wgpu does on other systems, and has their
-//! compilers judge it. DXC compiles HLSL, spirv-val judges SPIR-V; MSL is translated alone, for Apple's compiler runs nowhere else.
+//! Pipelines' part of `cargo xtask portability`: translates each program as wgpu does on other systems, and has their compilers judge it. DXC compiles HLSL, spirv-val judges SPIR-V; MSL is translated alone, for Apple's compiler runs nowhere else.
 
 mod compilers;
 mod dxc;
@@ -21,7 +20,7 @@ use translation::{Translation, Validated};
 pub use compilers::DXIL;
 pub use dxc::compile as compile_hlsl;
 
-/// What is checked, and by what.
+/// Programs and compilers of a check.
 pub struct Options {
     /// Folder that translations are written to, emptied first.
     pub folder: PathBuf,
