@@ -23,8 +23,7 @@ pub fn write(file: &Path) -> Result<[usize; 2], String> {
         makings::make_all(&device::no_op(features)?, extent)?;
     }
     let mut programs = std::mem::take(&mut *programs.lock().unwrap_or_else(PoisonError::into_inner));
-    let linked = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra/linked");
-    add_linked(&mut programs, &linked)?;
+    add_linked(&mut programs, &linked_folder())?;
     let counts = programs.counts();
     std::fs::write(file, programs.into_json().to_string()).map_err(|error| format!("{}: {error}", file.display()))?;
     Ok(counts)
@@ -53,8 +52,16 @@ fn add_linked(programs: &mut Programs, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
+/// The folder of linked shaders.
+pub fn linked_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra/linked")
+}
+
 /// Linked shaders, but for those of tests.
-fn linked_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+///
+/// # Errors
+/// Where a folder cannot be read.
+pub fn linked_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let mut files = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
@@ -100,8 +107,7 @@ mod tests {
 
     #[test]
     fn linked_shaders_are_found() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra/linked");
-        let files = linked_files(&folder).unwrap();
+        let files = linked_files(&linked_folder()).unwrap();
         assert!(files.len() > 90, "{}", files.len());
         assert!(files.iter().all(|file| file.extension().is_some_and(|ending| ending == "wgsl")));
     }

@@ -1,4 +1,5 @@
 //! Pipelines' part of `cargo xtask portability`: translates each program as wgpu does on other systems, and has their compilers judge it. DXC compiles HLSL, spirv-val judges SPIR-V; MSL is translated alone, for Apple's compiler runs nowhere else.
+//! Linked shaders that no pipeline has are judged, too.
 
 mod compilers;
 mod dxc;
@@ -10,10 +11,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use crate::device;
 use crate::makings;
 use crate::parallel::in_parallel;
 use crate::recorder::{Pipeline, Program, Recorder};
+use crate::{describe, device};
 use compilers::Compilers;
 use translation::{Translation, Validated};
 
@@ -125,11 +126,38 @@ fn programs(only: Option<&str>) -> Result<Vec<(String, Program)>, String> {
     }
     let (_, pipelines) = std::mem::take(&mut *made.lock().unwrap_or_else(PoisonError::into_inner));
     let mut programs = distinct(pipelines);
+    let linked = describe::linked_folder();
+    for file in describe::linked_files(&linked)? {
+        let wgsl = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+        let name = file.strip_prefix(&linked).unwrap_or(&file).display().to_string();
+        programs.extend(without_pipeline(&programs, &name, &wgsl).into_iter().map(|program| (name.clone(), program)));
+    }
     if let Some(only) = only {
         programs
             .retain(|(label, program)| [label, &program.module, &program.entry].iter().any(|text| text.contains(only)));
     }
     Ok(programs)
+}
+
+/// Programs of a linked shader that no pipeline has and that need no constants: hosts put functions of some into shaders of their own.
+fn without_pipeline(programs: &[(String, Program)], name: &str, wgsl: &str) -> Vec<Program> {
+    let module = naga::front::wgsl::parse_str(wgsl).unwrap_or_default();
+    if module.overrides.iter().any(|(_, constant)| constant.init.is_none()) {
+        return Vec::new();
+    }
+    let has_pipeline = |entry: &naga::EntryPoint| {
+        programs
+            .iter()
+            .any(|(_, program)| program.stage == entry.stage && program.entry == entry.name && *program.wgsl == *wgsl)
+    };
+    let program = |entry: naga::EntryPoint| Program {
+        stage: entry.stage,
+        module: name.to_owned(),
+        wgsl: wgsl.into(),
+        entry: entry.name,
+        constants: Vec::new(),
+    };
+    module.entry_points.into_iter().filter(|entry| !has_pipeline(entry)).map(program).collect()
 }
 
 /// Programs in order of their first pipelines.
@@ -197,6 +225,16 @@ mod tests {
             constants: vec![("0".into(), constant)],
         };
         Pipeline { label: label.into(), programs: vec![program], state: String::new() }
+    }
+
+    #[test]
+    fn linked_programs_without_pipeline_are_judged_too() {
+        let wgsl = "@compute @workgroup_size(1) fn run() {}\n@compute @workgroup_size(1) fn keep() {}";
+        let known = distinct(vec![pipeline("a", wgsl, 1.0)]);
+        let found = without_pipeline(&known, "folder/file.wgsl", wgsl);
+        assert_eq!(found.iter().map(|program| program.entry.as_str()).collect::<Vec<_>>(), ["keep"]);
+        let with_constant = "override count: u32;\n@compute @workgroup_size(1) fn run() { let all = count; }";
+        assert!(without_pipeline(&known, "folder/file.wgsl", with_constant).is_empty());
     }
 
     #[test]
