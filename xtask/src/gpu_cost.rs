@@ -1,4 +1,4 @@
-//! `cargo xtask gpu-cost`: registers and instructions of every pipeline by Mesa's compiler for AMD, without a GPU, into `bench/gpu-cost.md`.
+//! `cargo xtask gpu-cost`: registers and instructions of every pipeline by Mesa's compiler for AMD, into `bench/gpu-cost.md`.
 
 use std::path::PathBuf;
 use std::process::Command;

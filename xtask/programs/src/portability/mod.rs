@@ -1,4 +1,5 @@
-//! Pipelines' part of `cargo xtask portability`: translates each program as wgpu does on other systems, and has their compilers judge it. DXC compiles HLSL, spirv-val judges SPIR-V; MSL is translated alone, for Apple's compiler runs nowhere else.
+//! Pipelines' part of `cargo xtask portability`: translates each program as wgpu does on other systems, and has their compilers judge it.
+//! DXC compiles HLSL, spirv-val judges SPIR-V; MSL is translated alone, for Apple's compiler runs nowhere else.
 //! Linked shaders that no pipeline has are judged, too.
 
 mod compilers;
