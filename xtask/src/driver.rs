@@ -87,24 +87,11 @@ impl Driver {
 
     /// The newer one, from the folder where it lies, brought there first where it does not.
     fn newer() -> Result<Self, String> {
-        let folder = crate::root().join("target/newer-mesa");
-        let unpacked = folder.join("unpacked");
-        if !unpacked.exists() {
-            bring(&folder).map_err(|problem| format!("the newer Mesa cannot be had: {problem}"))?;
-        }
-        let lacking = |what: &str| format!("{} lacks {what}; remove it to have it anew", folder.display());
-        let library =
-            the_file(&unpacked.join("usr/lib"), "libvulkan_lvp", ".so").ok_or_else(|| lacking("the driver"))?;
-        let manifest = the_file(&unpacked.join("usr/share/vulkan/icd.d"), "lvp_icd", ".json")
+        let folder = newer_folder();
+        let Library { file: library, searched } = newer_library("libvulkan_lvp")?;
+        let manifest = the_file(&folder.join("unpacked/usr/share/vulkan/icd.d"), "lvp_icd", ".json")
             .and_then(|manifest| with_library(&std::fs::read_to_string(manifest).ok()?, &library))
             .ok_or_else(|| lacking("its manifest"))?;
-        let libraries = library.parent().map(Path::to_owned).unwrap_or_default();
-        let path = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
-        let searched = std::iter::once(libraries).chain(std::env::split_paths(&path));
-        let searched = std::env::join_paths(searched).map_err(|error| error.to_string())?;
-        if let Some(missing) = missing_libraries(&library, &searched) {
-            return Err(format!("the newer Mesa does not load here: {missing}"));
-        }
         // Anew each time: it holds the whole path, and folders move.
         let file = folder.join("lvp_icd.json");
         std::fs::write(&file, manifest).map_err(|error| format!("{}: {error}", file.display()))?;
@@ -116,6 +103,60 @@ impl Driver {
     /// What has to stand in the environment.
     pub fn variables(&self) -> impl Iterator<Item = (&str, &OsString)> {
         self.variables.iter().map(|(name, value)| (*name, value))
+    }
+}
+
+/// A driver's library.
+pub struct Library {
+    /// Where it is.
+    pub file: PathBuf,
+    /// `LD_LIBRARY_PATH`, by which those that it needs are found.
+    pub searched: OsString,
+}
+
+/// Mesa's driver for AMD: the newer one where it can be had, else the installed one.
+///
+/// # Errors
+/// Where there is neither.
+pub fn for_amd() -> Result<Library, String> {
+    const NAME: &str = "libvulkan_radeon";
+    let problem = match newer_library(NAME) {
+        Ok(library) => return Ok(library),
+        Err(problem) => problem,
+    };
+    let folders = [format!("/usr/lib/{}-linux-gnu", std::env::consts::ARCH), "/usr/lib64".into(), "/usr/lib".into()];
+    let installed = folders.map(|folder| Path::new(&folder).join(NAME).with_extension("so"));
+    let file = installed
+        .into_iter()
+        .find(|file| file.is_file())
+        .ok_or_else(|| format!("Mesa's driver for AMD is not installed (Debian: {DRIVER_PACKAGE}), and {problem}"))?;
+    eprintln!("xtask: using the installed {NAME}, since {problem}");
+    Ok(Library { file, searched: std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default() })
+}
+
+fn newer_folder() -> PathBuf {
+    crate::root().join("target/newer-mesa")
+}
+
+fn lacking(what: &str) -> String {
+    format!("{} lacks {what}; remove it to have it anew", newer_folder().display())
+}
+
+/// A library of the newer Mesa, brought where it is not there yet.
+fn newer_library(name: &str) -> Result<Library, String> {
+    let folder = newer_folder();
+    let unpacked = folder.join("unpacked");
+    if !unpacked.exists() {
+        bring(&folder).map_err(|problem| format!("the newer Mesa cannot be had: {problem}"))?;
+    }
+    let file = the_file(&unpacked.join("usr/lib"), name, ".so").ok_or_else(|| lacking("the driver"))?;
+    let libraries = file.parent().map(Path::to_owned).unwrap_or_default();
+    let path = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+    let searched = std::iter::once(libraries).chain(std::env::split_paths(&path));
+    let searched = std::env::join_paths(searched).map_err(|error| error.to_string())?;
+    match missing_libraries(&file, &searched) {
+        Some(missing) => Err(format!("the newer Mesa does not load here: {missing}")),
+        None => Ok(Library { file, searched }),
     }
 }
 

@@ -10,8 +10,10 @@ mod demo;
 mod driver;
 mod families;
 mod figures;
+mod gpu_cost;
 mod machine;
 mod packages;
+mod portability;
 mod qualities;
 mod shell;
 mod skips;
@@ -39,8 +41,9 @@ Development commands of Antumbra. They install what is missing where they can, a
         Choose with --driver or ANTUMBRA_DRIVER; VK_DRIVER_FILES is respected.
 
     cargo xtask ci [--driver default|installed|newer]
-        Runs `test`, each family of techniques alone, `packages` without nightly, `wasm` and `web --shaders`. Fails where a check
-        would be skipped, except the last if there is no browser.
+        Runs `test`, each family of techniques alone, `packages` without nightly, `wasm`, `web --shaders`,
+        `portability` and `gpu-cost --check`. Fails where a check would be skipped, except in the last three, where a browser, a
+        compiler or a driver may be missing.
 
     cargo xtask shaders
         Links the library's shaders. Run it after an edit to a .wesl file or to the list in src/shaders.rs.
@@ -54,6 +57,11 @@ Development commands of Antumbra. They install what is missing where they can, a
     cargo xtask packages
         Makes the packages for publication, and builds and runs a program from them outside the repository; with nightly, too, where
         that is installed.
+
+    cargo xtask portability [--only TEXT]
+        Translates the programs of every pipeline as wgpu does on other systems, and has their compilers judge them: HLSL by DXC, SPIR-V
+        by spirv-val; MSL is translated alone. A minute on two cores. Installs spirv-tools and, in target/tools, DXC; what cannot be
+        had is skipped. --only: programs whose label, module or entry point contains the text.
 
     cargo xtask wasm
         Checks that the library compiles for browsers.
@@ -77,6 +85,12 @@ Development commands of Antumbra. They install what is missing where they can, a
     cargo xtask cases [NAME ...]
         Measures every technique on the small inputs that reports led to, and writes bench/cases.md: half an hour. With the beginnings of
         their names, only prints the table of some.
+
+    cargo xtask gpu-cost [--diff TABLE | --check]
+        Counts registers, waves, instructions and workgroup memory of every pipeline as Mesa's compiler for AMD does, without a GPU,
+        and dispatches, barriers and passes of a frame of each technique. Writes bench/gpu-cost.md, and tables in target/gpu-cost: two
+        minutes. --diff: compares with an earlier table of target/gpu-cost.
+        --check: writes no page, and fails on a spill or on more than 128 registers, but for xtask/programs/exceptions.toml.
 
     cargo xtask figures [TECHNIQUE ...]
         Makes the images of docs/ and the README, or only those of the named techniques in docs/limits.md.
@@ -103,11 +117,13 @@ fn main() -> ExitCode {
         "docs" => book::write_generated_parts(),
         "shaders" => link_shaders(),
         "mutants" => find_mutants(rest, []),
+        "portability" => portability::run(rest),
         "packages" => packages::check().and_then(|()| packages::check_with_nightly()),
         "qualities" => qualities::run(),
         "cases" => cases::run(rest),
         "wasm" => wasm::check(Missing::Skip),
         "web" => web::run(rest),
+        "gpu-cost" => gpu_cost::run(rest),
         "figures" => figures::run(rest),
         "setup" => machine::set_up(),
         other => {

@@ -64,7 +64,20 @@ fn show(command: &Command) -> String {
 /// # Errors
 /// Where it is not there.
 pub fn built_binary() -> Result<PathBuf, String> {
+    beside_us("antumbra")
+}
+
+/// A program of the workspace, built with the features of everything else, so that the tests find its dependencies built.
+///
+/// # Errors
+/// Where it does not build.
+pub fn built_of_workspace(name: &str) -> Result<PathBuf, String> {
+    run(cargo().args(["build", "--locked", "--workspace", "--bin", name]))?;
+    beside_us(name)
+}
+
+fn beside_us(name: &str) -> Result<PathBuf, String> {
     let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
-    let binary = own.with_file_name(format!("antumbra{}", std::env::consts::EXE_SUFFIX));
+    let binary = own.with_file_name(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     if binary.is_file() { Ok(binary) } else { Err(format!("expected the built command at {}", binary.display())) }
 }

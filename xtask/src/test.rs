@@ -7,7 +7,7 @@ use crate::driver::{self, Driver};
 use crate::machine::{self, Missing};
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
-use crate::{bevy, families, find_mutants, packages, wasm, web};
+use crate::{bevy, families, find_mutants, gpu_cost, packages, portability, wasm, web};
 
 /// How much is tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +79,8 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             });
             inside.and(outside)?;
             web::check_programs(web::Programs::ModulesAndLayouts)?;
+            portability::run(&[])?;
+            gpu_cost::check()?;
         } else {
             lint()?;
         }

@@ -1,32 +1,31 @@
-//! `cargo xtask web --shaders` and `--pipelines`, their native half: makes every shader module, layout and pipeline of library, renderer and viewer
-//! as a browser's device would have them, and writes their descriptions as JSON, for the page in `page/`,
-//! which makes them in a browser.
-//!
-//! A pipeline is described as it is given to wgpu, so nothing has to be kept beside the code. Linked shaders of which no pipeline
-//! is made here are described as modules, and named.
+//! Every pipeline of library, renderer and viewer, made on devices that draw nothing: what `cargo xtask web --shaders`,
+//! `portability` and `gpu-cost` know of them.
 
+mod costs;
+mod describe;
 mod description;
+mod device;
 mod makings;
+mod parallel;
+mod portability;
+mod recorder;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
 
-use antumbra::Gpu;
-
-use description::{Entry, Programs};
-use makings::Extent;
+/// For xtask, which is the only one to run it.
+const USAGE: &str = "\
+antumbra-programs describe FILE
+antumbra-programs portability FOLDER [--dxc LIBRARY] [--spirv-val PROGRAM] [--only TEXT]
+antumbra-programs dxil LIBRARY FILE ENTRY PROFILE
+antumbra-programs costs FOLDER --driver LIBRARY --null-device LIBRARY [--page FILE --antumbra PROGRAM] [--diff TABLE]
+antumbra-programs announce";
 
 fn main() -> ExitCode {
-    let Some(file) = std::env::args_os().nth(1) else {
-        eprintln!("programs: which file to write?");
-        return ExitCode::from(2);
-    };
-    match write(Path::new(&file)) {
-        Ok([modules, pipelines]) => {
-            eprintln!("programs: {modules} modules and {pipelines} pipelines");
-            ExitCode::SUCCESS
-        }
+    let words: Vec<OsString> = std::env::args_os().skip(1).collect();
+    match run(&words) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("programs: {message}");
             ExitCode::FAILURE
@@ -34,92 +33,56 @@ fn main() -> ExitCode {
     }
 }
 
-fn write(file: &Path) -> Result<[usize; 2], String> {
-    let programs = Arc::new(Mutex::new(Programs::default()));
-    let kept = programs.clone();
-    antumbra::programs::listen(move |made| kept.lock().unwrap_or_else(PoisonError::into_inner).add(made));
-    // Browsers have light maps that cut off what is before them, or do not.
-    let most = wgpu::Features::DEPTH_CLIP_CONTROL | wgpu::Features::TIMESTAMP_QUERY;
-    for (features, extent) in [(most, Extent::Parameters), (wgpu::Features::empty(), Extent::Qualities)] {
-        makings::make_all(&device(features)?, extent)?;
-    }
-    let mut programs = std::mem::take(&mut *programs.lock().unwrap_or_else(PoisonError::into_inner));
-    let linked = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra/linked");
-    add_linked(&mut programs, &linked)?;
-    let counts = programs.counts();
-    std::fs::write(file, programs.into_json().to_string()).map_err(|error| format!("{}: {error}", file.display()))?;
-    Ok(counts)
-}
-
-/// A device within WebGPU's defaults with these features: wgpu's own that does nothing, so that all is validated and nothing
-/// compiled.
-fn device(features: wgpu::Features) -> Result<Gpu, String> {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::NOOP;
-    descriptor.backend_options.noop.enable = true;
-    let instance = wgpu::Instance::new(descriptor);
-    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
-    let adapter = adapter.map_err(|error| error.to_string())?;
-    let descriptor = wgpu::DeviceDescriptor { required_features: features, ..wgpu::DeviceDescriptor::default() };
-    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| error.to_string())?;
-    Ok(Gpu::new(&device, &queue))
-}
-
-/// Adds the linked shaders that no pipeline was made of, and names them.
-///
-/// # Errors
-/// Where one cannot be read.
-fn add_linked(programs: &mut Programs, folder: &Path) -> Result<(), String> {
-    let mut missing = Vec::new();
-    for file in linked_files(folder)? {
-        let wgsl = std::fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-        let name = file.strip_prefix(folder).unwrap_or(&file).display().to_string();
-        programs.add_module(&name, &wgsl);
-        let module = programs.place_of_text(&wgsl).expect("added where it was not there");
-        let entries = entry_points(&wgsl);
-        assert!(!entries.is_empty(), "{name} has no entry point");
-        let is_missing =
-            |(stage, entry): &(&str, &str)| !programs.has_pipeline_of(Entry { module, stage, name: Some(entry) });
-        missing.extend(entries.into_iter().filter(is_missing).map(|(_, entry)| format!("{name}: {entry}")));
-    }
-    if !missing.is_empty() {
-        eprintln!("programs: the modules of these are made, and no pipeline:\n{}", missing.join("\n"));
-    }
-    Ok(())
-}
-
-/// Linked shaders, but for those of tests.
-fn linked_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let mut files = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(folder) = folders.pop() {
-        let entries = std::fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        for path in entries.flatten().map(|entry| entry.path()) {
-            if path.is_dir() {
-                if path.file_name().is_some_and(|name| name != "test") {
-                    folders.push(path);
+fn run(words: &[OsString]) -> Result<(), String> {
+    let Some((command, rest)) = words.split_first() else { return Err(USAGE.to_owned()) };
+    match (command.to_str(), rest) {
+        (Some("describe"), [file]) => {
+            let [modules, pipelines] = describe::write(Path::new(file))?;
+            eprintln!("programs: {modules} modules and {pipelines} pipelines");
+            Ok(())
+        }
+        (Some("portability"), [folder, rest @ ..]) => {
+            let [dxc, spirv_val, only] = options(rest, ["--dxc", "--spirv-val", "--only"])?;
+            let only = only.map(|only| only.to_string_lossy().into_owned());
+            portability::check(&portability::Options { folder: PathBuf::from(folder), dxc, spirv_val, only })
+        }
+        (Some(portability::DXIL), [library, file, entry, profile]) => {
+            let [entry, profile] = [entry, profile].map(|word| word.to_string_lossy());
+            match portability::compile_hlsl(library, Path::new(file), &entry, &profile)? {
+                None => Ok(()),
+                Some(message) => {
+                    print!("{message}");
+                    Err("refused by DXC".to_owned())
                 }
-            } else {
-                files.push(path);
             }
         }
+        (Some("costs"), [folder, rest @ ..]) => {
+            let [driver, null_device, page, antumbra, earlier] =
+                options(rest, ["--driver", "--null-device", "--page", "--antumbra", "--diff"])?;
+            let (Some(driver), Some(null_device)) = (driver, null_device) else { return Err(USAGE.to_owned()) };
+            let [page, antumbra, earlier] = [page, antumbra, earlier].map(|file| file.map(PathBuf::from));
+            let page = page.zip(antumbra);
+            costs::run(&costs::Options { folder: PathBuf::from(folder), driver, null_device, page, earlier })
+        }
+        (Some(costs::ANNOUNCE), []) => costs::announcement::announce_all(),
+        _ => Err(USAGE.to_owned()),
     }
-    files.sort();
-    Ok(files)
 }
 
-/// Stage and name of each entry point of a linked shader.
-fn entry_points(wgsl: &str) -> Vec<(&str, &str)> {
-    let mut entries = Vec::new();
-    for stage in ["compute", "vertex", "fragment"] {
-        let attribute = format!("@{stage}");
-        for (place, _) in wgsl.match_indices(&attribute) {
-            let after = wgsl[place..].split_once("fn ").map(|(_, after)| after);
-            let name = after.and_then(|after| after.split(|c: char| !c.is_alphanumeric() && c != '_').next());
-            entries.extend(name.map(|name| (&wgsl[place + 1..place + attribute.len()], name)));
-        }
+/// The values of options, each given once at most.
+///
+/// # Errors
+/// Where there is another word.
+fn options<const N: usize>(words: &[OsString], names: [&str; N]) -> Result<[Option<OsString>; N], String> {
+    let mut values = [const { None }; N];
+    let mut words = words.iter();
+    while let Some(word) = words.next() {
+        let place = names.iter().position(|name| word.to_str() == Some(*name));
+        let place = place.ok_or_else(|| format!("there is no option `{}`\n{USAGE}", word.display()))?;
+        let value = words.next().ok_or_else(|| format!("`{}` takes a value", names[place]))?;
+        values[place] = Some(value.clone());
     }
-    entries
+    Ok(values)
 }
 
 #[cfg(test)]
@@ -127,17 +90,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entry_points_are_found() {
-        let wgsl = "@vertex\nfn vertex_screen() {}\nfn helper() {}\n@fragment fn draw() {}\n\
-                    @compute @workgroup_size(8, 8)\nfn count(@builtin(global_invocation_id) id: vec3u) {}";
-        assert_eq!(entry_points(wgsl), [("compute", "count"), ("vertex", "vertex_screen"), ("fragment", "draw")]);
-    }
-
-    #[test]
-    fn linked_shaders_are_found() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra/linked");
-        let files = linked_files(&folder).unwrap();
-        assert!(files.len() > 90, "{}", files.len());
-        assert!(files.iter().all(|file| file.extension().is_some_and(|ending| ending == "wgsl")));
+    fn options_have_values() {
+        let words = |line: &str| line.split_whitespace().map(OsString::from).collect::<Vec<_>>();
+        let found = options(&words("--b 2"), ["--a", "--b"]);
+        assert_eq!(found, Ok([None, Some("2".into())]));
+        assert!(options(&words("--c 2"), ["--a"]).is_err());
+        assert!(options(&words("--a"), ["--a"]).is_err());
     }
 }

@@ -19,6 +19,8 @@ const SCENES: [&str; 3] = ["builtin:overlap", "builtin:fence-alpha", "builtin:st
 /// How much of what parameters make is made.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Extent {
+    /// The default quality.
+    Default,
     /// Every quality.
     Qualities,
     /// And every choice, switch and number.
@@ -31,10 +33,7 @@ pub enum Extent {
 /// The first thing that is refused that should not be.
 pub fn make_all(gpu: &Gpu, extent: Extent) -> Result<(), String> {
     for &kind in TechniqueKind::ALL {
-        for settings in settings_of(kind, extent) {
-            let words = || settings.iter().map(|(key, value)| format!(" {key}={value}")).collect::<String>();
-            make(gpu, kind, &settings).map_err(|error| format!("{kind}{}: {error}", words()))?;
-        }
+        make_technique(gpu, kind, extent)?;
     }
     let hosts = Hosts::new(gpu);
     hosts.make_maps_of_hosts().map_err(|error| error.to_string())?;
@@ -43,12 +42,27 @@ pub fn make_all(gpu: &Gpu, extent: Extent) -> Result<(), String> {
     make_renderer(gpu)
 }
 
+/// Makes what a technique draws with.
+///
+/// # Errors
+/// The first thing that is refused that should not be.
+pub fn make_technique(gpu: &Gpu, kind: TechniqueKind, extent: Extent) -> Result<(), String> {
+    for settings in settings_of(kind, extent) {
+        let words = || settings.iter().map(|(key, value)| format!(" {key}={value}")).collect::<String>();
+        make(gpu, kind, &settings).map_err(|error| format!("{kind}{}: {error}", words()))?;
+    }
+    Ok(())
+}
+
 type Settings = Vec<(&'static str, String)>;
 
 /// Each quality; and from the lowest, each choice and switch turned and each number at both ends.
 fn settings_of(kind: TechniqueKind, extent: Extent) -> Vec<Settings> {
     let of_quality =
         |quality| kind.quality_settings(quality).into_iter().map(|(key, value)| (key, value.to_string())).collect();
+    if extent == Extent::Default {
+        return vec![of_quality(Quality::default())];
+    }
     let mut all: Vec<Settings> = Vec::new();
     for quality in Quality::ALL.into_iter().filter(|quality| kind.has_quality(*quality)) {
         let base: Settings = of_quality(quality);

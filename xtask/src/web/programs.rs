@@ -2,12 +2,12 @@
 //! `xtask/programs` makes and describes them natively, and its page makes them again in a headless browser, within WebGPU's
 //! default limits.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
 use super::browser::{self, Patience};
-use crate::shell::{self, cargo};
+use crate::shell;
 
 /// The page's own files, from `xtask/programs/page`.
 const PAGE: [&str; 2] = ["index.html", "make.js"];
@@ -49,7 +49,8 @@ fn check_in(browser: &Path, extent: Extent) -> Result<(), String> {
         let from = crate::root().join("xtask/programs/page").join(name);
         std::fs::copy(&from, page.join(name)).map_err(|error| format!("{}: {error}", from.display()))?;
     }
-    shell::run(Command::new(describer()?).arg(page.join("programs.json")))?;
+    let describer = shell::built_of_workspace("antumbra-programs")?;
+    shell::run(Command::new(describer).arg("describe").arg(page.join("programs.json")))?;
     eprintln!("xtask: programs described after {} s", began.elapsed().as_secs());
     let log = folder.join("browser.log");
     let (address, posts) = browser::serve_aside(&page)?;
@@ -68,11 +69,4 @@ fn check_in(browser: &Path, extent: Extent) -> Result<(), String> {
     let what = if extent == Extent::Pipelines { "shader and pipeline" } else { "shader" };
     eprintln!("xtask: every {what} is made by {adapter}; {} s", began.elapsed().as_secs());
     Ok(())
-}
-
-/// The program that describes them. Built of the whole workspace, so that features are those of everything else.
-fn describer() -> Result<PathBuf, String> {
-    shell::run(cargo().args(["build", "--locked", "--workspace", "--bin", "antumbra-programs"]))?;
-    let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
-    Ok(own.with_file_name(format!("antumbra-programs{}", std::env::consts::EXE_SUFFIX)))
 }

@@ -1,0 +1,196 @@
+//! Pipelines as they are made: their programs, and what else a driver's code for them depends on.
+
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::Arc;
+
+use antumbra::programs::Made;
+use naga::ShaderStage;
+
+/// A pipeline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pipeline {
+    pub label: String,
+    pub programs: Vec<Program>,
+    /// Formats, samples and blending of a render pipeline; empty for compute.
+    pub state: String,
+}
+
+/// One stage of a pipeline.
+#[derive(Clone, PartialEq)]
+pub struct Program {
+    pub stage: ShaderStage,
+    /// Name of its module's text: the label that it first had, with a number where others had that label before.
+    pub module: String,
+    pub wgsl: Arc<str>,
+    pub entry: String,
+    /// Override constants, as they are given to wgpu.
+    pub constants: Vec<(String, f64)>,
+}
+
+impl fmt::Debug for Program {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} {} {} [{}]", self.module, stage_name(self.stage), self.entry, self.constants_text())
+    }
+}
+
+impl Program {
+    /// Override constants as text: `0=1 USES_TABLE=0`.
+    pub fn constants_text(&self) -> String {
+        let constants = self.constants.iter().map(|(name, value)| format!("{name}={value}"));
+        constants.collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// `compute`, `vertex`, `fragment`.
+pub fn stage_name(stage: ShaderStage) -> String {
+    format!("{stage:?}").to_lowercase()
+}
+
+/// Modules made so far.
+#[derive(Debug, Default)]
+pub struct Recorder {
+    /// Name and text.
+    modules: HashMap<wgpu::ShaderModule, (String, Arc<str>)>,
+    /// Names, by text: techniques that share one give it labels of their own.
+    names: HashMap<Arc<str>, String>,
+    /// How many texts have a label.
+    counts: HashMap<String, usize>,
+}
+
+impl Recorder {
+    /// Remembers modules, and returns pipelines.
+    ///
+    /// # Panics
+    /// For a pipeline whose module was not recorded: all are made by `antumbra::programs`.
+    pub fn record(&mut self, made: &Made<'_>) -> Option<Pipeline> {
+        match made {
+            Made::Module(module, label, wgsl) => {
+                self.add(module, label, wgsl);
+                None
+            }
+            Made::Compute(descriptor) => {
+                let wgpu::ComputePipelineDescriptor { module, entry_point, compilation_options, .. } = descriptor;
+                let program = self.program(ShaderStage::Compute, module, *entry_point, compilation_options);
+                Some(Pipeline { label: label_of(descriptor.label), programs: vec![program], state: String::new() })
+            }
+            Made::Render(descriptor) => Some(self.render_pipeline(descriptor)),
+            Made::BindGroupLayout(..) | Made::PipelineLayout(..) => None,
+        }
+    }
+
+    fn add(&mut self, module: &wgpu::ShaderModule, label: &str, wgsl: &str) {
+        let (text, name) = match self.names.get_key_value(wgsl) {
+            Some((text, name)) => (text.clone(), name.clone()),
+            None => {
+                let count = self.counts.entry(label.to_owned()).or_default();
+                *count += 1;
+                let name = if *count == 1 { label.to_owned() } else { format!("{label}#{count}") };
+                let text: Arc<str> = wgsl.into();
+                self.names.insert(text.clone(), name.clone());
+                (text, name)
+            }
+        };
+        self.modules.insert(module.clone(), (name, text));
+    }
+
+    fn program(
+        &self,
+        stage: ShaderStage,
+        module: &wgpu::ShaderModule,
+        entry: Option<&str>,
+        options: &wgpu::PipelineCompilationOptions<'_>,
+    ) -> Program {
+        let (module, wgsl) = self.modules.get(module).cloned().expect("made by `antumbra::programs`");
+        let entry = entry.map_or_else(|| only_entry(&wgsl, stage), str::to_owned);
+        let constants = options.constants.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        Program { stage, module, wgsl, entry, constants }
+    }
+
+    fn render_pipeline(&self, descriptor: &wgpu::RenderPipelineDescriptor<'_>) -> Pipeline {
+        let vertex = &descriptor.vertex;
+        let options = &vertex.compilation_options;
+        let mut programs = vec![self.program(ShaderStage::Vertex, vertex.module, vertex.entry_point, options)];
+        let mut state = Vec::new();
+        if let Some(fragment) = &descriptor.fragment {
+            let options = &fragment.compilation_options;
+            programs.push(self.program(ShaderStage::Fragment, fragment.module, fragment.entry_point, options));
+            state.extend(
+                fragment.targets.iter().flatten().map(|target| {
+                    format!("{:?}{}", target.format, if target.blend.is_some() { " blended" } else { "" })
+                }),
+            );
+        }
+        state.extend(descriptor.depth_stencil.iter().map(|depth| format!("{:?}", depth.format)));
+        if descriptor.multisample.count > 1 {
+            state.push(format!("{} samples", descriptor.multisample.count));
+        }
+        if descriptor.primitive.unclipped_depth {
+            state.push("unclipped".to_owned());
+        }
+        Pipeline { label: label_of(descriptor.label), programs, state: state.join(", ") }
+    }
+}
+
+fn label_of(label: Option<&str>) -> String {
+    label.unwrap_or_default().to_owned()
+}
+
+/// The name of a text's only entry point of a stage, which a pipeline need not name.
+fn only_entry(wgsl: &str, stage: ShaderStage) -> String {
+    let module = naga::front::wgsl::parse_str(wgsl).expect("wgpu has parsed it");
+    let entry = module.entry_points.into_iter().find(|entry| entry.stage == stage);
+    entry.expect("wgpu has found one").name
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+    use crate::device;
+
+    /// A pipeline of each module that is made of a text; one listener is all that a process can have.
+    fn recorded(texts: &[(&str, &str)]) -> Vec<Pipeline> {
+        let recorder: Arc<Mutex<(Recorder, Vec<Pipeline>)>> = Arc::default();
+        let kept = recorder.clone();
+        antumbra::programs::listen(move |made| {
+            let (recorder, pipelines) = &mut *kept.lock().unwrap();
+            pipelines.extend(recorder.record(&made));
+        });
+        let gpu = device::no_op(wgpu::Features::empty()).unwrap();
+        for &(label, text) in texts {
+            let module = antumbra::programs::create_shader_module(gpu.device(), label, text.into());
+            let constants = [("1", 2.0), ("2", 0.5)];
+            let compilation_options = wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..wgpu::PipelineCompilationOptions::default()
+            };
+            antumbra::programs::create_compute_pipeline(
+                gpu.device(),
+                &wgpu::ComputePipelineDescriptor {
+                    label: Some("halve"),
+                    layout: None,
+                    module: &module,
+                    entry_point: None,
+                    compilation_options,
+                    cache: None,
+                },
+            );
+        }
+        std::mem::take(&mut recorder.lock().unwrap().1)
+    }
+
+    #[test]
+    fn modules_are_told_apart_by_their_texts() {
+        let text = "@id(1) override count: u32; @id(2) override scale: f32;\n\
+                    @compute @workgroup_size(1) fn run() { let all = f32(count) * scale; }";
+        let other = format!("{text}\nfn other() {{}}");
+        let pipelines = recorded(&[("half", text), ("half", &other), ("another", text)]);
+        let modules: Vec<&str> = pipelines.iter().map(|pipeline| pipeline.programs[0].module.as_str()).collect();
+        assert_eq!(modules, ["half", "half#2", "half"]);
+        assert_eq!(pipelines[0], pipelines[2]);
+        assert_eq!(format!("{:?}", pipelines[1].programs[0]), "half#2 compute run [1=2 2=0.5]");
+        assert_eq!((pipelines[0].label.as_str(), pipelines[0].state.as_str()), ("halve", ""));
+    }
+}

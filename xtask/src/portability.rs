@@ -1,0 +1,122 @@
+//! `cargo xtask portability`: whether the compilers of Direct3D 12, Metal and Vulkan take the programs of every pipeline.
+//!
+//! `xtask/programs` translates and judges. This module installs the compilers: spirv-val from Debian's spirv-tools, and DXC's library
+//! from a package of Python, since Debian has none.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use crate::machine::{self, Need};
+use crate::shell::{self, find};
+
+const VALIDATOR: [Need; 1] = [Need {
+    why: "spirv-val, which judges SPIR-V",
+    met: || find("spirv-val").is_some(),
+    packages: &["spirv-tools"],
+    otherwise: "install SPIRV-Tools",
+}];
+
+const PIP: [Need; 1] = [Need {
+    why: "pip, which brings DXC",
+    met: || pip().is_some(),
+    packages: &["python3-pip"],
+    otherwise: "install pip for Python 3",
+}];
+
+/// A variable with the path of a library of DXC that is to be used.
+const VARIABLE: &str = "ANTUMBRA_DXC";
+
+/// DXC's library, and the package of Python that has it: a binding of DXC for Linux on x86-64.
+const LIBRARY: &str = "libdxcompiler.so";
+const PACKAGE: &str = "coalpy==0.55";
+
+/// Checks every program; with `--only TEXT`, those whose label, module or entry point contains it.
+///
+/// # Errors
+/// How many programs fail, or another argument.
+pub fn run(arguments: &[String]) -> Result<(), String> {
+    match arguments {
+        [] => {}
+        [option, _] if option == "--only" => {}
+        _ => return Err("`cargo xtask portability` takes `--only TEXT` or nothing".into()),
+    }
+    let began = Instant::now();
+    let mut command = Command::new(shell::built_of_workspace("antumbra-programs")?);
+    command.arg("portability").arg(crate::root().join("target/portability")).args(arguments);
+    match dxc() {
+        Ok(library) => drop(command.arg("--dxc").arg(library)),
+        Err(lack) => eprintln!("xtask: SKIPPED DXC: {lack}"),
+    }
+    match machine::install(&VALIDATOR).map(|()| find("spirv-val")) {
+        Ok(Some(validator)) => drop(command.arg("--spirv-val").arg(validator)),
+        Ok(None) => eprintln!("xtask: SKIPPED spirv-val: it is not on the path"),
+        Err(lack) => eprintln!("xtask: SKIPPED spirv-val: {lack}"),
+    }
+    shell::run(&mut command)?;
+    eprintln!("xtask: programs checked for other systems in {} s", began.elapsed().as_secs());
+    Ok(())
+}
+
+/// DXC's library: the one that the variable names, else our own, brought where it is not there yet.
+fn dxc() -> Result<PathBuf, String> {
+    if let Some(named) = std::env::var_os(VARIABLE).map(PathBuf::from) {
+        return if named.is_file() { Ok(named) } else { Err(format!("{VARIABLE} names no file: {}", named.display())) };
+    }
+    let folder = crate::root().join("target/tools/dxc");
+    let library = folder.join(LIBRARY);
+    if library.is_file() {
+        return Ok(library);
+    }
+    let by_hand = format!("set {VARIABLE} to the path of a {LIBRARY} of DirectXShaderCompiler's releases");
+    if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+        return Err(format!("there is no package of it for this system: {by_hand}"));
+    }
+    let unfinished = folder.join(format!("unfinished-{}", std::process::id()));
+    let outcome = bring(&unfinished, &library);
+    // Nothing of a try that failed may stay.
+    let _ = std::fs::remove_dir_all(&unfinished);
+    outcome.map(|()| library).map_err(|problem| format!("{problem}; {by_hand}"))
+}
+
+/// Downloads the package and takes the library out of it.
+fn bring(unfinished: &Path, library: &Path) -> Result<(), String> {
+    machine::install(&PIP)?;
+    let mut pip = pip().ok_or("there is no pip")?;
+    eprintln!("xtask: bringing DXC into {}, 30 MB", library.display());
+    let unpacked = unfinished.join("unpacked");
+    std::fs::create_dir_all(&unpacked).map_err(|error| format!("{}: {error}", unpacked.display()))?;
+    shell::run(
+        pip.args(["download", "--quiet", "--no-deps", "--only-binary=:all:", PACKAGE, "--dest"]).arg(unfinished),
+    )?;
+    let package = file_in(unfinished, |name| name.ends_with(".whl")).ok_or("pip brought no wheel")?;
+    // A wheel is a zip archive, which Python takes apart itself.
+    shell::run(python().args(["-m", "zipfile", "-e"]).args([&package, &unpacked]))?;
+    let found = file_in(&unpacked, |name| name == LIBRARY).ok_or_else(|| format!("{PACKAGE} has no {LIBRARY}"))?;
+    // Whole or not at all. Where another was faster, its is as good.
+    std::fs::rename(found, library).map_err(|error| format!("{}: cannot be made: {error}", library.display()))
+}
+
+fn python() -> Command {
+    Command::new("python3")
+}
+
+/// The command pip, where Python has it.
+fn pip() -> Option<Command> {
+    let pip = || {
+        let mut command = python();
+        command.args(["-m", "pip"]);
+        command
+    };
+    shell::succeeds(pip().arg("--version")).then(pip)
+}
+
+/// The first file in a folder or in those below whose name is wanted.
+fn file_in(folder: &Path, is_wanted: impl Fn(&str) -> bool + Copy) -> Option<PathBuf> {
+    let mut inside: Vec<PathBuf> = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path()).collect();
+    inside.sort();
+    let is_it =
+        |path: &&PathBuf| path.is_file() && path.file_name().and_then(|name| name.to_str()).is_some_and(is_wanted);
+    let found = inside.iter().find(is_it).cloned();
+    found.or_else(|| inside.iter().filter(|path| path.is_dir()).find_map(|folder| file_in(folder, is_wanted)))
+}
