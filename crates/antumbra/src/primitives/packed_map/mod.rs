@@ -10,8 +10,8 @@ use glam::{IVec2, UVec2};
 
 use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
-    Bindings, Cached, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_entry, create_uniform,
-    gpu_structs, level_views, slice_views, texels, texture_bytes, upload_storage, write_uniform,
+    Bindings, Cached, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline_without_zeroing,
+    create_uniform, gpu_structs, level_views, slice_views, texels, texture_bytes, upload_storage, write_uniform,
 };
 use crate::shaders;
 
@@ -228,7 +228,7 @@ impl Pipelines {
     /// `layouts` are of the blur, of one level and of four.
     fn new(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 3], packing: Packing) -> Self {
         let constants = [("PACKING", f64::from(packing as u32))];
-        let make = |label, wgsl, layout| compute_entry(gpu, label, wgsl, None, &constants, &[layout]);
+        let make = |label, wgsl, layout| compute_pipeline_without_zeroing(gpu, label, wgsl, &constants, &[layout]);
         Self {
             blur: make("packed blur", shaders::PACKED_BLUR, layouts[0]),
             halve: make("packed mips", shaders::PACKED_HALVE, layouts[1]),
