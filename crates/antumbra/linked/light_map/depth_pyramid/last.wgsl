@@ -14,6 +14,8 @@ var<uniform> light: NearLight;
 
 const THREADS = 256u;
 
+const HALVINGS = 8u;
+
 const BINS = 256u;
 
 const BINS_PER_OCTAVE = 8.0;
@@ -57,7 +59,8 @@ fn near_end(nearest: f32, farthest: f32) -> f32 {
 
 fn ends_of_all(own: vec2f, thread: u32) -> vec2f {
     ends_of_threads[thread] = own;
-    for (var pairs = THREADS / 2u; pairs > 0u; pairs /= 2u) {
+    for (var i = 1u; i <= HALVINGS; i++) {
+        let pairs = THREADS >> i;
         workgroupBarrier();
         if thread < pairs {
             ends_of_threads[thread] = halving_joined(ends_of_threads[thread], ends_of_threads[thread + pairs]);
