@@ -54,6 +54,12 @@ pub(crate) fn map_texels(
     if let MapSize::Texels(texels) = size {
         return texels;
     }
+    let most = most_texels(stage.auto_map_bytes(), bytes_of, stage.device.limits().max_texture_dimension_2d);
+    // Parts of many lights have nothing to choose from.
+    if most <= USUAL_TEXELS {
+        stage.note_auto_texels(most);
+        return most;
+    }
     let of_casters = casters.iter().copied().fold(Aabb::EMPTY, Aabb::union);
     let receivers = PreparedReceivers { bounds: frame.receivers.bounds.or(Some(of_casters)), ..frame.receivers };
     let wanted = receivers.camera().and_then(|camera| {
@@ -61,9 +67,8 @@ pub(crate) fn map_texels(
         wanted_texels(camera, receivers.size_px.y, &seen, view)
     });
     let stays_for = if receivers.seen.is_empty() { STAYS_UNSEEN_FOR } else { STAYS_FOR };
-    let most = most_texels(stage.auto_map_bytes(), bytes_of, stage.device.limits().max_texture_dimension_2d);
     let texels = step_of(wanted.unwrap_or(USUAL_TEXELS as f32), stage.auto_texels(), stays_for);
-    let texels = texels.clamp(USUAL_TEXELS.min(most), most);
+    let texels = texels.clamp(USUAL_TEXELS, most);
     stage.note_auto_texels(texels);
     texels
 }
