@@ -9,7 +9,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::description::{Entry, Programs};
 use crate::device;
-use crate::makings;
 
 /// Writes all to a file; the number of modules and of pipelines.
 ///
@@ -19,9 +18,7 @@ pub fn write(file: &Path) -> Result<[usize; 2], String> {
     let programs = Arc::new(Mutex::new(Programs::default()));
     let kept = programs.clone();
     antumbra::programs::listen(move |made| kept.lock().unwrap_or_else(PoisonError::into_inner).add(made));
-    for (features, extent) in device::VARIANTS {
-        makings::make_all(&device::no_op(features)?, extent)?;
-    }
+    device::make_all_variants()?;
     let mut programs = std::mem::take(&mut *programs.lock().unwrap_or_else(PoisonError::into_inner));
     add_linked(&mut programs, &linked_folder())?;
     let counts = programs.counts();

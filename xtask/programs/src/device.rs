@@ -2,14 +2,22 @@
 
 use antumbra::Gpu;
 
-use crate::makings::Extent;
+use crate::makings::{self, Extent};
 
 /// Every optional feature that the library's pipelines depend on.
 pub const FEATURES: wgpu::Features = wgpu::Features::DEPTH_CLIP_CONTROL.union(wgpu::Features::TIMESTAMP_QUERY);
 
 /// Features and extents by which every program is made: hosts have light maps that clip depths, or do not.
-pub const VARIANTS: [(wgpu::Features, Extent); 2] =
+const VARIANTS: [(wgpu::Features, Extent); 2] =
     [(FEATURES, Extent::Parameters), (wgpu::Features::empty(), Extent::Qualities)];
+
+/// Makes every program of every variant on wgpu's own device.
+///
+/// # Errors
+/// The first thing that is refused that should not be.
+pub fn make_all_variants() -> Result<(), String> {
+    VARIANTS.into_iter().try_for_each(|(features, extent)| makings::make_all(&no_op(features)?, extent))
+}
 
 /// wgpu's own device that does nothing, with these features: all is validated and nothing compiled.
 ///

@@ -6,7 +6,6 @@ mod describe;
 mod description;
 mod device;
 mod makings;
-mod parallel;
 mod portability;
 mod recorder;
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use antumbra::programs::Made;
 use naga::ShaderStage;
@@ -132,6 +132,24 @@ impl Recorder {
     }
 }
 
+/// The pipelines that `make` makes; to be called once in a process.
+///
+/// # Errors
+/// What `make` says.
+///
+/// # Panics
+/// Where there is a listener already: a process has one.
+pub fn pipelines_made(make: impl FnOnce() -> Result<(), String>) -> Result<Vec<Pipeline>, String> {
+    let made: Arc<Mutex<(Recorder, Vec<Pipeline>)>> = Arc::default();
+    let kept = made.clone();
+    antumbra::programs::listen(move |made| {
+        let (recorder, pipelines) = &mut *kept.lock().unwrap_or_else(PoisonError::into_inner);
+        pipelines.extend(recorder.record(&made));
+    });
+    make()?;
+    Ok(std::mem::take(&mut made.lock().unwrap_or_else(PoisonError::into_inner).1))
+}
+
 fn label_of(label: Option<&str>) -> String {
     label.unwrap_or_default().to_owned()
 }
@@ -145,20 +163,19 @@ fn only_entry(wgsl: &str, stage: ShaderStage) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Mutex;
-
     use super::*;
     use crate::device;
 
-    /// A pipeline of each module that is made of a text; one listener is all that a process can have.
+    /// A pipeline of each module that is made of a text.
     fn recorded(texts: &[(&str, &str)]) -> Vec<Pipeline> {
-        let recorder: Arc<Mutex<(Recorder, Vec<Pipeline>)>> = Arc::default();
-        let kept = recorder.clone();
-        antumbra::programs::listen(move |made| {
-            let (recorder, pipelines) = &mut *kept.lock().unwrap();
-            pipelines.extend(recorder.record(&made));
-        });
-        let gpu = device::no_op(wgpu::Features::empty()).unwrap();
+        let make = || {
+            make_pipelines(&device::no_op(wgpu::Features::empty())?, texts);
+            Ok(())
+        };
+        pipelines_made(make).unwrap()
+    }
+
+    fn make_pipelines(gpu: &antumbra::Gpu, texts: &[(&str, &str)]) {
         for &(label, text) in texts {
             let module = antumbra::programs::create_shader_module(gpu.device(), label, text.into());
             let constants = [("1", 2.0), ("2", 0.5)];
@@ -178,7 +195,6 @@ mod tests {
                 },
             );
         }
-        std::mem::take(&mut recorder.lock().unwrap().1)
     }
 
     #[test]

@@ -4,10 +4,10 @@
 
 use std::path::Path;
 
+use rayon::prelude::*;
 use serde_json::Value;
 
 use super::null_device::NullDevice;
-use crate::parallel::in_parallel;
 
 /// Scene of the frames.
 pub const SCENE: &str = "builtin:street";
@@ -41,12 +41,11 @@ pub fn count(
     folder: &Path,
     techniques: &[&str],
 ) -> Result<Vec<Frame>, String> {
-    let frames = in_parallel(techniques.len(), |place| {
-        let technique = techniques[place];
+    let count = |technique: &&str| {
         let frame = count_one(device, antumbra, family, &folder.join(format!("{technique}.json")), technique);
         frame.map_err(|problem| format!("a frame of {technique}: {problem}"))
-    });
-    frames.into_iter().collect()
+    };
+    techniques.par_iter().map(count).collect()
 }
 
 fn count_one(

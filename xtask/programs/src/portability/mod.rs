@@ -10,11 +10,11 @@ use std::collections::HashMap;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
-use crate::makings;
-use crate::parallel::in_parallel;
-use crate::recorder::{Pipeline, Program, Recorder};
+use rayon::prelude::*;
+
+use crate::recorder::{self, Pipeline, Program};
 use crate::{describe, device};
 use compilers::Compilers;
 use translation::{Translation, Validated};
@@ -86,13 +86,13 @@ pub fn check(options: &Options) -> Result<(), String> {
     let modules: HashMap<Arc<str>, OnceLock<Result<Validated, String>>> =
         programs.iter().map(|(_, program)| (program.wgsl.clone(), OnceLock::new())).collect();
     let compilers = Compilers::new(options)?;
-    let failures = in_parallel(programs.len(), |place| {
-        let (_, program) = &programs[place];
+    let failures_of = |(place, (_, program)): (usize, &(String, Program))| {
         let module = modules[&program.wgsl].get_or_init(|| translation::validated(&program.wgsl));
         let module = module.as_ref().map_err(Clone::clone);
         let translation = module.and_then(|module| translation::translate(module, program));
         judge(&compilers, &options.folder.join(format!("{place:04}")), program, translation)
-    });
+    };
+    let failures: Vec<Vec<Failure>> = programs.par_iter().enumerate().map(failures_of).collect();
     for (place, ((label, program), failures)) in programs.iter().zip(&failures).enumerate() {
         for (step, error) in failures {
             println!("{label} | {program:?}: {}: {error} ({place:04})", step.name());
@@ -116,16 +116,7 @@ pub fn check(options: &Options) -> Result<(), String> {
 
 /// The programs of all pipelines, each once, with the label of a pipeline that has it.
 fn programs(only: Option<&str>) -> Result<Vec<(String, Program)>, String> {
-    let made: Arc<Mutex<(Recorder, Vec<Pipeline>)>> = Arc::default();
-    let kept = made.clone();
-    antumbra::programs::listen(move |made| {
-        let (recorder, pipelines) = &mut *kept.lock().unwrap_or_else(PoisonError::into_inner);
-        pipelines.extend(recorder.record(&made));
-    });
-    for (features, extent) in device::VARIANTS {
-        makings::make_all(&device::no_op(features)?, extent)?;
-    }
-    let (_, pipelines) = std::mem::take(&mut *made.lock().unwrap_or_else(PoisonError::into_inner));
+    let pipelines = recorder::pipelines_made(device::make_all_variants)?;
     let mut programs = distinct(pipelines);
     let linked = describe::linked_folder();
     for file in describe::linked_files(&linked)? {
