@@ -172,6 +172,7 @@ fn no_light_comes_below_eaves() {
     let leak = umbra_leak(&place.mask_by("smrt"), &place.truth);
     println!("eaves under a lamp: {leak} of what is dark is lit");
     assert!(leak <= 0.003, "eaves under a lamp: {leak} of what is dark is lit");
+    place.holds("eaves under a lamp", &[("smrt", 0.05)]);
 }
 
 /// A room of walls of five millimetres around the receivers, and the lamp outside.

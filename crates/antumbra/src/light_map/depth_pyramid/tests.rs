@@ -96,5 +96,8 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
             let got = read_texture(gpu, &levels.texture, i, level_size);
             assert_eq!(bytemuck::cast_slice::<u8, [f32; 2]>(&got), want, "{size}, level {i}");
         }
+        // Four levels a dispatch, the last four included.
+        let dispatches = levels.steps.len() + 1;
+        assert!(dispatches <= level_sizes(size).len().div_ceil(4), "{size}: {dispatches} dispatches");
     }
 }

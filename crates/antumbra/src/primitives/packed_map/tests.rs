@@ -3,7 +3,7 @@
 use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
 
-use super::{Kernel, PackedMap, Packing, cpu};
+use super::{Kernel, MipStep, PackedMap, Packing, cpu, mip_steps};
 use crate::gpu::{Recorder, Stage};
 use crate::testing::{gpu, read_texture};
 
@@ -41,6 +41,28 @@ fn twins_keep_means_and_planes() {
     assert_eq!(half_size, UVec2::new(10, 8));
     let mean = |map: &[f32]| map.iter().sum::<f32>() / map.len() as f32;
     assert!((mean(&half) - mean(&plane)).abs() < 1e-5);
+}
+
+#[test]
+fn every_level_is_made_and_four_at_once_where_sizes_allow() {
+    for size in
+        [1, 2, 5, 16, 48, 64, 100, 1024, 1448, 2048, 4096].map(UVec2::splat).into_iter().chain([UVec2::new(32, 80)])
+    {
+        let levels = size.max_element().ilog2() + 1;
+        let mut made = 0;
+        for step in mip_steps(size, levels) {
+            let (before, count) = match step {
+                MipStep::One(before) => (before, 1),
+                MipStep::Four(before) => (before, 4),
+            };
+            assert!(before <= made && before + count > made, "{size}: {step:?} after level {made}");
+            made = before + count;
+        }
+        assert_eq!(made + 1, levels, "{size}");
+    }
+    for (texels, dispatches) in [(256, 2), (1024, 3), (4096, 3), (100, 6)] {
+        assert_eq!(mip_steps(UVec2::splat(texels), texels.ilog2() + 1).count(), dispatches, "{texels}");
+    }
 }
 
 #[test]
