@@ -245,7 +245,7 @@ impl<'a> Recorder<'a> {
         record(&mut pass);
     }
 
-    /// A compute pass of wgpu's own, wherever steps are joined.
+    /// A compute pass that shares wgpu's with no other step.
     pub(crate) fn compute_apart(
         &mut self,
         label: &'static str,

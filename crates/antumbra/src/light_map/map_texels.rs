@@ -31,8 +31,7 @@ const STAYS_UNSEEN_FOR: f32 = 1.0;
 /// The most, whatever a light may spend: what draws the map would take longer than all else.
 const MOST_TEXELS: u32 = 4096;
 
-/// What maps have where no camera sees the receivers, and the least: budgets leave as much, and for an image of fewer pixels the
-/// penumbrae of what casts shadows from afar would be noisier.
+/// What maps have where no camera sees the receivers; and the least, which every budget leaves, since fewer were worse ([`PIXELS`]).
 const USUAL_TEXELS: u32 = 1024;
 
 /// Sides are multiples of this, as workgroups are.

@@ -16,27 +16,20 @@ struct Fit {
 
 const REACH = 3;
 
-const TILE = 8;
-
-const SIDE = TILE + 2 * REACH;
+const SIDE = tile_TILE + 2 * REACH;
 
 var<workgroup> fetched: array<vec3f, SIDE * SIDE>;
 
-struct Place {
-    pixel: vec2u,
-    in_fetched: i32
-}
-
 fn fetch(group: vec2u, thread: u32, layer: u32) {
-    for (var i = i32(thread); i < SIDE * SIDE; i += TILE * TILE) {
-        let pixel = surface_neighbour(8u * group, vec2i(i % SIDE, i / SIDE) - REACH);
+    for (var i = i32(thread); i < SIDE * SIDE; i += tile_TILE * tile_TILE) {
+        let pixel = tile_fetched_pixel(group, i, REACH);
         fetched[i] = vec3f(textureLoad(means, pixel, layer, 0).xz, inputs_depth_at(pixel));
     }
     workgroupBarrier();
 }
 
-fn fetched_at(place: Place, away: vec2i) -> vec3f {
-    return fetched[place.in_fetched + away.y * SIDE + away.x];
+fn fetched_at(place: tile_Place, away: vec2i) -> vec3f {
+    return fetched[tile_index_of(place, away, REACH)];
 }
 
 struct Window {
@@ -47,7 +40,7 @@ struct Window {
     most_off: f32
 }
 
-fn fit(place: Place, surface: surface_Surface, window: Window) -> Fit {
+fn fit(place: tile_Place, surface: surface_Surface, window: Window) -> Fit {
     var sums = Fit(0.0, vec2f(), vec3f(), 0.0, vec2f(), 0.0, 1.0, 0.0);
     for (var y = max(-window.reach, -REACH); y <= min(window.reach, REACH); y++) {
         for (var x = max(-window.reach, -REACH); x <= min(window.reach, REACH); x++) {
@@ -109,7 +102,7 @@ const ALIKE_DEVIATIONS = 3.0;
 
 const LEAST_DEVIATION = 0.3;
 
-fn smoothed(place: Place, known: vec3f) -> f32 {
+fn smoothed(place: tile_Place, known: vec3f) -> f32 {
     var differs = false;
     for (var i = 0; i < 9; i++) {
         differs |= fetched_at(place, 2 * (vec2i(i % 3, i / 3) - 1)).x != known.x;
@@ -143,8 +136,7 @@ fn smooth_out(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) g
     let known = textureLoad(means, pixel, layer, 0).xyz;
     var visibility = 1.0;
     if known.z > 0.0 {
-        let in_fetched = vec2i(local.xy) + REACH;
-        visibility = smoothed(Place(pixel, in_fetched.y * SIDE + in_fetched.x), known);
+        visibility = smoothed(tile_place_of(pixel, local.xy, REACH), known);
     }
     inputs_store_mask(pixel, layer, visibility);
 }
@@ -183,6 +175,30 @@ fn surface_is_on_surface(surface: surface_Surface, away: vec2i, depth: f32) -> b
 
 fn surface_neighbour(pixel: vec2u, away: vec2i) -> vec2u {
     return vec2u(clamp(vec2i(pixel) + away, vec2i(0), vec2i(inputs_receiver_view.size_px) - 1));
+}
+
+const tile_TILE = 8;
+
+struct tile_Place {
+    pixel: vec2u,
+    in_fetched: i32
+}
+
+fn tile_side_of(reach: i32) -> i32 {
+    return tile_TILE + 2 * reach;
+}
+
+fn tile_fetched_pixel(group: vec2u, i: i32, reach: i32) -> vec2u {
+    return surface_neighbour(u32(tile_TILE) * group, vec2i(i % tile_side_of(reach), i / tile_side_of(reach)) - reach);
+}
+
+fn tile_place_of(pixel: vec2u, local: vec2u, reach: i32) -> tile_Place {
+    let at = vec2i(local) + reach;
+    return tile_Place(pixel, at.y * tile_side_of(reach) + at.x);
+}
+
+fn tile_index_of(place: tile_Place, away: vec2i, reach: i32) -> i32 {
+    return place.in_fetched + away.y * tile_side_of(reach) + away.x;
 }
 
 struct inputs_ReceiverView {

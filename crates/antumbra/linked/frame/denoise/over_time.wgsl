@@ -46,30 +46,23 @@ struct Around {
 
 const AROUND = 2;
 
-const TILE = 8;
-
-const SIDE = TILE + 2 * AROUND;
+const SIDE = tile_TILE + 2 * AROUND;
 
 var<workgroup> fetched: array<vec2f, SIDE * SIDE>;
 
-struct Place {
-    pixel: vec2u,
-    in_fetched: i32
-}
-
 fn fetch(group: vec2u, thread: u32, layer: u32) {
-    for (var i = i32(thread); i < SIDE * SIDE; i += TILE * TILE) {
-        let pixel = surface_neighbour(8u * group, vec2i(i % SIDE, i / SIDE) - AROUND);
+    for (var i = i32(thread); i < SIDE * SIDE; i += tile_TILE * tile_TILE) {
+        let pixel = tile_fetched_pixel(group, i, AROUND);
         fetched[i] = vec2f(textureLoad(noisy, pixel, layer, 0).x, inputs_depth_at(pixel));
     }
     workgroupBarrier();
 }
 
-fn fetched_at(place: Place, away: vec2i) -> vec2f {
-    return fetched[place.in_fetched + away.y * SIDE + away.x];
+fn fetched_at(place: tile_Place, away: vec2i) -> vec2f {
+    return fetched[tile_index_of(place, away, AROUND)];
 }
 
-fn around(place: Place, surface: surface_Surface, now: f32) -> Around {
+fn around(place: tile_Place, surface: surface_Surface, now: f32) -> Around {
     var differs = false;
     for (var i = 0; i < 9; i++) {
         differs |= fetched_at(place, AROUND * (vec2i(i % 3, i / 3) - 1)).x != now;
@@ -192,8 +185,7 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) g
     if !inputs_is_inside(pixel) {
         return;
     }
-    let in_fetched = vec2i(local.xy) + AROUND;
-    let place = Place(pixel, in_fetched.y * SIDE + in_fetched.x);
+    let place = tile_place_of(pixel, local.xy, AROUND);
     let seen = fetched_at(place, vec2i());
     if layer == 0u {
         textureStore(depth_now, pixel, vec4f(seen.y));
@@ -247,6 +239,30 @@ fn surface_is_on_surface(surface: surface_Surface, away: vec2i, depth: f32) -> b
 
 fn surface_neighbour(pixel: vec2u, away: vec2i) -> vec2u {
     return vec2u(clamp(vec2i(pixel) + away, vec2i(0), vec2i(inputs_receiver_view.size_px) - 1));
+}
+
+const tile_TILE = 8;
+
+struct tile_Place {
+    pixel: vec2u,
+    in_fetched: i32
+}
+
+fn tile_side_of(reach: i32) -> i32 {
+    return tile_TILE + 2 * reach;
+}
+
+fn tile_fetched_pixel(group: vec2u, i: i32, reach: i32) -> vec2u {
+    return surface_neighbour(u32(tile_TILE) * group, vec2i(i % tile_side_of(reach), i / tile_side_of(reach)) - reach);
+}
+
+fn tile_place_of(pixel: vec2u, local: vec2u, reach: i32) -> tile_Place {
+    let at = vec2i(local) + reach;
+    return tile_Place(pixel, at.y * tile_side_of(reach) + at.x);
+}
+
+fn tile_index_of(place: tile_Place, away: vec2i, reach: i32) -> i32 {
+    return place.in_fetched + away.y * tile_side_of(reach) + away.x;
 }
 
 struct inputs_ReceiverView {

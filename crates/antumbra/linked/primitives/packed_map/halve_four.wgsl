@@ -42,14 +42,12 @@ fn make_first(texel: vec2u, layer: u32) -> u32 {
 @compute @workgroup_size(64)
 fn halve_four(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
     let layer = group.z;
-    {
-        let texel = 8u * group.xy + vec2u(thread % 8u, thread / 8u);
-        let corner = 2u * texel;
-        let word = mean(make_first(corner, layer), make_first(corner + vec2u(1, 0), layer), make_first(corner + vec2u(0, 1), layer), make_first(corner + vec2u(1, 1), layer));
-        of_second[thread] = word;
-        if all(texel < textureDimensions(second_level)) {
-            textureStore(second_level, texel, layer, vec4u(word));
-        }
+    let texel = 8u * group.xy + vec2u(thread % 8u, thread / 8u);
+    let corner = 2u * texel;
+    let second = mean(make_first(corner, layer), make_first(corner + vec2u(1, 0), layer), make_first(corner + vec2u(0, 1), layer), make_first(corner + vec2u(1, 1), layer));
+    of_second[thread] = second;
+    if all(texel < textureDimensions(second_level)) {
+        textureStore(second_level, texel, layer, vec4u(second));
     }
     workgroupBarrier();
     if thread < 16u {

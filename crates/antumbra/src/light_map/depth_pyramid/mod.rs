@@ -144,10 +144,14 @@ impl DepthPyramid {
         };
         let views: Vec<_> = (0..sizes.len() as u32)
             .map(|base_mip_level| {
-                let alone = Some(1);
-                let level =
-                    wgpu::TextureViewDescriptor { base_mip_level, mip_level_count: alone, ..Default::default() };
-                stage.create_view(&texture, &level)
+                stage.create_view(
+                    &texture,
+                    &wgpu::TextureViewDescriptor {
+                        base_mip_level,
+                        mip_level_count: Some(1),
+                        ..wgpu::TextureViewDescriptor::default()
+                    },
+                )
             })
             .collect();
         let halving = |first: usize| Halving {

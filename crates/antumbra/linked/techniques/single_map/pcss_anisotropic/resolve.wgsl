@@ -870,8 +870,12 @@ fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
     return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
 }
 
+fn map_receiver_plane_depth_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
+    return receiver.depth_at_origin + dot(receiver.slope, texel);
+}
+
 fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
-    return map_receiver_held(receiver, receiver.depth_at_origin + dot(receiver.slope, texel));
+    return map_receiver_held(receiver, map_receiver_plane_depth_at(receiver, texel));
 }
 
 fn map_receiver_is_texel(texel: vec2f) -> bool {

@@ -197,7 +197,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     let may_be_blocked = open.has_rays && open.most_g > 0.0;
     if may_be_blocked {
         atomicMin(&farthest_bits, bins_depth_bits(open.fan.at.depth));
-        atomicMax(&nearest_bits, bins_depth_bits(open.fan.at.depth + open.most_g / open.fan.at.g_per_depth));
+        atomicMax(&nearest_bits, bins_depth_bits(fan_depth_at_g(open.fan.at, open.most_g)));
     }
     workgroupBarrier();
     let bins = tile_bins();
@@ -914,8 +914,12 @@ fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
     return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
 }
 
+fn map_receiver_plane_depth_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
+    return receiver.depth_at_origin + dot(receiver.slope, texel);
+}
+
 fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
-    return map_receiver_held(receiver, receiver.depth_at_origin + dot(receiver.slope, texel));
+    return map_receiver_held(receiver, map_receiver_plane_depth_at(receiver, texel));
 }
 
 fn map_receiver_is_texel(texel: vec2f) -> bool {
@@ -1101,6 +1105,10 @@ fn fan_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
     return (depth - receiver.depth) * receiver.g_per_depth;
 }
 
+fn fan_depth_at_g(receiver: map_receiver_MapReceiver, g: f32) -> f32 {
+    return receiver.depth + g / receiver.g_per_depth;
+}
+
 fn fan_stored_depth(texel: vec2f, layer: u32) -> f32 {
     if layer == 0u {
         return map_light_view.depth_sign * textureLoad(map_light_map, vec2i(texel), 0);
@@ -1114,7 +1122,7 @@ fn fan_blocker_g_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> f32
     if !map_receiver_is_texel(texel) {
         return map_receiver_NO_G;
     }
-    let begin = max(fan.at.depth, fan_depth_at_g(fan, begin_g));
+    let begin = max(fan.at.depth, fan_depth_at_g(fan.at, begin_g));
     let least = max(map_receiver_plane_depth(fan.at, texel), begin);
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(texel, layer);
@@ -1136,13 +1144,9 @@ fn fan_blocker_g_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: 
     }
     let steepness = max(length(fan.at.slope), 1e-30);
     let forward = -fan.at.slope / steepness;
-    let behind = max(fan.at.depth_at_origin + dot(fan.at.slope, texel) - fan_depth_at_g(fan, g), 0.0) / steepness;
+    let behind = max(map_receiver_plane_depth_at(fan.at, texel) - fan_depth_at_g(fan.at, g), 0.0) / steepness;
     let in_front = texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y)));
     return min(fan_blocker_g_in(fan, floor(in_front), begin_g, end_g), map_receiver_NO_G);
-}
-
-fn fan_depth_at_g(fan: fan_Fan, g: f32) -> f32 {
-    return fan.at.depth + g / fan.at.g_per_depth;
 }
 
 fn fan_far_side(fan: fan_Fan, g: f32, layer: u32) -> f32 {
