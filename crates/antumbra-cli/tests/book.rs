@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use antumbra_testing::book::{Command, Page, blocks, book_pages, commands, page, root, spans};
-use common::{antumbra, has_adapter, run};
+use common::{adapter, antumbra, run};
 
 /// Options that make a command small, for each command that draws or traces.
 const SMALL: [(&str, &[(&str, &str)]); 6] = [
@@ -63,7 +63,7 @@ pages! {
 /// Runs a page's commands, each after the other.
 fn run_page(page: &Page) {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     furnish(dir.path());

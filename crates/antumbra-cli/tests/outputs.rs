@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{has_adapter, names_in, run};
+use common::{adapter, names_in, run};
 use exr::prelude::read_all_data_from_file;
 
 /// Name and size of each channel.
@@ -18,7 +18,7 @@ fn channels(path: &std::path::Path) -> (Vec<String>, (usize, usize)) {
 #[test]
 fn render_writes_a_picture_its_visibility_and_its_times() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let words = "render builtin:overlap --technique hard --set map_size=256 --size 67x41 -o a.png --visibility v.exr \
@@ -68,7 +68,7 @@ fn names_say_what_is_written() {
 #[test]
 fn an_advice_writes_a_preset_that_other_commands_read() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let run = |words: &str| {
@@ -102,7 +102,7 @@ fn an_advice_writes_a_preset_that_other_commands_read() {
 #[test]
 fn a_sweep_is_a_comparison_in_parts() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let run = |words: &str| {
@@ -135,7 +135,7 @@ fn a_sweep_is_a_comparison_in_parts() {
 #[test]
 fn a_scene_far_from_the_origin_is_as_at_it() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let run = |words: &str| {
@@ -207,7 +207,7 @@ fn each_light_has_its_visibility() {
 #[test]
 fn shadows_end_where_they_are_told_to() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let setup = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n";
@@ -234,7 +234,7 @@ fn shadows_end_where_they_are_told_to() {
 #[test]
 fn compare_writes_a_report_and_replaces_its_own() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let words =
@@ -273,7 +273,7 @@ fn compare_writes_a_report_and_replaces_its_own() {
 #[test]
 fn what_moves_is_measured_and_shown() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let words = "compare builtin:overlap --techniques hard,pcf --size 64x36 --samples 16 --motion caster,camera --motion-frames 3 \
@@ -309,7 +309,7 @@ fn a_preset_is_a_paper_s_comparison_as_printed() {
     let told = run(dir.path(), &["techniques", "lvsm"]);
     let told = String::from_utf8_lossy(&told.stdout).into_owned();
     assert!(told.contains("As published: lvsm:paper") && told.contains("  transition = mixed\n"), "{told}");
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let words = "compare builtin:overlap --preset lauritzen-2008 --size 64x36 --samples 4 --frames 1 -o out";
@@ -328,7 +328,7 @@ fn a_preset_is_a_paper_s_comparison_as_printed() {
 #[test]
 fn bench_measures_the_light_and_the_camera_that_it_is_given() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let camera = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n";
@@ -350,7 +350,7 @@ fn bench_measures_the_light_and_the_camera_that_it_is_given() {
 #[test]
 fn compare_shades_coherently_where_it_is_asked_to() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let pictures = ["", " --coherent"].map(|how| {
@@ -410,7 +410,7 @@ fn what_is_assumed_of_a_scene_is_said() {
 #[test]
 fn several_scenes_get_a_folder_each() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let words = "compare builtin:overlap builtin:leaning-plank --techniques hard --size 32x18 --samples 4 -o out";
@@ -459,7 +459,7 @@ fn lists_are_json_where_asked_for() {
     let parameters: Vec<_> =
         scenes.as_array().unwrap().iter().flat_map(|s| s["parameters"].as_array().unwrap()).collect();
     assert!(parameters.iter().any(|parameter| parameter["name"] == "triangles"), "{parameters:?}");
-    if has_adapter(dir.path()) {
+    if adapter().is_some() {
         let doctor = json(&["doctor", "--json"]);
         assert!(doctor["in_use"]["name"].as_str().is_some_and(|name| !name.is_empty()));
         assert!(

@@ -17,6 +17,9 @@ const BOUND: f64 = 0.003;
 /// `sample_based` has the very masks of `ray_traced` (`rays_find_what_bits_find`).
 const WITHIN_OFFSETS: (&str, f64) = ("builtin:ring-in-grass", 0.006);
 
+/// Of 256 rays each pixel costs much on a software device, and a scene shows all that it has in few.
+const SIZE: UVec2 = UVec2::new(80, 45);
+
 /// The same points at every pixel of both.
 const OPTIONS: VisibilityOptions =
     VisibilityOptions { samples: 256, set: SampleSet::Sobol, seed: 1, same_set_for_all_pixels: true };
@@ -25,7 +28,7 @@ const SETTINGS: [(&str, &str); 2] = [("samples", "256"), ("rotate", "false")];
 /// Without a thousandth of the pixels, at most: where casters cut one another (`ten-knots`), rounding of a receiver's position decides on
 /// which side of a closed one it lies.
 fn rmse(lab: &LabDevice, spec: &str, change: impl FnOnce(&mut Light)) -> f64 {
-    let same = Same::new(lab, spec, change);
+    let same = Same::of_size(lab, SIZE, spec, change);
     let errors = same.errors_to_either(&OPTIONS, &same.mask(lab, TechniqueKind::RayTraced, &SETTINGS));
     let all = root_mean_square(&errors);
     let most = root_mean_square(&errors[..errors.len() - errors.len() / 1000]);
@@ -43,7 +46,7 @@ fn rays_find_what_bits_find() {
     let Some(lab) = lab() else { return };
     let bits = [("samples", "256"), ("sample_set", "sobol"), ("seed", "1")];
     for spec in ["builtin:ten-knots", "builtin:ring-in-grass", "builtin:hall", "builtin:staircase"] {
-        let same = Same::new(lab, spec, |_| {});
+        let same = Same::of_size(lab, SIZE, spec, |_| {});
         let by_rays = same.mask(lab, TechniqueKind::RayTraced, &SETTINGS);
         let by_bits = same.mask(lab, TechniqueKind::SampleBased, &bits);
         let squares: f64 = by_rays.iter().zip(&by_bits).map(|(a, b)| f64::from(a - b).powi(2)).sum();

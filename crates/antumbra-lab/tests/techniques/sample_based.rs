@@ -86,7 +86,7 @@ impl Same {
         Self::of(lab, SIZE, &scene, setup)
     }
 
-    fn of_size(lab: &LabDevice, size_px: UVec2, spec: &str, change: impl FnOnce(&mut Light)) -> Self {
+    pub(crate) fn of_size(lab: &LabDevice, size_px: UVec2, spec: &str, change: impl FnOnce(&mut Light)) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a scene that is there");
         let mut setup = Setup::for_scene(&scene);
         change(&mut setup.lights[0]);
