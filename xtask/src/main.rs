@@ -118,7 +118,7 @@ fn main() -> ExitCode {
         "shaders" => link_shaders(),
         "mutants" => find_mutants(rest, []),
         "portability" => portability::run(rest),
-        "packages" => packages::check().and_then(|()| packages::check_with_nightly()),
+        "packages" => packages::check().and_then(|()| packages::run()),
         "qualities" => qualities::run(),
         "cases" => cases::run(rest),
         "wasm" => wasm::check(Missing::Skip),

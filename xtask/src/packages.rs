@@ -55,27 +55,30 @@ antumbra-light = { path = "antumbra-light" }
 debug = false
 "#;
 
-/// Packages every published crate, then builds and runs a program outside the repository from the packaged library: with the newest
+/// Packages every published crate, then checks that a program outside the repository compiles with the packaged library: with the newest
 /// versions that this toolchain can take of everything that the library depends on, since a user has no lock file of ours.
 ///
 /// # Errors
-/// Says which package lacks what, or what of the program failed.
+/// Says which package lacks what, or what of the program does not compile.
 pub fn check() -> Result<(), String> {
-    run_program(&unpacked_program()?.0)
+    check_program(cargo(), "ours", &unpacked_program()?.0)
 }
 
-/// Checks that the same program compiles with nightly, where that is installed: with versions that need a newer compiler than ours.
+/// Builds and runs the same program, then checks that it compiles with nightly, where that is installed: with versions that need a newer
+/// compiler than ours.
 ///
 /// # Errors
-/// As [`check`].
-pub fn check_with_nightly() -> Result<(), String> {
+/// As [`check`], or what of the program fails when it runs.
+pub fn run() -> Result<(), String> {
+    let folder = unpacked_program()?;
+    run_program(&folder.0)?;
     let nightly = || {
         let mut command = Command::new("rustup");
         command.args(["run", "nightly", "cargo"]);
         command
     };
     if find("rustup").is_some() && succeeds(nightly().arg("--version")) {
-        check_program(nightly(), &unpacked_program()?.0)
+        check_program(nightly(), "nightly", &folder.0)
     } else {
         eprintln!(
             "xtask: SKIPPED a program outside with nightly: it is not installed (`rustup toolchain add nightly`)"
@@ -121,11 +124,11 @@ fn of_program(mut cargo: Command, toolchain: &str, folder: &Path) -> Command {
     cargo
 }
 
-/// Whether the program compiles with nightly; links and runs nothing.
-fn check_program(nightly: Command, folder: &Path) -> Result<(), String> {
+/// Whether the program compiles with a toolchain; links and runs nothing.
+fn check_program(cargo: Command, toolchain: &str, folder: &Path) -> Result<(), String> {
     let began = Instant::now();
-    shell::run(of_program(nightly, "nightly", folder).args(["check", "--quiet"]))?;
-    eprintln!("xtask: a program outside compiles with nightly; {} s", began.elapsed().as_secs());
+    shell::run(of_program(cargo, toolchain, folder).args(["check", "--quiet"]))?;
+    eprintln!("xtask: a program outside compiles with {toolchain}; {} s", began.elapsed().as_secs());
     Ok(())
 }
 

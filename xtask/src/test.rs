@@ -16,7 +16,7 @@ enum Tier {
     Quick,
     /// All but what is marked `#[ignore]`; what continuous integration requires.
     Required,
-    /// What is marked `#[ignore]`, too, then packages with nightly, the plugin for Bevy and a sample of mutants.
+    /// What is marked `#[ignore]`, too, then a program outside that runs, the plugin for Bevy and a sample of mutants.
     Long,
 }
 
@@ -60,13 +60,14 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
         if missing == Missing::Fail {
             // Before all that takes long: without an adapter, most tests would fail one by one. Of the whole workspace, so
             // that the tests find its dependencies built.
-            run_locked(&["build", "--workspace", "--exclude", "xtask"], &[])?;
+            timed("built", || run_locked(&["build", "--workspace", "--exclude", "xtask"], &[]))?;
             shell::run(std::process::Command::new(shell::built_binary()?).arg("doctor").envs(driver.variables()))
                 .map_err(|problem| format!("no graphics adapter works here, and most tests need one: {problem}"))?;
         }
         let lint = || {
             if component("clippy", "clippy", missing)? {
-                run_locked(&["clippy", "--workspace", "--all-targets"], &["--", "-D", "warnings"])?;
+                let denied = ["--", "-D", "warnings"];
+                timed("linted", || run_locked(&["clippy", "--workspace", "--all-targets"], &denied))?;
             }
             Ok(())
         };
@@ -97,7 +98,7 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             skips.report();
             outcome?;
             if tier == Tier::Long && filter.is_empty() {
-                packages::check_with_nightly()?;
+                packages::run()?;
                 bevy::run(&[])?;
                 find_mutants(&MUTANTS.map(str::to_owned), driver.variables())?;
             }
@@ -129,6 +130,14 @@ fn run_tests(tier: Tier, filter: &[String], driver: &Driver, variable: (&str, &O
         Tier::Long => &["--run-ignored", "all"],
     };
     run(&["nextest", "run", "--workspace", "--no-tests", "pass"], &[of_tier, &words].concat())
+}
+
+/// Says how long a step took, of those that do not say so themselves.
+fn timed(what: &str, step: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
+    let began = Instant::now();
+    step()?;
+    eprintln!("xtask: {what} in {} s", began.elapsed().as_secs());
+    Ok(())
 }
 
 /// Runs cargo with the versions of the lock file.

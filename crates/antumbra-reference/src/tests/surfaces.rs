@@ -39,16 +39,16 @@ fn masks_cut_where_bilinear_alpha_crosses_the_cutoff() {
         let image = image_of(8, wrap, checker);
         let tracer = Tracer::new(&sheet(masked(), Some(image.clone()), low, high)).unwrap();
         let mut random = Random(3);
+        let alpha_at =
+            |p: Vec3| image.sample_alpha(Vec2::splat(low) + (Vec2::new(p.x, p.z) + 1.0) * 0.5 * (high - low));
+        let points: Vec<Vec3> = std::iter::repeat_with(|| random.in_cube(0.99) * Vec3::new(1.0, 0.0, 1.0))
+            .take(400)
+            .filter(|p| (alpha_at(*p) - 0.5).abs() >= 1e-3)
+            .collect();
         let mut solid = 0;
-        for _ in 0..400 {
-            let p = random.in_cube(0.99) * Vec3::new(1.0, 0.0, 1.0);
-            let uv = Vec2::splat(low) + (Vec2::new(p.x, p.z) + 1.0) * 0.5 * (high - low);
-            let alpha = image.sample_alpha(uv);
-            if (alpha - 0.5).abs() < 1e-3 {
-                continue;
-            }
-            let v = visibility_on_floor(&tracer, &high_sun(0.0), &[p])[0];
-            assert_eq!(v, if alpha >= 0.5 { 0.0 } else { 1.0 }, "{p} {uv} {alpha}");
+        for (p, v) in points.iter().zip(visibility_on_floor(&tracer, &high_sun(0.0), &points)) {
+            let alpha = alpha_at(*p);
+            assert_eq!(v, if alpha >= 0.5 { 0.0 } else { 1.0 }, "{p} {alpha}");
             solid += u32::from(alpha >= 0.5);
         }
         assert!((100..300).contains(&solid), "{solid}");

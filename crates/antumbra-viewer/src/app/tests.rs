@@ -84,6 +84,7 @@ fn looking_changes_nothing() {
     window.app.state.sides[0].set_kind(TechniqueKind::Pcss);
     window.app.state.sides[0].set("bias_scale", "1.2345678");
     window.size = egui::vec2(900.0, 1600.0);
+    window.pixels_per_point = 0.5;
     let (setup, side) = (window.app.state.setup.clone(), window.app.state.sides[0].clone());
     assert!(side.settings().contains(&("bias_scale", "1.2345678".to_owned())));
     window.settle();
@@ -112,8 +113,9 @@ fn a_dense_display_gets_all_its_pixels() {
 #[test]
 fn the_keyboard_reaches_every_control() {
     let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
-    // All of the panel.
+    // All of the panel, and few pixels of the picture.
     window.size = egui::vec2(900.0, 1600.0);
+    window.pixels_per_point = 0.5;
     window.settle();
     let mut reached = Vec::new();
     let mut moved = Vec::new();
