@@ -162,7 +162,7 @@ fn masks_stay_in_range_and_larger_occluders_never_brighten() {
     large.meshes[1] = Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.3, 4.0), 1.5);
     let pixels = small.ground_pixels(test_ground);
     for kind in TechniqueKind::ALL {
-        let settings = of_those(*kind, &[("rotate", "false"), QUICK]);
+        let settings = of_those(*kind, &[("rotate", "false"), ("map_size", "512"), QUICK]);
         let (a, b) = (small.run(gpu, *kind, &settings), large.run(gpu, *kind, &settings));
         assert!(a.iter().chain(&b).all(|v| (0.0..=1.0).contains(v)), "{kind}");
         // All dark and all lit are in range, too, and off by more than .5. What has one width of blur, or none, has another
@@ -353,7 +353,8 @@ fn an_empty_scene_is_lit() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     for kind in TechniqueKind::ALL {
-        let mask = case.run_with(gpu, *kind, &[], Casters::Meshes(&[])).expect("nothing to cast");
+        let settings = of_those(*kind, &[("map_size", "64"), ("view_size", "64")]);
+        let mask = case.run_with(gpu, *kind, &settings, Casters::Meshes(&[])).expect("nothing to cast");
         for (i, p) in case.ground_pixels(test_ground) {
             assert_eq!(mask[i], 1.0, "{kind} at {p}");
         }
@@ -375,7 +376,7 @@ fn depth_between_moved_corners_casts_no_shadow() {
     between_moved_ones.depth = view_of(&float_texture(gpu, SIZE, &depth));
     let pixels = between_corners.ground_pixels(test_ground);
     for kind in TechniqueKind::ALL {
-        let settings = of_those(*kind, &[("samples", "64"), QUICK]);
+        let settings = of_those(*kind, &[("samples", "64"), ("map_size", "256"), QUICK]);
         let [plain, moved] = [&between_corners, &between_moved_ones].map(|case| case.run(gpu, *kind, &settings));
         let off = pixels.iter().map(|(i, _)| (plain[*i] - moved[*i]).abs()).sum::<f32>() / pixels.len() as f32;
         println!("{kind}: {off:.5} apart");

@@ -184,8 +184,9 @@ pub(crate) fn create(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) 
     shadow
 }
 
-/// Few samples; and what takes in neighbours, or a pixel's footprint, turned off.
-const ALONE: [(&str, &str); 4] = [("smooth", "false"), ("mips", "false"), ("samples", "16"), ("central_scale", "1")];
+/// Few samples and texels; and what takes in neighbours, or a pixel's footprint, turned off.
+const ALONE: [(&str, &str); 5] =
+    [("smooth", "false"), ("mips", "false"), ("samples", "16"), ("central_scale", "1"), ("map_size", "256")];
 
 /// Techniques that filter by the pixel's footprint, a parallelogram cut at silhouettes; points have squares.
 const BY_FOOTPRINT: [TechniqueKind; 2] = [TechniqueKind::PcssAnisotropic, TechniqueKind::Essm];
@@ -289,7 +290,7 @@ fn points_anywhere_err_no_more_than_surfaces() {
             PointReceivers { normals, ..PointReceivers::new(COUNT, PointBuffer::packed(&positions), bounds) };
         let casters = Casters::Meshes(&casters);
         let frame = PointFrame { light, casters, receivers, visibilities, channels: MaskChannels::One };
-        let settings = [("samples", "64"), ("search_samples", "64"), ("central_scale", "1")];
+        let settings = [("samples", "64"), ("search_samples", "64"), ("central_scale", "1"), ("map_size", "512")];
         let got = run_points(gpu, &mut create(gpu, kind, &settings), &frame);
         assert!(got.iter().all(|v| (0.0..=1.0).contains(v)), "{kind}");
         rms(&got, &places.iter().copied().map(visibility_in_space).collect::<Vec<_>>())
