@@ -1,9 +1,11 @@
 //! `antumbra compare`.
 
-use std::path::{Path, PathBuf};
+mod baseline;
+
+use std::path::Path;
 use std::time::Duration;
 
-use antumbra_lab::baseline::{Baseline, Source, of_report};
+use antumbra_lab::baseline::of_report;
 use antumbra_lab::compare::{CompareRequest, compare as compare_scene};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
@@ -12,12 +14,10 @@ use antumbra_lab::motion::{Motion, MotionOptions};
 use antumbra_lab::output_files::{FileError, OutputDir};
 use antumbra_lab::progress::Progress;
 use antumbra_lab::report::{
-    IndexEntry, METRICS_PATH, MotionInfo, Outcome, Report, ReportWriter, report_paths, report_to_resume, row_names,
-    write_index,
+    IndexEntry, MotionInfo, Outcome, Report, ReportWriter, report_paths, report_to_resume, row_names, write_index,
 };
 use antumbra_lab::technique_run::{FrameCount, TechniqueChoice, Timing};
 use antumbra_scene::{Setup, builtin};
-use serde_json::json;
 
 use crate::args::{CompareArgs, MotionArgs};
 use crate::commands::{
@@ -30,6 +30,7 @@ use crate::progress::Bars;
 use crate::stdout::say;
 use crate::table;
 use crate::values::{Motions, techniques_of};
+use baseline::{BaselineFile, baselines, check_view};
 
 /// However many frames are asked for, no technique is timed for longer than this: on a software adapter a frame of
 /// many views takes seconds.
@@ -107,31 +108,6 @@ fn expected_files(choices: &[TechniqueChoice], motion: Option<&MotionOptions>, f
     };
     let index = ["index.html", "summary.md"].map(str::to_owned);
     folders.iter().flat_map(below).chain(index).collect()
-}
-
-/// The baseline of each scene: the file that is given, or, of several scenes, those in the folder.
-fn baselines(args: &CompareArgs, folders: &[String]) -> Result<Vec<Option<BaselineFile>>, Failure> {
-    let Some(given) = &args.run.baseline else { return Ok(vec![None; folders.len()]) };
-    if folders.len() > 1 && given.is_file() {
-        let why = format!(
-            "--baseline {}: it is of one scene, and here are several; give the folder that `compare` wrote of the same scenes",
-            given.display()
-        );
-        return Err(Failure::Input(why));
-    }
-    let read = |folder: &String| {
-        let path = if given.is_dir() { given.join(folder).join(METRICS_PATH) } else { given.clone() };
-        let baseline = Baseline::read(&path, Source::Compare)?;
-        Ok(Some(BaselineFile { path, baseline }))
-    };
-    folders.iter().map(read).collect()
-}
-
-/// A baseline and where it is from.
-#[derive(Clone)]
-struct BaselineFile {
-    path: PathBuf,
-    baseline: Baseline,
 }
 
 /// Why there is no report of a scene.
@@ -233,14 +209,6 @@ impl Site<'_> {
         }
         Ok(report)
     }
-}
-
-/// Refuses a baseline of something else.
-fn check_view(path: &Path, baseline: &Baseline, request: &CompareRequest<'_>) -> Result<(), LabError> {
-    let name = request.scene_name();
-    let setup = request.setup.counted_from(-request.anchor).to_toml();
-    let view = [("name", json!(name)), ("size", json!(request.size_px.to_array())), ("setup", json!(setup))];
-    baseline.check_view(path, &view)
 }
 
 /// What says what is seen, and how it is shaded and shadowed.
