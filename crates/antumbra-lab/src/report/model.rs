@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::adapter_info::AdapterInfo;
+use crate::baseline::Against;
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
 use crate::picture::Visibility;
@@ -32,6 +33,12 @@ pub struct Report {
     pub rows: Vec<Row>,
     /// How things moved, where they did.
     pub motion: Option<MotionInfo>,
+    /// What it depends on beside program and adapter: a report is resumed only with the same.
+    pub settings: Value,
+    /// Names of what there was no time for, as `pcss` or `pcss, camera in motion`.
+    pub missing: Vec<String>,
+    /// The same rows of another run, where one was given.
+    pub baseline: Option<Against>,
     /// What the reader should know of the whole comparison, one line each: repairs of the loader, limits of this run.
     pub warnings: Vec<String>,
 }
@@ -110,6 +117,12 @@ pub struct Row {
     pub warnings: Vec<String>,
     /// Remarks, one line each.
     pub notes: Vec<String>,
+    /// It was not measured yet.
+    pub is_missing: bool,
+    /// The limit of a technique, seconds, where it cut this short.
+    pub cut_short_s: Option<f64>,
+    /// Time that it took in all, seconds.
+    pub seconds: f64,
 }
 
 /// What became of a row.

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
+use super::baseline::baseline_section;
 use super::glossary::{METRICS, MetricInfo};
 use super::html::{bytes, css_color, escape, fill, grouped, json_for_script, list, rounded_count, three_figures};
 use super::model::{Measurement, Outcome, ReferenceInfo, Report, Row};
@@ -66,6 +67,7 @@ pub(super) fn page_html(report: &Report) -> String {
             ("findings", &findings(&rows)),
             ("bars", &bars(&rows)),
             ("motion_link", if report.motion.is_some() { "<a href=\"#motion\">Motion</a>" } else { "" }),
+            ("baseline", &report.baseline.as_ref().map_or_else(String::new, baseline_section)),
             ("motion", &motion_section(report)),
             ("gallery", &gallery(report, &rows)),
             ("command", &copyable(&report.command)),
@@ -153,7 +155,15 @@ fn tracing_text(info: ReferenceInfo) -> String {
 
 fn notices(report: &Report) -> String {
     let software = if report.adapter.is_software { software_notice(&report.adapter.name) } else { String::new() };
-    software + &list("warnings", &report.warnings)
+    let missing = if report.missing.is_empty() {
+        String::new()
+    } else {
+        let names = escape(&report.missing.join(", "));
+        format!(
+            "<p class=\"notice\"><b>No time was left for {names}.</b> The same command with --resume continues.</p>"
+        )
+    };
+    software + &missing + &list("warnings", &report.warnings)
 }
 
 fn legend() -> String {

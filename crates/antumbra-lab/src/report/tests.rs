@@ -43,6 +43,9 @@ fn row(technique: &str, outcome: Outcome) -> Row {
         outcome,
         warnings: Vec::new(),
         notes: Vec::new(),
+        is_missing: false,
+        cut_short_s: None,
+        seconds: 0.25,
     }
 }
 
@@ -117,6 +120,9 @@ fn synthetic_report() -> Report {
                 strip: shade(&disc_shadow(8.0)),
             }],
         }),
+        settings: json!({ "samples": 1024 }),
+        missing: Vec::new(),
+        baseline: None,
         warnings: vec!["one <b>warning</b>".into()],
     }
 }

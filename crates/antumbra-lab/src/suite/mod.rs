@@ -41,7 +41,8 @@ const VERSION: u32 = 1;
 /// Light points of every truth.
 const TRUTH_SAMPLES: u32 = 1024;
 /// Times are medians of five frames after three at least, or of what a minute holds.
-const TIMING: Timing = Timing { warm_up: 3, frames: 5, at_least: Duration::ZERO, at_most: Duration::from_secs(60) };
+const TIMING: Timing =
+    Timing { warm_up: 3, frames: 5, at_least: Duration::ZERO, at_most: Duration::from_secs(60), end: None };
 /// Frames and metres a frame of the motions.
 const MOTION_FRAMES: u32 = 16;
 const MOTION_STEP_M: f32 = 0.15;
@@ -207,7 +208,7 @@ pub fn run_slice(
             continue;
         }
         progress.begin(&paper.id(), 0);
-        let here = rows.run(paper.row, Form::Published, false)?.outcome;
+        let here = rows.run(paper.row, Form::Published, false, None)?.outcome;
         results.insert(paper.id(), paper.kept(&here.text(&paper.row.measure)));
         results.write(path)?;
         progress.end();
