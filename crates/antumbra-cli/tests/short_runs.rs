@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{antumbra, has_adapter, names_in, run};
+use common::{adapter, antumbra, names_in, run};
 use serde_json::Value;
 
 /// Few pixels of a scene of few triangles, by two cheap techniques.
@@ -87,7 +87,7 @@ fn rows_so_far(path: &Path) -> usize {
 #[test]
 fn a_bench_that_is_stopped_is_resumed() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let path = dir.path().join("t.json");
@@ -114,7 +114,7 @@ fn a_bench_that_is_stopped_is_resumed() {
 #[test]
 fn a_comparison_that_is_stopped_is_resumed() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let line = "compare builtin:overlap --techniques hard,pcf,pcss,vsm,moment --size 32x18 --samples 4 --frames 1 \
@@ -158,7 +158,7 @@ fn a_comparison_that_is_stopped_is_resumed() {
 #[test]
 fn a_reproduction_that_is_stopped_is_resumed() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     let path = dir.path().join("papers/reproduced.json");
@@ -181,7 +181,7 @@ fn a_reproduction_that_is_stopped_is_resumed() {
 #[test]
 fn a_deadline_ends_in_time_and_says_what_is_missing() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     // Three qualities of all techniques take minutes.
@@ -222,7 +222,7 @@ fn a_deadline_ends_in_time_and_says_what_is_missing() {
 #[test]
 fn a_deadline_that_is_long_enough_changes_nothing() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     for line in [BENCH, COMPARE, REPRODUCE] {
@@ -236,7 +236,7 @@ fn a_deadline_that_is_long_enough_changes_nothing() {
 #[test]
 fn a_technique_that_takes_too_long_is_cut_short_and_said() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     for line in [BENCH, COMPARE, REPRODUCE] {
@@ -259,7 +259,7 @@ fn a_technique_that_takes_too_long_is_cut_short_and_said() {
 #[test]
 fn another_run_is_not_resumed() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     works(dir.path(), BENCH);
@@ -301,7 +301,7 @@ fn another_run_is_not_resumed() {
 #[test]
 fn a_baseline_gives_ratios_and_differences() {
     let dir = tempfile::tempdir().unwrap();
-    if !has_adapter(dir.path()) {
+    if adapter().is_none() {
         return;
     }
     works(dir.path(), BENCH);
@@ -356,7 +356,7 @@ fn a_baseline_gives_ratios_and_differences() {
 #[test]
 fn a_shared_file_is_of_the_card_and_of_nobody() {
     let home = tempfile::tempdir().unwrap();
-    if !has_adapter(home.path()) {
+    if adapter().is_none() {
         return;
     }
     let dir = home.path().join("zaphod's own");
