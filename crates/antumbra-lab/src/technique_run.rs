@@ -166,7 +166,7 @@ impl Timings {
 pub struct Drawn {
     /// The mask.
     pub visibility: Visibility,
-    /// GPU memory that the technique holds, bytes.
+    /// GPU memory that the technique takes for the light, bytes.
     pub memory_bytes: u64,
     /// Texels along a side of each map whose size is `auto`; none where sizes are given.
     pub auto_map_sizes: Vec<u32>,
@@ -179,7 +179,7 @@ pub struct TechniqueRun {
     pub visibility: Visibility,
     /// Its times.
     pub timings: Timings,
-    /// GPU memory that the technique holds, bytes.
+    /// GPU memory that the technique takes for the light, bytes.
     pub memory_bytes: u64,
     /// Texels along a side of each map whose size is `auto`; none where sizes are given.
     pub auto_map_sizes: Vec<u32>,
@@ -234,7 +234,7 @@ pub fn draw(
     draw_frames(lab, technique, &frame, None, &mut Counted { frames: frames.max(1), drawn: 0 })?;
     Ok(Drawn {
         visibility: read_mask(lab, &mask)?,
-        memory_bytes: technique.memory_bytes(),
+        memory_bytes: memory_of(lab, technique),
         auto_map_sizes: technique.auto_map_sizes(),
     })
 }
@@ -271,9 +271,14 @@ pub fn run(
     Ok(TechniqueRun {
         visibility,
         timings,
-        memory_bytes: technique.memory_bytes(),
+        memory_bytes: memory_of(lab, technique),
         auto_map_sizes: technique.auto_map_sizes(),
     })
+}
+
+/// GPU memory that one light takes, bytes: what it retains, and what it would share with others.
+fn memory_of(lab: &LabDevice, technique: &AnyShadow) -> u64 {
+    technique.memory_bytes() + lab.gpu().memory_bytes().shared
 }
 
 /// Observer of frames as they are drawn, which decides when there are enough.

@@ -87,6 +87,24 @@ pub(crate) enum Scratch {
     Links,
     /// Nearest depths of squares of lists.
     NearestSquares,
+    /// Planes of tiles of a depth basis.
+    TilePlanes,
+    /// Depth basis that tables sum, or that mips are made of.
+    DepthBasis,
+    /// Summed-area table of a part of a depth basis.
+    SummedTable(u8),
+    /// Texture that recursive doubling alternates with its table.
+    DoubledTable,
+    /// Sums along one of three borders of a table's blocks.
+    TableBorders(u8),
+    /// Largest sums of a table's tiles.
+    LargestSums,
+    /// Workgroups of late steps of doubling.
+    LateDoubling,
+    /// Pixels that interpolation leaves missing.
+    MissingPixels,
+    /// Workgroups for missing pixels.
+    MissingDispatch,
     /// Depth attachment without content.
     NoDepth,
 }
@@ -99,6 +117,18 @@ struct ScratchTextureKey {
     sample_count: u32,
     format: wgpu::TextureFormat,
     usage: wgpu::TextureUsages,
+}
+
+impl ScratchTextureKey {
+    fn new(scratch: Scratch, descriptor: &wgpu::TextureDescriptor<'_>) -> Self {
+        Self {
+            scratch,
+            size: descriptor.size,
+            sample_count: descriptor.sample_count,
+            format: descriptor.format,
+            usage: descriptor.usage,
+        }
+    }
 }
 
 /// What the content of a table that lights share follows from.
@@ -114,6 +144,8 @@ type LayoutKey = [Vec<wgpu::BindGroupLayoutEntry>; 2];
 
 #[derive(Debug, Default)]
 struct Programs {
+    /// The device that this one plans for.
+    plan_of: Option<Device>,
     pipeline_cache: Option<wgpu::PipelineCache>,
     uniforms: UniformAccess,
     /// As [`quirks`] says.
@@ -127,6 +159,8 @@ struct Programs {
     /// By their description in words: it has floats.
     samplers: DescriptorCache<String, wgpu::Sampler>,
     scratch_textures: SharedPool<ScratchTextureKey, wgpu::Texture>,
+    /// With the view that passes draw to.
+    scratch_attachments: SharedPool<ScratchTextureKey, (wgpu::Texture, wgpu::TextureView)>,
     scratch_buffers: SharedPool<(Scratch, u64, wgpu::BufferUsages), wgpu::Buffer>,
     tables: SharedPool<TableKey, wgpu::Buffer>,
     /// Memory budget of maps that one light owns.
@@ -288,13 +322,32 @@ impl Device {
         Self { device: device.clone(), programs: Arc::new(programs) }
     }
 
+    /// A device that plans for `of`: what its lights own comes beside what lights own there.
+    pub(super) fn planned(of: &Self, device: &wgpu::Device) -> Self {
+        let programs = Programs {
+            plan_of: Some(of.clone()),
+            uniforms: of.programs.uniforms,
+            most_turns: of.programs.most_turns,
+            budget: Arc::new(of.budget().left()),
+            ..Programs::default()
+        };
+        Self { device: device.clone(), programs: Arc::new(programs) }
+    }
+
+    /// Whether nothing is created and no commands are run.
+    pub(crate) fn is_planned(&self) -> bool {
+        self.programs.plan_of.is_some()
+    }
+
     /// Turns of loops in an invocation after which a pass of unbounded work leaves the rest to the next.
     pub(crate) fn most_turns(&self) -> u32 {
         self.programs.most_turns
     }
 
-    pub(super) fn is_clone_of(&self, other: &Self) -> bool {
+    /// Whether lights of this device may read resources of another: a clone, or one that this one plans for.
+    pub(super) fn reads_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.programs, &other.programs)
+            || self.programs.plan_of.as_ref().is_some_and(|of| of.reads_of(other))
     }
 
     /// The device itself.
@@ -317,8 +370,9 @@ impl Device {
 
     /// Bytes of all resources that lights share.
     pub(super) fn scratch_bytes(&self) -> u64 {
-        let Programs { scratch_textures, scratch_buffers, .. } = &*self.programs;
-        scratch_textures.bytes(texture_bytes) + scratch_buffers.bytes(wgpu::Buffer::size)
+        let Programs { scratch_textures, scratch_attachments, scratch_buffers, tables, .. } = &*self.programs;
+        let textures = scratch_textures.bytes(texture_bytes) + scratch_attachments.bytes(|(it, _)| texture_bytes(it));
+        textures + scratch_buffers.bytes(wgpu::Buffer::size) + tables.bytes(wgpu::Buffer::size)
     }
 
     /// What has been made so far.
@@ -454,14 +508,22 @@ impl Device {
         scratch: Scratch,
         descriptor: &wgpu::TextureDescriptor<'_>,
     ) -> Arc<wgpu::Texture> {
-        let key = ScratchTextureKey {
-            scratch,
-            size: descriptor.size,
-            sample_count: descriptor.sample_count,
-            format: descriptor.format,
-            usage: descriptor.usage,
-        };
+        let key = ScratchTextureKey::new(scratch, descriptor);
         self.programs.scratch_textures.get_or_make(key, || self.create_texture(descriptor))
+    }
+
+    /// The same of an attachment, with its view: a light that takes one that there is creates nothing.
+    pub(super) fn scratch_attachment(
+        &self,
+        scratch: Scratch,
+        descriptor: &wgpu::TextureDescriptor<'_>,
+    ) -> Arc<(wgpu::Texture, wgpu::TextureView)> {
+        let key = ScratchTextureKey::new(scratch, descriptor);
+        self.programs.scratch_attachments.get_or_make(key, || {
+            let texture = self.create_texture(descriptor);
+            let view = self.create_view(&texture, &wgpu::TextureViewDescriptor::default());
+            (texture, view)
+        })
     }
 
     /// The same of a buffer.
@@ -497,11 +559,25 @@ impl Device {
 
 /// Bytes of a texture's texels, all samples, levels and layers.
 pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
-    let texel = texture.format().block_copy_size(None).unwrap_or(4);
+    descriptor_bytes(&wgpu::TextureDescriptor {
+        label: None,
+        size: texture.size(),
+        mip_level_count: texture.mip_level_count(),
+        sample_count: texture.sample_count(),
+        dimension: texture.dimension(),
+        format: texture.format(),
+        usage: texture.usage(),
+        view_formats: &[],
+    })
+}
+
+/// The same of a texture that is described.
+pub(super) fn descriptor_bytes(texture: &wgpu::TextureDescriptor<'_>) -> u64 {
+    let texel = texture.format.block_copy_size(None).unwrap_or(4);
     let level = |level: u32| {
-        let size = texture.size().mip_level_size(level, texture.dimension());
+        let size = texture.size.mip_level_size(level, texture.dimension);
         u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
     };
-    let sample = u64::from(texel) * u64::from(texture.sample_count());
-    sample * (0..texture.mip_level_count()).map(level).sum::<u64>()
+    let sample = u64::from(texel) * u64::from(texture.sample_count);
+    sample * (0..texture.mip_level_count).map(level).sum::<u64>()
 }

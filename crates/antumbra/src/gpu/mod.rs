@@ -17,6 +17,7 @@ mod lease;
 pub(crate) mod mutants;
 mod no_depth;
 pub(crate) mod overrides;
+mod plan;
 #[doc(hidden)]
 pub mod programs;
 mod quirks;
@@ -47,6 +48,7 @@ pub(crate) use embedded::{Embeddable, EmbeddedGroup};
 pub(crate) use feedback::Feedback;
 pub(crate) use lease::Lease;
 pub(crate) use no_depth::NoDepth;
+pub use plan::{MemoryPlan, PlannedResource};
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
 pub(crate) use shared_constants::shared_constants;
 pub(crate) use shared_values::SharedValues;
