@@ -87,6 +87,20 @@ pub(crate) enum Scratch {
     Links,
     /// Nearest depths of squares of lists.
     NearestSquares,
+    /// Layers of depths of several views.
+    DepthLayers,
+    /// Gradients of such layers.
+    LayerGradients,
+    /// Depths of maps of triangles.
+    TriangleDepths,
+    /// Triangles of such maps.
+    TriangleIds,
+    /// Maps of a light's points, as words.
+    ReprojectedMaps,
+    /// The same as textures.
+    FilterableMaps,
+    /// Names of surfels.
+    SurfelNames,
     /// Planes of tiles of a depth basis.
     TilePlanes,
     /// Depth basis that tables sum, or that mips are made of.

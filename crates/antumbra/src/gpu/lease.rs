@@ -56,3 +56,37 @@ impl Lease {
         }
     }
 }
+
+/// A buffer of a light's own within the budget, and shared beyond it.
+#[derive(Debug, Default)]
+pub(crate) struct LeasedBuffer(Option<(Lease, Arc<wgpu::Buffer>)>);
+
+impl LeasedBuffer {
+    /// The buffer of exactly so many bytes: the one at hand, or a new one.
+    pub(crate) fn sized(
+        &mut self,
+        device: &Device,
+        scratch: Scratch,
+        descriptor: &wgpu::BufferDescriptor<'_>,
+    ) -> &wgpu::Buffer {
+        // What is there goes back to the budget before another is taken.
+        let made = self.0.take().filter(|(_, buffer)| buffer.size() == descriptor.size);
+        let (_, buffer) = self.0.insert(made.unwrap_or_else(|| {
+            let lease = Lease::new(device, descriptor.size);
+            let buffer = lease.buffer(device, scratch, descriptor);
+            (lease, buffer)
+        }));
+        buffer
+    }
+
+    /// The buffer; `None` before it was asked for.
+    #[cfg(test)]
+    pub(crate) fn buffer(&self) -> Option<&wgpu::Buffer> {
+        self.0.as_ref().map(|(_, buffer)| &**buffer)
+    }
+
+    /// Bytes of it where the light owns it.
+    pub(crate) fn own_bytes(&self) -> u64 {
+        self.0.as_ref().map_or(0, |(lease, _)| lease.own_bytes())
+    }
+}

@@ -46,7 +46,7 @@ pub(crate) use draw_pipeline::{DrawPipeline, depth_state, with_early_depth_test}
 pub use embedded::ShaderFunction;
 pub(crate) use embedded::{Embeddable, EmbeddedGroup};
 pub(crate) use feedback::Feedback;
-pub(crate) use lease::Lease;
+pub(crate) use lease::{Lease, LeasedBuffer};
 pub(crate) use no_depth::NoDepth;
 pub use plan::{MemoryPlan, PlannedResource};
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
