@@ -145,7 +145,7 @@ fn what_is_planned_takes_no_memory() {
     let plan = MemoryPlan::new(&device.gpu);
     assert!(plan.resources().is_empty());
     let size_px = UVec2::new(3840, 2160);
-    let depth = plan.gpu().device().create_texture(&wgpu::TextureDescriptor {
+    let depth_texture = plan.gpu().device().create_texture(&wgpu::TextureDescriptor {
         label: Some("planned depth"),
         size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
         mip_level_count: 1,
@@ -155,7 +155,8 @@ fn what_is_planned_takes_no_memory() {
         usage: wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });
-    let depth = depth.create_view(&wgpu::TextureViewDescriptor::default());
+    let depth = depth_texture.create_view(&wgpu::TextureViewDescriptor::default());
+    drop(depth_texture);
     let mask = Mask::new(plan.gpu().device(), size_px);
     let light = base_light();
     let receivers = antumbra::Receivers { size_px, depth: &depth, normals: None, ..picture.receivers() };
