@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use super::budget::Budget;
+use super::scratch::{Scratch, ScratchTextureKey};
 use super::shared_values::SharedValues;
 use super::uniforms::{self, UniformAccess};
 use super::{programs, quirks};
@@ -41,107 +42,6 @@ impl ObjectCounts {
     /// All of them.
     pub fn total(&self) -> u64 {
         self.programs + self.buffers + self.textures + self.views + self.bind_groups
-    }
-}
-
-/// Use of a [scratch texture](Device::scratch_texture).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scratch {
-    /// 32-bit mask that a host's mask of another format is drawn from.
-    WideMask,
-    /// Mask before it is denoised.
-    NoisyMask,
-    /// Visibility before it is made smooth over pixels.
-    NoisyVisibility,
-    /// Mask of one part of a light.
-    PartMask,
-    /// Depth of the receivers of one part.
-    PartDepth,
-    /// Normals of the receivers of one part.
-    PartNormals,
-    /// Positions of points.
-    PointPositions,
-    /// Normals of points.
-    PointNormals,
-    /// Mask of points.
-    PointMask,
-    /// Light map of depths.
-    LightMap,
-    /// Layers of casters behind a light map.
-    LayersBehind,
-    /// Pyramid of a light map.
-    DepthPyramid,
-    /// Rows of a map whose columns are blurred next.
-    BlurredRows,
-    /// Cursors of lists per texel.
-    ListCursors,
-    /// Fragments of lists per texel.
-    ListFragments,
-    /// Lists per texel.
-    Lists,
-    /// Counters of lists per texel.
-    ListCounters,
-    /// Linked fragments of lists per texel.
-    LinkedFragments,
-    /// Links of linked fragments.
-    Links,
-    /// Nearest depths of squares of lists.
-    NearestSquares,
-    /// Layers of depths of several views.
-    DepthLayers,
-    /// Gradients of such layers.
-    LayerGradients,
-    /// Depths of maps of triangles.
-    TriangleDepths,
-    /// Triangles of such maps.
-    TriangleIds,
-    /// Maps of a light's points, as words.
-    ReprojectedMaps,
-    /// The same as textures.
-    FilterableMaps,
-    /// Names of surfels.
-    SurfelNames,
-    /// Planes of tiles of a depth basis.
-    TilePlanes,
-    /// Depth basis that tables sum, or that mips are made of.
-    DepthBasis,
-    /// Summed-area table of a part of a depth basis.
-    SummedTable(u8),
-    /// Texture that recursive doubling alternates with its table.
-    DoubledTable,
-    /// Sums along one of three borders of a table's blocks.
-    TableBorders(u8),
-    /// Largest sums of a table's tiles.
-    LargestSums,
-    /// Workgroups of late steps of doubling.
-    LateDoubling,
-    /// Pixels that interpolation leaves missing.
-    MissingPixels,
-    /// Workgroups for missing pixels.
-    MissingDispatch,
-    /// Depth attachment without content.
-    NoDepth,
-}
-
-/// What lights that share a scratch texture have in common.
-#[derive(Debug, PartialEq)]
-struct ScratchTextureKey {
-    scratch: Scratch,
-    size: wgpu::Extent3d,
-    sample_count: u32,
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-}
-
-impl ScratchTextureKey {
-    fn new(scratch: Scratch, descriptor: &wgpu::TextureDescriptor<'_>) -> Self {
-        Self {
-            scratch,
-            size: descriptor.size,
-            sample_count: descriptor.sample_count,
-            format: descriptor.format,
-            usage: descriptor.usage,
-        }
     }
 }
 

@@ -6,7 +6,8 @@
 use std::sync::Arc;
 
 use super::budget::OwnedBytes;
-use super::device::{Device, Scratch};
+use super::device::Device;
+use super::scratch::Scratch;
 
 /// One light's right to textures and buffers: its own, or those that all lights share.
 #[derive(Debug)]
