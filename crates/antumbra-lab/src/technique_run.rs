@@ -167,7 +167,7 @@ impl Timings {
 pub struct Drawn {
     /// The mask.
     pub visibility: Visibility,
-    /// GPU memory that the technique holds, bytes.
+    /// GPU memory that the technique takes for the light, bytes.
     pub memory_bytes: u64,
     /// Texels along a side of each map whose size is `auto`; none where sizes are given.
     pub auto_map_sizes: Vec<u32>,
@@ -189,7 +189,7 @@ pub struct TechniqueRun {
     pub visibility: Visibility,
     /// Its times.
     pub timings: Timings,
-    /// GPU memory that the technique holds, bytes.
+    /// GPU memory that the technique takes for the light, bytes.
     pub memory_bytes: u64,
     /// Texels along a side of each map whose size is `auto`; none where sizes are given.
     pub auto_map_sizes: Vec<u32>,
@@ -269,7 +269,7 @@ pub(crate) fn draw_until(
     }
     Ok(Drawn {
         visibility: read_mask(lab, &mask)?,
-        memory_bytes: technique.memory_bytes(),
+        memory_bytes: memory_of(lab, technique),
         auto_map_sizes: technique.auto_map_sizes(),
     })
 }
@@ -313,7 +313,7 @@ pub fn run(
     Ok(TechniqueRun {
         visibility,
         timings,
-        memory_bytes: technique.memory_bytes(),
+        memory_bytes: memory_of(lab, technique),
         auto_map_sizes: technique.auto_map_sizes(),
         start_up: StartUp { compile_ms, first_frame_ms },
         cut_short_s: timing
@@ -328,6 +328,11 @@ pub fn run(
 pub(crate) fn cut_short(technique: &AnyShadow, end: Option<End>, began: Instant, frames: u32) -> LabError {
     let (limit, seconds) = (end.and_then(|end| end.limit), began.elapsed().as_secs_f64());
     LabError::CutShort { technique: technique.kind(), cut: CutShort { limit, seconds, frames } }
+}
+
+/// GPU memory that one light takes, bytes: what it retains, and what it would share with others.
+fn memory_of(lab: &LabDevice, technique: &AnyShadow) -> u64 {
+    technique.memory_bytes() + lab.gpu().memory_bytes().shared
 }
 
 /// Observer of frames as they are drawn, which decides when there are enough.

@@ -461,7 +461,7 @@ impl TexelLists {
             let parts: Vec<bool> = [false, true].into_iter().filter(|covered| of_covered(*covered)).collect();
             for (i, covered) in parts.iter().enumerate() {
                 let no_depth = storage.no_covered_depth.as_ref().filter(|_| *covered).unwrap_or(&storage.no_depth);
-                recorder.render_pass(label, Span::of(i, parts.len()), &[], &no_depth.view, None, |render| {
+                recorder.render_pass(label, Span::of(i, parts.len()), &[], no_depth.view(), None, |render| {
                     let UVec2 { x, y } = storage.options.map_size;
                     render.set_viewport(0.0, 0.0, x as f32, y as f32, 0.0, 1.0);
                     render.set_scissor_rect(0, 0, x, y);
@@ -560,7 +560,7 @@ impl Storage {
             };
             lease.buffer(&gpu.device, scratch, &descriptor)
         };
-        let no_depth = |sample_count| NoDepth::shared(gpu, options.map_size, sample_count);
+        let no_depth = |sample_count| NoDepth::at_least(gpu, options.map_size, sample_count);
         let [cursors, fragments, lists, counters, nodes, links] = bytes;
         Self {
             options: *options,
@@ -591,7 +591,7 @@ impl Storage {
         for no_depth in std::iter::once(&mut self.no_depth).chain(&mut self.no_covered_depth) {
             let needed = no_depth.size().max(self.options.map_size);
             if needed != no_depth.size() {
-                *no_depth = NoDepth::shared(gpu, needed, no_depth.sample_count());
+                *no_depth = NoDepth::at_least(gpu, needed, no_depth.sample_count());
             }
         }
     }

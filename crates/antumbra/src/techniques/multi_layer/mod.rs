@@ -379,7 +379,7 @@ impl Technique for MultiLayer {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.lists.memory_bytes() + self.feedback.memory_bytes() + self.resolve.memory_bytes()
+        self.lists.memory_bytes() + self.feedback.memory_bytes()
     }
 
     fn overflow(&self) -> Option<Overflow> {

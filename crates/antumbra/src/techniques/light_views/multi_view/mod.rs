@@ -312,15 +312,18 @@ impl Technique for MultiView {
         }
     }
 
-    /// Those of the last batch: each is drawn over the one before.
+    /// Those of the last batch: each is drawn over the one before. None where all lights share them.
     fn drawn_maps(&self) -> Vec<DrawnMap> {
         if self.last_points.is_empty() {
             return Vec::new();
         }
-        let slices = match &self.triangle_maps {
-            Some(maps) => maps.depth_slices(),
-            None => self.layers.depth_slices(),
+        let (slices, are_own) = match &self.triangle_maps {
+            Some(maps) => (maps.depth_slices(), maps.are_own()),
+            None => (self.layers.depth_slices(), self.layers.are_own()),
         };
+        if !are_own {
+            return Vec::new();
+        }
         let (views, view_size) = &self.views;
         let map = |(point, depth): (u32, &wgpu::TextureView)| DrawnMap {
             light_point: Some(point),
