@@ -119,9 +119,3 @@ fn grazing_light_is_not_taken_for_shadow() {
 fn a_wall_beside_a_lamp_is_no_blocker() {
     hold("sconce_touch", &[("pcf", 0.11), ("pcss", 0.06), ("multi_layer", 0.11), ("essm", 0.09), ("multi_view", 0.02)]);
 }
-
-/// Ground far to the side of a bulb in an open box sees a disc that faces it.
-#[test]
-fn a_bulb_is_a_disc_from_all_sides() {
-    hold("housing", &[("multi_view", 0.02)]);
-}
