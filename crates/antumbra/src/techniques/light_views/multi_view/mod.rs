@@ -7,6 +7,10 @@
 //! do). Maps are rendered in batches that fit a memory budget and are added into the mask, so
 //! that 1024 views never need 1024 maps.
 //!
+//! A sphere is seen as another disc from each receiver, and views are shared: its points lie within the ball so that from anywhere they
+//! are spread evenly over the disc (`light_views/ball`). Under a bulb in a box the rmse with 64 views is .020; of points on one disc, which faces
+//! the receivers' middle, it was .032.
+//!
 //! Comparison is with the receiver's plane at each of the four texels (`compare = gather`), or by the hardware's
 //! comparison sampler with one reference depth (`compare = hardware`, as in the papers), which needs a slope bias and
 //! so detaches contacts at grazing light.
@@ -363,7 +367,7 @@ impl MultiView {
             seed: params.seed,
             shift: Vec2::ZERO,
         };
-        let points = light_points(frame.light, &choice, &mut self.unit_points, &bounds, frame.receivers.bounds);
+        let points = light_points(frame.light, &choice, &mut self.unit_points);
         let corners = frame.receivers.corners();
         let is_warped = params.window == MultiViewWindow::Warped;
         let seen = if is_warped { frame.receivers.seen_points(&corners) } else { Vec::new() };

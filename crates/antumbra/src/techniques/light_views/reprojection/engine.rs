@@ -137,7 +137,7 @@ impl Engine {
 
         let light = frame.light;
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let points = light_points(light, &settings.points, &mut self.unit_points, &bounds, frame.receivers.bounds);
+        let points = light_points(light, &settings.points, &mut self.unit_points);
         let views = Views::of(light, &points, &bounds, &frame.receivers.corners(), settings);
         let faces = views.faces();
         let clip_from_world: Vec<_> = views.central.iter().map(LightView::clip_from_world).collect();
