@@ -10,7 +10,7 @@ use super::json::metrics_json;
 use super::model::{Outcome, Report};
 use super::page::page_html;
 use super::paths::{
-    JUDGED_PATH, REFERENCE_STEM, error_path, motion_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
+    JUDGED_PATH, REFERENCE_STEM, error_path, motion_path, shaded_path, visibility_exr_path, visibility_path,
 };
 use crate::color_maps::signed_error_map;
 use crate::image_io::{encode_png, write_png, write_visibility_exr};
@@ -45,7 +45,7 @@ pub fn write_report(dir: &Path, report: &Report) -> Result<(), FileError> {
     for truth in report.motion.iter().flat_map(|info| &info.truths) {
         write_png(&dir.join(motion_path(REFERENCE_STEM, truth.motion)), &truth.strip)?;
     }
-    for (row, stem) in report.rows.iter().zip(row_stems(report)) {
+    for (row, stem) in report.rows.iter().zip(report.stems()) {
         let Outcome::Measured(measured) = &row.outcome else { continue };
         write_png(&dir.join(shaded_path(&stem)), &measured.shaded)?;
         write_visibility(&stem, &measured.visibility)?;

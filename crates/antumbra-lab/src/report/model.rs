@@ -1,9 +1,12 @@
 //! Content of a report as plain data, which a comparison fills in.
 
+use std::collections::BTreeSet;
+
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::paths::REFERENCE_STEM;
 use crate::adapter_info::AdapterInfo;
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
@@ -34,6 +37,24 @@ pub struct Report {
     pub motion: Option<MotionInfo>,
     /// What the reader should know of the whole comparison, one line each: repairs of the loader, limits of this run.
     pub warnings: Vec<String>,
+}
+
+impl Report {
+    /// A name for each row's files and anchor: the technique's, numbered where it comes more than once.
+    pub(super) fn stems(&self) -> Vec<String> {
+        let mut used = BTreeSet::from([REFERENCE_STEM.to_owned()]);
+        let mut stems = Vec::new();
+        for row in &self.rows {
+            let plain = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' };
+            let name: String = row.technique.chars().map(plain).collect();
+            let numbered = (2..).map(|number| format!("{name}-{number}"));
+            let stem = std::iter::once(name.clone()).chain(numbered).find(|stem| !used.contains(stem));
+            let stem = stem.expect("there are more numbers than rows");
+            used.insert(stem.clone());
+            stems.push(stem);
+        }
+        stems
+    }
 }
 
 /// A scene, as far as a report names it.
@@ -187,6 +208,8 @@ pub struct IndexEntry {
 pub struct IndexTechnique {
     /// Its name on the command line.
     pub technique: String,
+    /// Begin of its images' names.
+    pub stem: String,
     /// How far from the truth.
     pub metrics: Metrics,
     /// Time of the whole frame's shadows, milliseconds.
@@ -198,10 +221,12 @@ pub struct IndexTechnique {
 impl IndexEntry {
     /// The entry of a report that was written into `folder`, relative to the index.
     pub fn of(folder: &str, report: &Report) -> Self {
-        let techniques = report.rows.iter().filter_map(|row| match &row.outcome {
+        let rows = report.rows.iter().zip(report.stems());
+        let techniques = rows.filter_map(|(row, stem)| match &row.outcome {
             Outcome::Skipped(_) => None,
             Outcome::Measured(measured) => Some(IndexTechnique {
                 technique: row.technique.clone(),
+                stem,
                 metrics: measured.metrics.clone(),
                 total_ms: measured.total_ms,
                 count: measured.count,
