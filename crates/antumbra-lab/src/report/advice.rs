@@ -177,7 +177,7 @@ fn points(advice: &Advice) -> Vec<Point> {
 }
 
 fn table(advice: &Advice) -> String {
-    let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"candidates\"><table class=\"numbers\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>roughness</th><th>ms</th>\
+    let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"candidates\"><table class=\"numbers candidates\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>roughness</th><th>ms</th>\
                     <th>median of</th><th>of the budget</th><th>memory</th>"
         .to_owned();
     if advice.prefer == Prefer::Motion {
