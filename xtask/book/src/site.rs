@@ -8,8 +8,10 @@ use antumbra_testing::book::root;
 
 use crate::animation;
 
-/// Technique of the scenes' images: the library's default.
-const DEFAULT: TechniqueKind = TechniqueKind::Smrt;
+/// Technique of a scene's images: the library's default, or one that knows masked and translucent casters.
+fn technique_of(scene: &BuiltinInfo) -> TechniqueKind {
+    if scene.opaque { TechniqueKind::Smrt } else { TechniqueKind::MultiLayer }
+}
 
 /// An annular eclipse, as on the laboratory's reports.
 const ICON: &str = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 32 32'%3E\
@@ -37,7 +39,8 @@ pub fn write(folder: &Path, work: &Path, repository: Option<&str>) -> Result<Str
     }
     animation::SCENES.iter().try_for_each(|scene| animation::write_setups(scene, work))?;
     let stills = builtin::NAMES.iter().map(|scene| format!("{}.png: {}", scene.name, command_of_scene(scene)));
-    let moving = animation::SCENES.iter().flat_map(|scene| animation::commands(scene, DEFAULT.name()));
+    let animated = builtin::NAMES.iter().filter(|scene| animation::SCENES.contains(&scene.name));
+    let moving = animated.flat_map(|scene| animation::commands(scene.name, technique_of(scene).name()));
     Ok(stills.chain(moving).map(|line| line + "\n").collect())
 }
 
@@ -80,7 +83,11 @@ fn masthead(repository: Option<&str>) -> String {
 
 /// Command that renders the image of a scene.
 fn command_of_scene(scene: &BuiltinInfo) -> String {
-    format!("antumbra render builtin:{} --technique {} --size 480x270 -o {0}.png", scene.name, DEFAULT.name())
+    format!(
+        "antumbra render builtin:{} --technique {} --size 480x270 -o {0}.png",
+        scene.name,
+        technique_of(scene).name()
+    )
 }
 
 /// Address at which the viewer opens a scene with a technique.
@@ -110,7 +117,7 @@ fn scene_card(scene: &BuiltinInfo) -> String {
         alt: &format!("{name} with soft shadows"),
         text: &format!("<p>{}</p>{made_by}", inline(scene.summary)),
         command: &command_of_scene(scene),
-        viewer: &viewer(name, DEFAULT),
+        viewer: &viewer(name, technique_of(scene)),
         others: &others,
     })
 }
