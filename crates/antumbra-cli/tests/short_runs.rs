@@ -409,7 +409,7 @@ fn what_cannot_be_is_refused() {
     refuses(dir.path(), "bench --suite r.json --deadline 60", &["--suite", "cannot be used with"]);
     fs::write(dir.path().join("t.json"), "{}").unwrap();
     let resume = "bench builtin:overlap --json t.json --resume";
-    if has_adapter(dir.path()) {
+    if adapter().is_some() {
         refuses(dir.path(), &format!("{resume} --quiet"), &["t.json", "no file of the format antumbra-bench"]);
     }
 }

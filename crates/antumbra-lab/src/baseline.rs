@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 use crate::bench::{BenchOutcome, BenchRow, rows_in};
 use crate::error::LabError;
 use crate::output_files::FileError;
-use crate::report::{Outcome, Report, row_names};
+use crate::report::{Outcome, Report};
 use crate::reproduce::{ExhibitResult, Outcome as Reproduced};
 
 /// Errors of which differences are printed. All that a file has are in the JSON.
@@ -218,7 +218,7 @@ impl Against {
 
 /// Figures of a report's measured rows.
 pub fn of_report(report: &Report) -> Vec<Figures> {
-    let rows = report.rows.iter().zip(row_names(report));
+    let rows = report.rows.iter().zip(report.names());
     let figures = rows.filter_map(|(row, name)| match &row.outcome {
         Outcome::Measured(measured) => {
             let errors = serde_json::to_value(&measured.metrics).ok().and_then(|errors| errors.as_object().cloned());

@@ -14,7 +14,7 @@ use antumbra_lab::motion::{Motion, MotionOptions};
 use antumbra_lab::output_files::{FileError, OutputDir};
 use antumbra_lab::progress::Progress;
 use antumbra_lab::report::{
-    IndexEntry, MotionInfo, Outcome, Report, ReportWriter, report_paths, report_to_resume, row_names, write_index,
+    IndexEntry, MotionInfo, Outcome, Report, ReportWriter, report_paths, report_to_resume, write_index,
 };
 use antumbra_lab::technique_run::{FrameCount, TechniqueChoice, Timing};
 use antumbra_scene::{Setup, builtin};
@@ -289,7 +289,7 @@ fn print(report: &Report) {
     ];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     // Numbered as in the report, where a preset has a technique at its defaults, too.
-    rows.extend(report.rows.iter().zip(row_names(report)).map(|(row, name)| {
+    rows.extend(report.rows.iter().zip(report.names()).map(|(row, name)| {
         let figures = match &row.outcome {
             Outcome::Measured(measured) => {
                 let m = &measured.metrics;

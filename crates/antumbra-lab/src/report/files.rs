@@ -11,7 +11,7 @@ use super::json::metrics_json;
 use super::model::{Measurement, Outcome, Report};
 use super::page::page_html;
 use super::paths::{
-    JUDGED_PATH, METRICS_PATH, PAGE_PATH, REFERENCE_STEM, VALUES_PATH, error_path, motion_path, row_stems, shaded_path,
+    JUDGED_PATH, METRICS_PATH, PAGE_PATH, REFERENCE_STEM, VALUES_PATH, error_path, motion_path, shaded_path,
     visibility_exr_path, visibility_path,
 };
 use crate::color_maps::signed_error_map;
@@ -60,7 +60,7 @@ impl ReportWriter {
         let images = self.dir.join("images");
         fs::create_dir_all(&images).map_err(|error| FileError::from_write(&images, &error))?;
         self.write_reference(report)?;
-        for (row, stem) in report.rows.iter().zip(row_stems(report)) {
+        for (row, stem) in report.rows.iter().zip(report.stems()) {
             if let Outcome::Measured(measured) = &row.outcome {
                 self.write_row(report, measured, &stem)?;
             }
@@ -78,7 +78,7 @@ impl ReportWriter {
             let path = self.dir.join(path);
             Ok(png_data_uri(&fs::read(&path).map_err(|error| FileError::from_read(&path, &error))?))
         };
-        let measured = report.rows.iter().zip(row_stems(report));
+        let measured = report.rows.iter().zip(report.stems());
         let stems = measured.filter(|(row, _)| matches!(row.outcome, Outcome::Measured(_))).map(|(_, stem)| stem);
         let stems = std::iter::once(REFERENCE_STEM.to_owned()).chain(stems);
         let values = stems.map(|stem| uri(&visibility_path(&stem))).collect::<Result<Vec<_>, _>>()?;
@@ -139,7 +139,7 @@ fn image_paths(report: &Report) -> BTreeSet<String> {
     let mut paths = BTreeSet::from([JUDGED_PATH.to_owned()]);
     let mut add = |stem: &str| paths.extend([shaded_path(stem), visibility_path(stem), visibility_exr_path(stem)]);
     add(REFERENCE_STEM);
-    let measured: Vec<_> = (report.rows.iter().zip(row_stems(report)))
+    let measured: Vec<_> = (report.rows.iter().zip(report.stems()))
         .filter_map(|(row, stem)| match &row.outcome {
             Outcome::Measured(measured) => Some((measured, stem)),
             Outcome::Skipped(_) => None,

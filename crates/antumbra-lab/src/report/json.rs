@@ -8,7 +8,7 @@ use serde_json::{Map, Number, Value, json};
 
 use super::model::{MotionInfo, Outcome, Report};
 use super::paths::{
-    JUDGED_PATH, REFERENCE_STEM, error_path, motion_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
+    JUDGED_PATH, REFERENCE_STEM, error_path, motion_path, shaded_path, visibility_exr_path, visibility_path,
 };
 use crate::motion::MotionFigures;
 
@@ -19,7 +19,7 @@ pub(super) const VERSION: u32 = 1;
 pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
     let reference = &report.reference;
     let size_px = reference.visibility.size_px;
-    let rows = report.rows.iter().zip(row_stems(report)).map(|(row, stem)| row_json(report, row, &stem));
+    let rows = report.rows.iter().zip(report.stems()).map(|(row, stem)| row_json(report, row, &stem));
     let json = json!({
         "format": "antumbra-metrics",
         "version": VERSION,

@@ -28,7 +28,7 @@ pub use model::{
     IndexEntry, IndexTechnique, Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo, Report, Row,
     SceneInfo,
 };
-pub use paths::{METRICS_PATH, report_paths, row_names};
+pub use paths::{METRICS_PATH, report_paths};
 pub use reproduced::{ReproductionInfo, write_reproduction};
 
 pub use resume::report_to_resume;

@@ -4,6 +4,7 @@ use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::paths::stems_of;
 use crate::adapter_info::AdapterInfo;
 use crate::baseline::Against;
 use crate::metrics::Metrics;
@@ -41,6 +42,23 @@ pub struct Report {
     pub baseline: Option<Against>,
     /// What the reader should know of the whole comparison, one line each: repairs of the loader, limits of this run.
     pub warnings: Vec<String>,
+}
+
+impl Report {
+    /// A name for each row's files and anchor: the technique's, numbered where it comes more than once.
+    pub(super) fn stems(&self) -> Vec<String> {
+        stems_of(self.rows.iter().map(|row| row.technique.as_str()))
+    }
+
+    /// A name for each row: the technique's, numbered where it comes more than once: `pcss`, `pcss-2`.
+    pub fn names(&self) -> Vec<String> {
+        let before = |i: usize| self.rows[..i].iter().filter(|row| row.technique == self.rows[i].technique).count();
+        let name = |(i, row): (usize, &Row)| match before(i) {
+            0 => row.technique.clone(),
+            count => format!("{}-{}", row.technique, count + 1),
+        };
+        self.rows.iter().enumerate().map(name).collect()
+    }
 }
 
 /// A scene, as far as a report names it.
@@ -200,6 +218,8 @@ pub struct IndexEntry {
 pub struct IndexTechnique {
     /// Its name on the command line.
     pub technique: String,
+    /// Begin of its images' names.
+    pub stem: String,
     /// How far from the truth.
     pub metrics: Metrics,
     /// Time of the whole frame's shadows, milliseconds.
@@ -211,10 +231,12 @@ pub struct IndexTechnique {
 impl IndexEntry {
     /// The entry of a report that was written into `folder`, relative to the index.
     pub fn of(folder: &str, report: &Report) -> Self {
-        let techniques = report.rows.iter().filter_map(|row| match &row.outcome {
+        let rows = report.rows.iter().zip(report.stems());
+        let techniques = rows.filter_map(|(row, stem)| match &row.outcome {
             Outcome::Skipped(_) => None,
             Outcome::Measured(measured) => Some(IndexTechnique {
                 technique: row.technique.clone(),
+                stem,
                 metrics: measured.metrics.clone(),
                 total_ms: measured.total_ms,
                 count: measured.count,

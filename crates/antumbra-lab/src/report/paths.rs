@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use super::model::Report;
 use crate::motion::Motion;
 
 pub(super) const REFERENCE_STEM: &str = "reference";
@@ -44,27 +43,8 @@ pub fn report_paths(techniques: &[String], motions: &[Motion]) -> Vec<String> {
     paths
 }
 
-/// A name for each row's files and anchor: the technique's, numbered where it comes more than once.
-pub(super) fn row_stems(report: &Report) -> Vec<String> {
-    stems_of(report.rows.iter().map(|row| row.technique.as_str()))
-}
-
-/// Names of rows, numbered where a technique comes more than once: `pcss`, `pcss-2`.
-pub fn row_names(report: &Report) -> Vec<String> {
-    let mut names: Vec<&str> = Vec::new();
-    let name = |row: &'_ super::model::Row, names: &[&str]| {
-        let before = names.iter().filter(|name| **name == row.technique).count();
-        if before == 0 { row.technique.clone() } else { format!("{}-{}", row.technique, before + 1) }
-    };
-    let mut all = Vec::new();
-    for row in &report.rows {
-        all.push(name(row, &names));
-        names.push(&row.technique);
-    }
-    all
-}
-
-fn stems_of<'a>(techniques: impl Iterator<Item = &'a str>) -> Vec<String> {
+/// A name for each technique's files and anchor: its own, numbered where it comes more than once.
+pub(super) fn stems_of<'a>(techniques: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut used = BTreeSet::from([REFERENCE_STEM.to_owned()]);
     let mut stems = Vec::new();
     for technique in techniques {

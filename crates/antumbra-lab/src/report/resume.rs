@@ -7,9 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 
 use super::model::{Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo, Report, Row, SceneInfo};
-use super::paths::{
-    JUDGED_PATH, METRICS_PATH, REFERENCE_STEM, motion_path, row_stems, shaded_path, visibility_exr_path,
-};
+use super::paths::{JUDGED_PATH, METRICS_PATH, REFERENCE_STEM, motion_path, shaded_path, visibility_exr_path};
 use crate::adapter_info::AdapterInfo;
 use crate::error::LabError;
 use crate::identity::{Identity, read_to_resume};
@@ -144,7 +142,7 @@ impl Folder<'_> {
         };
         let (rows, figures): (Vec<Row>, Vec<_>) = file.rows.into_iter().map(row).unzip();
         report.rows = rows;
-        let stems = row_stems(&report);
+        let stems = report.stems();
         for ((row, (measured, motions)), stem) in report.rows.iter_mut().zip(figures).zip(stems) {
             if let Some(measured) = measured {
                 row.outcome = Outcome::Measured(Box::new(self.measurement(*measured, motions, &stem)?));
