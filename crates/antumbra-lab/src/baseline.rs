@@ -10,7 +10,6 @@ use serde_json::{Map, Value};
 use crate::bench::{BenchOutcome, BenchRow, rows_in};
 use crate::error::LabError;
 use crate::output_files::FileError;
-use crate::report::{Outcome, Report};
 use crate::reproduce::{ExhibitResult, Outcome as Reproduced};
 
 /// Errors of which differences are printed. All that a file has are in the JSON.
@@ -216,19 +215,6 @@ impl Against {
     }
 }
 
-/// Figures of a report's measured rows.
-pub fn of_report(report: &Report) -> Vec<Figures> {
-    let rows = report.rows.iter().zip(report.names());
-    let figures = rows.filter_map(|(row, name)| match &row.outcome {
-        Outcome::Measured(measured) => {
-            let errors = serde_json::to_value(&measured.metrics).ok().and_then(|errors| errors.as_object().cloned());
-            Some(Figures { name, ms: measured.total_ms, errors: numbers(errors.unwrap_or_default()) })
-        }
-        Outcome::Skipped(_) => None,
-    });
-    figures.collect()
-}
-
 fn of_metrics(json: &Value) -> Vec<Figures> {
     let rows = json["rows"].as_array().into_iter().flatten();
     let mut names = Vec::new();
@@ -293,7 +279,7 @@ fn of_exhibit_row(exhibit: &str, what: &str, form: &str, measured: &Value) -> Fi
 }
 
 /// Those of the values that are numbers.
-fn numbers(values: Map<String, Value>) -> Map<String, Value> {
+pub(crate) fn numbers(values: Map<String, Value>) -> Map<String, Value> {
     values.into_iter().filter(|(_, value)| value.is_number()).collect()
 }
 

@@ -3,8 +3,8 @@
 use antumbra_reference::ReferenceError;
 use antumbra_scene::SceneError;
 
+use crate::cut_short::CutShort;
 use crate::device::DeviceError;
-use crate::limits::CutShort;
 use crate::metrics::MetricsError;
 use crate::output_files::FileError;
 

@@ -41,6 +41,7 @@ pub mod baseline;
 pub mod bench;
 pub mod color_maps;
 pub mod compare;
+pub mod cut_short;
 mod date;
 pub mod device;
 pub mod error;

@@ -5,7 +5,6 @@
 //! in proportion to the pixels where there are more of them; a technique that was not measured yet, the median of all. A frame cannot be
 //! stopped, so what runs at its end stops after the frame that is being drawn.
 
-use std::fmt;
 use std::time::{Duration, Instant};
 
 use crate::error::LabError;
@@ -32,32 +31,6 @@ impl End {
     /// Whether it has come.
     pub fn is_past(&self) -> bool {
         Instant::now() >= self.at
-    }
-}
-
-/// Why a measurement ended without a result.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CutShort {
-    /// As [`End::limit`].
-    pub limit: Option<Duration>,
-    /// Time that it took, seconds.
-    pub seconds: f64,
-    /// Frames that were drawn, too few for a result.
-    pub frames: u32,
-}
-
-impl fmt::Display for CutShort {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let by = match self.limit {
-            Some(limit) => format!("the limit of {} s for a technique", limit.as_secs_f64()),
-            None => "the deadline".to_owned(),
-        };
-        let frames = match self.frames {
-            0 => "before its first frame".to_owned(),
-            1 => "after one frame".to_owned(),
-            frames => format!("after {frames} frames"),
-        };
-        write!(f, "cut short by {by}, {frames}, {:.1} s", self.seconds)
     }
 }
 
@@ -179,6 +152,7 @@ impl Pace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cut_short::CutShort;
 
     const SIZE_PX: glam::UVec2 = glam::UVec2::new(10, 10);
 

@@ -12,9 +12,10 @@ use glam::{UVec2, Vec3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Number, Value};
 
+use crate::cut_short::CutShort;
 use crate::device::{DeviceError, LabDevice};
 use crate::error::LabError;
-use crate::limits::{CutShort, End};
+use crate::limits::End;
 use crate::picture::Visibility;
 use crate::readback::read_f32_layer;
 use crate::stopwatch::{Seen, Stopwatch, clock_rise};

@@ -5,7 +5,6 @@ mod baseline;
 use std::path::Path;
 use std::time::Duration;
 
-use antumbra_lab::baseline::of_report;
 use antumbra_lab::compare::{CompareRequest, compare as compare_scene};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
@@ -203,7 +202,7 @@ impl Site<'_> {
             Ok(())
         };
         let mut report = compare_scene(lab, &request, earlier, pace, &mut each, bars)?;
-        report.baseline = baseline.map(|file| file.baseline.against(&of_report(&report)));
+        report.baseline = baseline.map(|file| file.baseline.against(&report.figures()));
         if let Some(mut writer) = writer {
             writer.finish(&report)?;
         }

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::paths::stems_of;
 use crate::adapter_info::AdapterInfo;
-use crate::baseline::Against;
+use crate::baseline::{Against, Figures, numbers};
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
 use crate::picture::Visibility;
@@ -48,6 +48,20 @@ impl Report {
     /// A name for each row's files and anchor: the technique's, numbered where it comes more than once.
     pub(super) fn stems(&self) -> Vec<String> {
         stems_of(self.rows.iter().map(|row| row.technique.as_str()))
+    }
+
+    /// Figures of its measured rows, to hold beside another run's.
+    pub fn figures(&self) -> Vec<Figures> {
+        let rows = self.rows.iter().zip(self.names());
+        let figures = rows.filter_map(|(row, name)| match &row.outcome {
+            Outcome::Measured(measured) => {
+                let errors = serde_json::to_value(&measured.metrics).ok();
+                let errors = errors.and_then(|errors| errors.as_object().cloned()).unwrap_or_default();
+                Some(Figures { name, ms: measured.total_ms, errors: numbers(errors) })
+            }
+            Outcome::Skipped(_) => None,
+        });
+        figures.collect()
     }
 
     /// A name for each row: the technique's, numbered where it comes more than once: `pcss`, `pcss-2`.

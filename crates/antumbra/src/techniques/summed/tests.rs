@@ -142,7 +142,7 @@ fn mean(values: impl Iterator<Item = f32>) -> f32 {
     sum / count.max(1.0)
 }
 
-/// However large the light, a pixel in the penumbra reads less than three times what `pcss` takes taps, and little more than under a
+/// However large the light, a pixel in the penumbra reads less than three times what `pcss` takes taps, and hardly more than under a
 /// light an eighth as large, from where kernels are some 15 texels wide: pieces that are all as wide as tiles hold more that
 /// their tables cannot tell.
 #[test]
@@ -163,19 +163,15 @@ fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
                 small.texels,
                 large.texels
             );
-            let growth = large.search / small.search;
-            assert!((growth - 1.0).abs() < 0.25, "{spec}, {map_size}: {} and {} reads", small.search, large.search);
-            // A piece with a blocker of another part of the light is looked at once more. More pieces have one the more casters a
-            // light is wide enough to see behind one another, and never more than all.
-            let growth = large.kernel / small.kernel;
-            assert!((0.75..1.5).contains(&growth), "{spec}, {map_size}: {} and {} reads", small.kernel, large.kernel);
+            let growth = large.reads() / small.reads();
+            assert!((growth - 1.0).abs() < 0.25, "{spec}, {map_size}: {} and {} reads", small.reads(), large.reads());
             assert!(large.reads() < MOST_READS, "{spec}, {map_size}: {} reads", large.reads());
         }
     }
 }
 
-/// With one look of the search; a second is another 150 at the most.
-const MOST_READS: f32 = 300.0;
+/// With one look; a second is another 150 of the search at the most, and as much again of the kernel.
+const MOST_READS: f32 = 270.0;
 
 /// Nor under what is round, where the picture is penumbra all over; and an ellipse's kernel has no more than that of the rectangle
 /// around it. By one technique of exponentials and one of variances; the others read tables by the same shader.

@@ -124,7 +124,7 @@ fn kernel_answer(compared: compared_Compared, asked: sums_Piece) -> answer_Answe
 }
 
 fn holds_to_depth() -> bool {
-    return (uniform_BASIS == uniform_BASIS_TILES || uniform_BASIS == uniform_BASIS_EXPONENTIAL) && !IS_ONE_WINDOW;
+    return (uniform_BASIS == uniform_BASIS_TILES || uniform_BASIS == uniform_BASIS_EXPONENTIAL) && HAS_SECOND_LOOK && !IS_ONE_WINDOW;
 }
 
 fn piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
