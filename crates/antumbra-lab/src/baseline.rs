@@ -4,12 +4,14 @@
 
 use std::path::Path;
 
+use glam::UVec2;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use crate::bench::{BenchOutcome, BenchRow, rows_in};
+use crate::bench::{BenchOutcome, BenchRow, plain_name, rows_in};
 use crate::error::LabError;
-use crate::output_files::FileError;
+use crate::names::numbered;
+use crate::output_files::{FileError, read_json};
 use crate::reproduce::{ExhibitResult, Outcome as Reproduced};
 
 /// Errors of which differences are printed. All that a file has are in the JSON.
@@ -113,9 +115,8 @@ impl Baseline {
     /// # Errors
     /// Where it cannot be read, or another command wrote it.
     pub fn read(path: &Path, source: Source) -> Result<Self, FileError> {
-        let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
+        let json: Value = read_json(path, source.wanted())?;
         let bad = |why: String| FileError::bad_content(path, why, source.wanted());
-        let json: Value = serde_json::from_str(&text).map_err(|error| bad(error.to_string()))?;
         if Source::of(&json) != Some(source) {
             return Err(bad("it is none of this command".into()));
         }
@@ -216,13 +217,10 @@ impl Against {
 }
 
 fn of_metrics(json: &Value) -> Vec<Figures> {
-    let rows = json["rows"].as_array().into_iter().flatten();
-    let mut names = Vec::new();
-    let figures = rows.filter_map(|row| {
-        let technique = row["technique"].as_str()?;
-        names.push(technique.to_owned());
-        let count = names.iter().filter(|name| *name == technique).count();
-        let name = if count == 1 { technique.to_owned() } else { format!("{technique}-{count}") };
+    let rows = json["rows"].as_array().map_or(&[][..], Vec::as_slice);
+    let techniques = rows.iter().map(|row| row["technique"].as_str().unwrap_or_default().to_owned());
+    let figures = rows.iter().zip(numbered(techniques, "-")).filter_map(|(row, name)| {
+        row["technique"].as_str()?;
         let errors = row["metrics"].as_object()?.clone();
         Some(Figures { name, ms: row["total_ms"].as_f64(), errors: numbers(errors) })
     });
@@ -231,13 +229,9 @@ fn of_metrics(json: &Value) -> Vec<Figures> {
 
 /// Figures of rows of `bench`.
 pub fn of_bench(rows: &[BenchRow]) -> Vec<Figures> {
-    let mut names: Vec<String> = Vec::new();
-    let figures = rows.iter().filter_map(|row| {
-        let [width, height] = row.size;
-        let plain = format!("{}, {width}x{height}, {}", row.scene, row.technique);
-        names.push(plain.clone());
-        let count = names.iter().filter(|name| **name == plain).count();
-        let name = if count == 1 { plain } else { format!("{plain}, {count}") };
+    // Files from before rows had names.
+    let plain = rows.iter().map(|row| plain_name(&row.scene, UVec2::from_array(row.size), &row.technique));
+    let figures = rows.iter().zip(numbered(plain, ", ")).filter_map(|(row, name)| {
         let BenchOutcome::Ran { timings, .. } = &row.outcome else { return None };
         let name = if row.name.is_empty() { name } else { row.name.clone() };
         Some(Figures { name, ms: Some(timings.total_ms), errors: Map::new() })

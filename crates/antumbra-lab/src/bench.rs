@@ -17,6 +17,7 @@ use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
 use crate::limits::{Limits, Pace, Planned};
+use crate::names::numbered;
 use crate::progress::Progress;
 use crate::technique_run::{StartUp, TechniqueChoice, TechniqueRun, Timing, Timings, create, parameters_of};
 use crate::view::View;
@@ -182,18 +183,17 @@ pub fn bench(
     Ok(run.rows())
 }
 
+/// A row's name, before rows of the same are numbered: `builtin:street, 640x360, pcss`.
+pub(crate) fn plain_name(scene: &str, size_px: UVec2, technique: &str) -> String {
+    format!("{scene}, {}x{}, {technique}", size_px.x, size_px.y)
+}
+
 /// The measurements of a scene, size by size. Techniques of one name are numbered.
 fn jobs<'a>(request: &BenchRequest<'a>, scene: &BenchScene) -> Vec<Vec<Job<'a>>> {
     let of_size = |&size_px: &UVec2| {
-        let mut counts: BTreeMap<String, u32> = BTreeMap::new();
-        let job = |choice: &'a TechniqueChoice| {
-            let name = format!("{}, {}x{}, {}", scene.spec, size_px.x, size_px.y, choice.name());
-            let count = counts.entry(name.clone()).or_default();
-            *count += 1;
-            let name = if *count == 1 { name } else { format!("{name}, {count}") };
-            Job { name, size_px, choice }
-        };
-        request.choices.iter().map(job).collect()
+        let names = request.choices.iter().map(|choice| plain_name(&scene.spec, size_px, &choice.name()));
+        let names = numbered(names, ", ");
+        request.choices.iter().zip(names).map(|(choice, name)| Job { name, size_px, choice }).collect()
     };
     request.sizes_px.iter().map(of_size).collect()
 }

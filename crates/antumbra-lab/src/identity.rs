@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::device::LabDevice;
 use crate::error::LabError;
-use crate::output_files::FileError;
+use crate::output_files::{FileError, read_json};
 
 /// Program, adapter and settings of a run, as they are in its file: `antumbra` (the version), `commit`, `adapter`, `driver`,
 /// `backend`, `settings`.
@@ -86,9 +86,7 @@ pub fn read_to_resume(path: &Path, format: &str) -> Result<Option<Value>, LabErr
     if !path.exists() {
         return Ok(None);
     }
-    let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
-    let value: Value =
-        serde_json::from_str(&text).map_err(|error| FileError::bad_content(path, error.to_string(), REMEDY))?;
+    let value: Value = read_json(path, REMEDY)?;
     if value["format"] != format {
         return Err(FileError::bad_content(path, format!("it is no file of the format {format}"), REMEDY).into());
     }

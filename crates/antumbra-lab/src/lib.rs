@@ -50,6 +50,7 @@ pub mod image_io;
 pub mod limits;
 pub mod metrics;
 pub mod motion;
+mod names;
 pub mod output_files;
 pub mod preset;
 pub mod progress;

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::bench::{BenchOutcome, BenchRow, BenchRows, Frames};
 use crate::device::LabDevice;
 use crate::error::LabError;
-use crate::output_files::FileError;
+use crate::output_files::{FileError, read_json};
 use crate::report::utc_now;
 
 const FORMAT: &str = "antumbra-share";
@@ -79,11 +79,9 @@ impl SharedFile {
     /// Where it cannot be read or holds something else.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         const REMEDY: &str = "give files that `antumbra bench --share` wrote";
-        let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
-        let bad = |why: String| FileError::bad_content(path, why, REMEDY);
-        let file: Self = serde_json::from_str(&text).map_err(|error| bad(error.to_string()))?;
+        let file: Self = read_json(path, REMEDY)?;
         if file.format != FORMAT || file.version != VERSION {
-            return Err(bad("it holds no shared results of this version".into()));
+            return Err(FileError::bad_content(path, "it holds no shared results of this version", REMEDY));
         }
         Ok(file)
     }

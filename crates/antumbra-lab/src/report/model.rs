@@ -9,6 +9,7 @@ use crate::adapter_info::AdapterInfo;
 use crate::baseline::{Against, Figures, numbers};
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
+use crate::names::numbered;
 use crate::picture::Visibility;
 use crate::scene_facts::SceneFacts;
 use crate::stopwatch::FrameCount;
@@ -66,12 +67,7 @@ impl Report {
 
     /// A name for each row: the technique's, numbered where it comes more than once: `pcss`, `pcss-2`.
     pub fn names(&self) -> Vec<String> {
-        let before = |i: usize| self.rows[..i].iter().filter(|row| row.technique == self.rows[i].technique).count();
-        let name = |(i, row): (usize, &Row)| match before(i) {
-            0 => row.technique.clone(),
-            count => format!("{}-{}", row.technique, count + 1),
-        };
-        self.rows.iter().enumerate().map(name).collect()
+        numbered(self.rows.iter().map(|row| row.technique.clone()), "-")
     }
 }
 

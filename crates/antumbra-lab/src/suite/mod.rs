@@ -26,7 +26,7 @@ use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::metrics::compare_visibility;
 use crate::motion::{MotionOptions, MotionTruth, MovingScene};
-use crate::output_files::{FileError, write_atomically};
+use crate::output_files::{FileError, read_json, write_atomically};
 use crate::progress::Progress;
 use crate::report::utc_now;
 use crate::reproduce::{Bench as Rows, Form, RunOptions};
@@ -77,10 +77,7 @@ impl Results {
     /// Where it cannot be read or holds something else.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         const REMEDY: &str = "give a file that `antumbra bench --suite` wrote";
-        let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
-        let value: Value =
-            serde_json::from_str(&text).map_err(|error| FileError::bad_content(path, error.to_string(), REMEDY))?;
-        match value {
+        match read_json(path, REMEDY)? {
             Value::Object(map)
                 if map.get("format") == Some(&FORMAT.into()) && map.get("version") == Some(&VERSION.into()) =>
             {
