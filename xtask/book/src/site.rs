@@ -17,11 +17,11 @@ fn technique_of(scene: &BuiltinInfo) -> TechniqueKind {
 const ICON: &str = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 32 32'%3E\
     %3Ccircle cx='16' cy='16' r='14' fill='%23f0b35c'/%3E%3Ccircle cx='17' cy='15.4' r='10.6' fill='%231c1e22'/%3E%3C/svg%3E";
 
-/// Files of the site that are copied unchanged. The first is the style of the laboratory's reports.
+/// Files of the site that are copied unchanged. Style and copy buttons are those of the laboratory's reports.
 const FILES: [(&str, &str); 3] = [
     ("report.css", "crates/antumbra-lab/src/report/style.css"),
     ("site.css", "xtask/book/site/site.css"),
-    ("site.js", "xtask/book/site/site.js"),
+    ("copy.js", "crates/antumbra-lab/src/report/copy.js"),
 ];
 
 /// Writes index and gallery into a folder, and files for the commands that make the gallery's images into the folder `work`. Returns these

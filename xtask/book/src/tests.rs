@@ -186,7 +186,7 @@ fn assert_leads_somewhere(address: &str, own: &str, commands: &str) {
     } else if path.is_empty() {
         assert!(own.contains(&format!(" id=\"{anchor}\"")), "{address}");
     } else {
-        let files = ["viewer/index.html", "index.html", "gallery.html", "report.css", "site.css", "site.js"];
+        let files = ["viewer/index.html", "index.html", "gallery.html", "report.css", "site.css", "copy.js"];
         assert!(files.contains(&path) && anchor.is_empty(), "{address}");
     }
 }

@@ -1,4 +1,5 @@
-// The buttons that copy commands. Without the clipboard's interface the command is selected.
+// Buttons that copy commands, of the report and of the site. A page opened from disk may lack the clipboard's interface: the command is
+// selected instead.
 for (const button of document.querySelectorAll(".copy button")) {
   button.addEventListener("click", async () => {
     const code = button.parentElement.querySelector("code");

@@ -1,7 +1,7 @@
 //! A comparison as a folder: a page that opens from disk, the numbers as JSON, the pictures.
 //!
 //! [`Report`] is what there is to say; [`write_report`] says it. The page is one file with its style and script inside
-//! (`page.html`, `style.css` and `page.js` here), the pictures stand beside it, and nothing is fetched from a network.
+//! (`page.html`, `style.css`, `page.js` and `copy.js` here), the pictures stand beside it, and nothing is fetched from a network.
 //! [`write_index`] is the page above several of them.
 
 mod advice;

@@ -17,7 +17,7 @@ use crate::metrics::TILE_PX;
 use crate::scene_facts::SceneFacts;
 
 const TEMPLATE: &str = include_str!("page.html");
-const SCRIPT: &str = include_str!("page.js");
+const SCRIPT: &str = concat!(include_str!("page.js"), include_str!("copy.js"));
 pub(super) const STYLE: &str = include_str!("style.css");
 
 /// An annular eclipse: the ring of light that stands around an occluder seen from the antumbra.
