@@ -30,7 +30,7 @@ pub struct OutputDir {
     named: PathBuf,
     target: PathBuf,
     unfinished: PathBuf,
-    /// It stands at its target already, and grows there.
+    /// Whether it is at its target already, and grows there.
     is_placed: bool,
 }
 

@@ -213,7 +213,7 @@ struct Late {
 }
 
 impl SummedAreaTable {
-    /// `part` tells the tables apart that a pass reads together.
+    /// Table of a design. `part` is its number among those that a pass reads together.
     pub(crate) fn new(gpu: &Gpu, design: TableDesign, part: u8, source: &Source<'_>) -> Self {
         let sums = design.sums;
         let is_encoded = matches!(source, Source::Encoded { .. });
