@@ -16,8 +16,7 @@ pub struct Polytope {
     planes: Vec<DVec4>,
     room_m: f64,
     edges: Vec<Edge>,
-    /// The edges of each plane's face.
-    faces: Vec<Vec<usize>>,
+    faces: Vec<Face>,
     corners: Vec<Vec3>,
     /// It reaches a finite way in all directions.
     is_bounded: bool,
@@ -32,6 +31,14 @@ struct Edge {
     along: DVec3,
     from: f64,
     to: f64,
+}
+
+/// What of a polytope lies in one of its planes.
+#[derive(Clone, Debug, PartialEq)]
+struct Face {
+    edges: Vec<usize>,
+    /// The planes on the other side of its edges: of all, these alone bound it. All planes where it has no edge.
+    bounded_by: Vec<DVec4>,
 }
 
 /// A plane that is farther than this from a polytope, as a part of its size, cuts nothing off, or all.
@@ -50,13 +57,12 @@ impl Polytope {
         let mut cutters = planes.clone();
         for (plane, a) in planes.iter().enumerate() {
             for (other, b) in planes.iter().enumerate().skip(plane + 1) {
-                edges.extend(Edge::between([plane, other], *a, *b, &mut cutters, room_m));
+                edges.extend(Edge::between([plane, other], *a, *b, [&mut cutters], room_m));
             }
         }
         let corners = edges.iter().flat_map(Edge::corners).collect();
         let is_bounded = edges.len() >= 6 && edges.iter().all(|edge| edge.from.is_finite() && edge.to.is_finite());
-        let of_plane = |plane: usize| (0..edges.len()).filter(|k| edges[*k].planes.contains(&plane)).collect();
-        let faces = (0..planes.len()).map(of_plane).collect();
+        let faces = (0..planes.len()).map(|plane| Face::of(plane, &planes, &edges)).collect();
         Self { planes, room_m, edges, faces, corners, is_bounded }
     }
 
@@ -71,7 +77,7 @@ impl Polytope {
         let further = with_unit_normals(further);
         let Some(cuts) = self.cuts_by(&further) else { return Vec::new() };
         let mut cutters_of_edges: Vec<DVec4> = cuts.iter().map(|cut| cut.plane).collect();
-        let mut cutters = [&cutters_of_edges[..], &self.planes].concat();
+        let mut bounding = Vec::new();
         let mut corners = Vec::with_capacity(self.corners.len());
         let mut edges = self.edges.iter().enumerate().peekable();
         for (i, a) in self.planes.iter().enumerate() {
@@ -87,14 +93,20 @@ impl Polytope {
                     }
                 }
             }
-            for cut in cuts.iter().filter(|cut| cut.meets_face(&self.faces[i])) {
-                let edge = Edge::between([i, i], *a, cut.plane, &mut cutters, self.room_m);
+            let face = &self.faces[i];
+            bounding.clear();
+            bounding.extend_from_slice(&face.bounded_by);
+            for cut in cuts.iter().filter(|cut| cut.meets_face(&face.edges)) {
+                let cutters = [&mut cutters_of_edges[..], &mut bounding];
+                let edge = Edge::between([i, i], *a, cut.plane, cutters, self.room_m);
                 corners.extend(edge.iter().flat_map(Edge::corners));
             }
         }
+        bounding.clone_from(&self.planes);
         for (i, a) in cuts.iter().enumerate() {
             for b in &cuts[i + 1..] {
-                let edge = Edge::between([i, i], a.plane, b.plane, &mut cutters, self.room_m);
+                let cutters = [&mut cutters_of_edges[..], &mut bounding];
+                let edge = Edge::between([i, i], a.plane, b.plane, cutters, self.room_m);
                 corners.extend(edge.iter().flat_map(Edge::corners));
             }
         }
@@ -123,6 +135,19 @@ impl Polytope {
             }
         }
         Some(cuts)
+    }
+}
+
+impl Face {
+    /// The face of the plane with a number.
+    fn of(plane: usize, planes: &[DVec4], edges: &[Edge]) -> Self {
+        let of_face: Vec<usize> = (0..edges.len()).filter(|k| edges[*k].planes.contains(&plane)).collect();
+        let other_side = |k: &usize| {
+            let [a, b] = edges[*k].planes;
+            planes[if a == plane { b } else { a }]
+        };
+        let bounded_by = if of_face.is_empty() { planes.to_vec() } else { of_face.iter().map(other_side).collect() };
+        Self { edges: of_face, bounded_by }
     }
 }
 
@@ -177,9 +202,17 @@ impl Side {
 
 impl Edge {
     /// The edge where two planes meet; `None` where others cut off all of it. Those come in the order of `cutters`.
-    fn between(planes: [usize; 2], a: DVec4, b: DVec4, cutters: &mut [DVec4], room_m: f64) -> Option<Self> {
+    fn between<const N: usize>(
+        planes: [usize; 2],
+        a: DVec4,
+        b: DVec4,
+        cutters: [&mut [DVec4]; N],
+        room_m: f64,
+    ) -> Option<Self> {
         let (on_line, along) = line_where_planes_meet(a, b)?;
-        let (from, to) = part_in_front(cutters, on_line, along, room_m, (f64::NEG_INFINITY, f64::INFINITY))?;
+        let whole = (f64::NEG_INFINITY, f64::INFINITY);
+        let (from, to) =
+            cutters.into_iter().try_fold(whole, |part, planes| part_in_front(planes, on_line, along, room_m, part))?;
         Some(Self { planes, on_line, along, from, to })
     }
 
