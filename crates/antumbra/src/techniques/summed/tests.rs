@@ -224,7 +224,7 @@ fn reads_do_not_grow<P: SoftParams>(gpu: &Gpu, staged: &Staged, params: &P) {
     }
 }
 
-/// Rows of an ellipse, as `resolve.wesl` has them, against the ellipse: its variances, and its penumbra of a straight edge.
+/// Rows of an ellipse, as `kernel_rows.wesl` has them, against the ellipse: its variances, and its penumbra of a straight edge.
 #[test]
 fn rows_of_an_ellipse_have_its_spread_and_its_penumbra() {
     for count in 1..=16 {

@@ -1,529 +1,10 @@
 // Linked from src/techniques/summed/resolve.wesl with blockers by `cargo xtask shaders`: edit that, not this.
 
-override HAS_SEARCH_TAPS: bool = false;
-
-override IS_ONE_PIECE: bool = false;
-
-override REFINEMENTS: u32 = 0u;
-
-override IS_ONE_WINDOW: bool = false;
-
-override HAS_SECOND_LOOK: bool = false;
-
-override AVERAGES_DEPTH: bool = false;
-
 override HAS_HORIZON: bool = true;
 
 override FOOTPRINT_ENDS: bool = true;
 
-fn plane_about(compared: compared_Compared, place: vec2f) -> space_ReceiverPlane {
-    var about = compared.plane;
-    about.farthest_depth = compared.own_depth * compared_inverse_divisor_at(compared, place);
-    return about;
-}
-
-struct About {
-    inverse_divisor: f32,
-    farthest: f32,
-    is_in_map: bool
-}
-
-fn about(compared: compared_Compared, place: vec2f) -> About {
-    let inverse_divisor = compared_inverse_divisor_at(compared, place);
-    let is_in_map = all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size);
-    return About(inverse_divisor, compared.own_depth * inverse_divisor, is_in_map);
-}
-
-fn texel_blocks(compared: compared_Compared, about: About, place: vec2f) -> vec2f {
-    let texel = clamp(floor(place), vec2f(0.0), map_light_view.map_size - 1.0);
-    sums_note_reads(1u);
-    let stored = textureLoad(map_light_map, vec2i(texel), 0);
-    let in_plane = compared.plane.depth + dot(compared.depth_step, texel + 0.5 - compared.place);
-    let sign = map_light_view.depth_sign;
-    let held = saturate(sign * max(sign * in_plane, sign * about.farthest));
-    let g = sign * (stored / about.inverse_divisor - compared.own_depth) / abs(map_light_view.depth_scale);
-    return select(vec2f(), vec2f(1.0, g), sign * (stored - held) > 0.0 && about.is_in_map);
-}
-
-fn averaged(compared: compared_Compared, g: f32) -> f32 {
-    if AVERAGES_DEPTH {
-        return compared_z_of_g(compared, g);
-    }
-    return g;
-}
-
-fn g_of_mean(compared: compared_Compared, sum: f32, count: f32) -> f32 {
-    let mean = sum / max(count, 1e-12);
-    if AVERAGES_DEPTH {
-        return select(0.0, max(compared_g_of_z(compared, mean), 0.0), count > 0.0);
-    }
-    return mean;
-}
-
-fn map_answer(compared: compared_Compared, piece: sums_Piece) -> answer_Answer {
-    let center = sums_middle(piece);
-    let quarter = 0.25 * (piece.high - piece.low);
-    let about = about(compared, center);
-    let blocks = texel_blocks(compared, about, center - quarter) + texel_blocks(compared, about, center + quarter) + texel_blocks(compared, about, center + vec2f(quarter.x, -quarter.y)) + texel_blocks(compared, about, center + vec2f(-quarter.x, quarter.y));
-    return answer_Answer(1.0 - 0.25 * blocks.x, blocks.y / max(blocks.x, 1.0), true);
-}
-
-fn map_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
-    let center = sums_middle(piece);
-    let plane = plane_about(compared, center);
-    let uv = center / map_light_view.map_size;
-    let quarter = 0.25 * (piece.high - piece.low) / map_light_view.map_size;
-    sums_note_reads(4u);
-    return 0.25 * (map_lit_bilinear(plane, uv - quarter) + map_lit_bilinear(plane, uv + quarter) + map_lit_bilinear(plane, uv + vec2f(quarter.x, -quarter.y)) + map_lit_bilinear(plane, uv + vec2f(-quarter.x, quarter.y)));
-}
-
-fn is_summed(piece: sums_Piece) -> bool {
-    let size = piece.high - piece.low;
-    return max(size.x, size.y) > uniform_soft.direct_texels && sums_area(piece) <= uniform_soft.max_part_texels;
-}
-
-fn is_beyond(asked: sums_Piece, piece: sums_Piece) -> bool {
-    return any(asked.low != piece.low) || any(asked.high != piece.high);
-}
-
-fn is_of_asked(compared: compared_Compared, asked: sums_Piece, piece: sums_Piece, blocker_g: f32) -> bool {
-    return !is_beyond(asked, piece) || blocker_g > compared.edge_g;
-}
-
-fn piece_blockers(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
-    let piece = compared_piece_in_map(compared, asked);
-    var answer = answer_Answer(1.0, 0.0, false);
-    if is_summed(piece) {
-        answer = answer_basis_answer(compared, piece, answer_WHOLE);
-    }
-    if !answer.is_good && (uniform_soft.may_read_map != 0u || !is_summed(piece)) {
-        answer = map_answer(compared, piece);
-    }
-    if !is_of_asked(compared, asked, piece, answer.blocker_g) {
-        return answer_Answer(1.0, 0.0, true);
-    }
-    return answer;
-}
-
-fn kernel_answer(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
-    let piece = compared_piece_in_map(compared, asked);
-    var answer = answer_Answer(1.0, 0.0, false);
-    if is_summed(piece) {
-        answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, IS_ONE_PIECE || uniform_CUTS_SQUARES));
-    }
-    if !answer.is_good && (uniform_soft.may_read_map != 0u || !is_summed(piece)) {
-        answer = answer_Answer(map_lit(compared, piece), 0.0, true);
-        if answer.lit < 1.0 && (holds_to_depth() || is_beyond(asked, piece)) {
-            answer.blocker_g = map_answer(compared, piece).blocker_g;
-        }
-    }
-    if !is_of_asked(compared, asked, piece, answer.blocker_g) {
-        return answer_Answer(1.0, 0.0, true);
-    }
-    return answer;
-}
-
-fn holds_to_depth() -> bool {
-    return (uniform_BASIS == uniform_BASIS_TILES || uniform_BASIS == uniform_BASIS_EXPONENTIAL) && HAS_SECOND_LOOK && !IS_ONE_WINDOW;
-}
-
-fn piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
-    let first = kernel_answer(compared, asked);
-    let is_of_light = holds_to_depth() && compared.kernel_g > 0.0;
-    if !is_of_light || first.lit >= 1.0 || hides(compared, asked, first.blocker_g) {
-        return first.lit;
-    }
-    let scale = first.blocker_g / compared.kernel_g;
-    let own = sums_Piece(mix(compared.place, asked.low, scale), mix(compared.place, asked.high, scale));
-    let piece = compared_piece_in_map(compared, own);
-    let blocker_g = map_answer(compared, piece).blocker_g;
-    if blocker_g > 0.0 && hides(compared, own, blocker_g) && is_of_asked(compared, own, piece, blocker_g) {
-        return map_lit(compared, piece);
-    }
-    return 1.0;
-}
-
 const FOOTPRINT_DEVIATIONS = 2.0;
-
-fn hides(compared: compared_Compared, piece: sums_Piece, blocker_g: f32) -> bool {
-    let offset_uv = (sums_middle(piece) - compared.place) / map_light_view.map_size;
-    let place = space_plane_step_of_uv(map_light_view, compared.plane.uv, offset_uv);
-    return blocker_range_gauge(place, max(blocker_range_RIM * blocker_g * compared.extent, vec2f(compared.finest))) <= 1.0;
-}
-
-fn pieces_of(length_texels: f32, most: u32) -> u32 {
-    let least = u32(min(ceil(length_texels / (sqrt(uniform_soft.max_part_texels) - 1.0)), f32(pieces_MOST_PIECES)));
-    return clamp(u32(ceil(0.5 * length_texels)), 1u, max(most, least));
-}
-
-fn search_side(k: u32) -> u32 {
-    if IS_ONE_WINDOW {
-        return uniform_soft.subdivisions;
-    }
-    return max(u32(round(f32(uniform_soft.subdivisions) * (f32(k) + 0.5) / f32(uniform_soft.search_scales))), 1u);
-}
-
-var<private> found_blockers: vec3f;
-
-struct Search {
-    g: f32,
-    window_g: f32,
-    center: vec2f,
-    half_at_1: vec2f
-}
-
-fn search_of(compared: compared_Compared) -> Search {
-    let g = blocker_range_largest_g(compared.plane, compared.extent);
-    let half_at_1 = blocker_range_half_extent_uv_at_1(compared.plane.uv, compared.extent) * map_light_view.map_size;
-    return Search(g, g, compared.place, half_at_1);
-}
-
-fn window_g(search: Search, k: u32) -> f32 {
-    if IS_ONE_WINDOW {
-        return search.window_g;
-    }
-    let scale = (f32(k) + 0.5) / f32(uniform_soft.search_scales);
-    return blocker_range_RIM * search.window_g * scale * scale;
-}
-
-fn window_half(search: Search, k: u32) -> vec2f {
-    return max(search.half_at_1 * window_g(search, k), vec2f(1.0));
-}
-
-fn counted(search: Search, compared: compared_Compared, piece: sums_Piece, answer: answer_Answer) -> vec2f {
-    let g = clamp(answer.blocker_g, 0.0, search.g);
-    if IS_ONE_WINDOW {
-        return (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, averaged(compared, g));
-    }
-    let counts = g > 0.0 && hides(compared, piece, g);
-    return select(vec2f(), (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, averaged(compared, g)), counts);
-}
-
-fn search_tables(search: Search, compared: compared_Compared) -> vec2f {
-    var sum = vec2f();
-    if search.g <= 0.0 {
-        return sum;
-    }
-    var k = 0u;
-    loop {
-        sum += window_blockers(search, compared, k);
-        continuing {
-            k++;
-            break if k >= uniform_soft.search_scales;
-        }
-    }
-    return sum;
-}
-
-fn window_blockers(search: Search, receiver: compared_Compared, k: u32) -> vec2f {
-    let compared = compared_asking_for(receiver, window_g(search, k));
-    let half = window_half(search, k);
-    let most = search_side(k);
-    let is_summed = 2.0 * max(half.x, half.y) > uniform_soft.direct_texels;
-    let low = select(search.center - half, round(search.center - half), is_summed);
-    let high = select(search.center + half, round(search.center + half), is_summed);
-    var sum = vec2f();
-    var rows = pieces_cuts_from(low.y, pieces_of(2.0 * half.y, most));
-    var j = 0u;
-    loop {
-        let row_high = pieces_next_cut(rows, high.y, map_light_view.map_size.y);
-        sums_begin_row();
-        var columns = pieces_cuts_from(low.x, pieces_of(2.0 * half.x, most));
-        var i = 0u;
-        loop {
-            let end = pieces_next_cut(columns, high.x, map_light_view.map_size.x);
-            let piece = sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
-            sum += counted(search, compared, piece, piece_blockers(compared, piece));
-            columns = pieces_cuts_after(columns, end, high.x);
-            continuing {
-                i++;
-                break if i >= pieces_MOST_PIECES || !(columns.at < high.x);
-            }
-        }
-        rows = pieces_cuts_after(rows, row_high, high.y);
-        continuing {
-            j++;
-            break if j >= pieces_MOST_PIECES || !(rows.at < high.y);
-        }
-    }
-    return sum / (4.0 * half.x * half.y);
-}
-
-fn search_taps(search: Search, compared: compared_Compared) -> vec2f {
-    let side = max(u32(round(sqrt(f32(uniform_soft.search_taps) / f32(uniform_soft.search_scales)))), 1u);
-    let count = select(0u, uniform_soft.search_scales * side * side, search.g > 0.0);
-    var sum = vec2f();
-    for (var i = 0u; i < count; i++) {
-        let k = i / (side * side);
-        let half = window_half(search, k);
-        let size = 2.0 * half / f32(side);
-        let low = search.center - half + size * vec2f(vec2u(i % side, i / side % side));
-        let piece = sums_Piece(low, low + size);
-        let place = compared_place_in_map(compared_asking_for(compared, window_g(search, k)), sums_middle(piece));
-        let found = texel_blocks(compared, about(compared, place), place);
-        let is_of_asked = all(place == sums_middle(piece)) || found.y > compared.edge_g;
-        let blocks = select(vec2f(), found, is_of_asked);
-        sum += counted(search, compared, piece, answer_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
-    }
-    return sum;
-}
-
-const MUCH_NEARER = 0.5;
-
-const MOST_LOOKS = 2u;
-
-fn search_blockers(compared: compared_Compared) -> vec2f {
-    var search = search_of(compared);
-    var sum: vec2f;
-    var mean_g: f32;
-    for (var look = 0u; look < MOST_LOOKS; look++) {
-        if HAS_SEARCH_TAPS {
-            sum = search_taps(search, compared);
-        }
-        else {
-            sum = search_tables(search, compared);
-        }
-        mean_g = g_of_mean(compared, sum.y, sum.x);
-        if !HAS_SECOND_LOOK || !(sum.x > 0.0) || !(mean_g < MUCH_NEARER * search.g) {
-            break;
-        }
-        search.window_g = mean_g;
-    }
-    found_blockers = vec3f(mean_g, search.g, sum.x);
-    return vec2f(mean_g, sum.x / f32(uniform_soft.search_scales));
-}
-
-const MOST_NARROW_TAPS = 10.0;
-
-fn narrow_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f32 {
-    let asked = select(2.0 * kernel.half_size, 2.6667 * kernel.half_size - 1.0, uniform_soft.with_footprint == 1u);
-    let taps = vec2u(clamp(ceil(asked), vec2f(1.0), vec2f(MOST_NARROW_TAPS)));
-    let count = taps.x * taps.y;
-    let plane = plane_about(compared, kernel.center);
-    var sum = vec2f();
-    var i = 0u;
-    loop {
-        let place = (vec2f(vec2u(i % taps.x, i / taps.x)) + 0.5) / vec2f(taps) * 2.0 - 1.0;
-        let y = place.y * kernel.half_size.y;
-        let half = soft_kernel_row_half_width(kernel, y);
-        sums_note_reads(1u);
-        let at = kernel.center + vec2f(place.x * half + kernel.shear * y, y);
-        sum += half * vec2f(map_lit_bilinear(plane, compared_place_in_map(compared, at) / map_light_view.map_size), 1.0);
-        continuing {
-            i++;
-            break if i >= count;
-        }
-    }
-    return sum.x / max(sum.y, 1e-12);
-}
-
-const SHEAR_SHARE = 0.2;
-
-const MOST_SHEARED_ROWS = 8u;
-
-const LEAST_ELLIPSE_ROWS = 5u;
-
-fn rows_of(kernel: soft_kernel_SoftKernel) -> u32 {
-    let size = 2.0 * kernel.half_size;
-    let by_shear = ceil(abs(kernel.shear) * size.y / max(SHEAR_SHARE * size.x, 1.0));
-    let least = select(uniform_soft.subdivisions, max(uniform_soft.subdivisions, LEAST_ELLIPSE_ROWS), kernel.is_ellipse);
-    return clamp(u32(by_shear), pieces_of(size.y, least), pieces_of(size.y, max(2u * least, MOST_SHEARED_ROWS)));
-}
-
-const ROW_SPREAD: f32 = 1.2;
-
-const ROW_SHORTER: f32 = 0.75;
-
-const ROW_WIDER: f32 = 0.38;
-
-const ROW_SHORTEST: f32 = 0.8660254;
-
-const ROW_WIDEST: f32 = 1.09;
-
-fn ellipse_of_rows(kernel: soft_kernel_SoftKernel, rows: u32) -> soft_kernel_SoftKernel {
-    let per_square = 1.0 / f32(rows * rows);
-    var scaled = kernel;
-    let wider = min(1.0 + ROW_WIDER * per_square, ROW_WIDEST);
-    scaled.half_size *= vec2f(wider, max(1.0 - ROW_SHORTER * per_square, ROW_SHORTEST));
-    return scaled;
-}
-
-fn ellipse_row_height(kernel: soft_kernel_SoftKernel, rows: pieces_Cuts, count: u32) -> f32 {
-    let place = 1.0 - 2.0 * (rows.left - 1.0) / f32(count);
-    return kernel.center.y + kernel.half_size.y * (sin(ROW_SPREAD * place) / sin(ROW_SPREAD)) - rows.at;
-}
-
-fn ellipse_rows_after(rows: pieces_Cuts, next: f32, height: f32) -> pieces_Cuts {
-    let is_done = next <= rows.at || next - rows.at >= 0.5 * height;
-    return pieces_Cuts(next, max(rows.left - select(0.0, 1.0, is_done), 1.0));
-}
-
-const GAUSS: f32 = 0.28867513;
-
-fn row_half(kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
-    if REFINEMENTS > 0u && has_ends(kernel, low, high) {
-        return min(soft_kernel_row_half_width(kernel, low), soft_kernel_row_half_width(kernel, high));
-    }
-    let between = 0.5 * (low + high);
-    if uniform_CUTS_SQUARES || !kernel.is_ellipse {
-        return max(soft_kernel_row_half_width(kernel, between), 0.5);
-    }
-    let aside = GAUSS * (high - low);
-    return max(0.5 * (soft_kernel_row_half_width(kernel, between - aside) + soft_kernel_row_half_width(kernel, between + aside)), 0.5);
-}
-
-fn has_ends(kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> bool {
-    return kernel.is_ellipse && min(soft_kernel_row_half_width(kernel, low), soft_kernel_row_half_width(kernel, high)) > 1.0 && low * high > 0.0;
-}
-
-fn wide_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
-    let count = rows_of(asked);
-    var kernel = asked;
-    if asked.is_ellipse && REFINEMENTS == 0u {
-        kernel = ellipse_of_rows(asked, count);
-    }
-    let high = kernel.center.y + kernel.half_size.y;
-    var sum = vec2f();
-    var rows = pieces_cuts_from(kernel.center.y - kernel.half_size.y, count);
-    var j = 0u;
-    loop {
-        var height = (high - rows.at) / rows.left;
-        if kernel.is_ellipse {
-            height = ellipse_row_height(kernel, rows, count);
-        }
-        let row_high = pieces_cut_after(rows, height, high, map_light_view.map_size.y);
-        if row_high > rows.at {
-            sum += row_lit(compared, kernel, rows.at, row_high);
-            if REFINEMENTS > 0u {
-                sum += end_lit(compared, kernel, rows.at - kernel.center.y, row_high - kernel.center.y);
-            }
-        }
-        if kernel.is_ellipse {
-            rows = ellipse_rows_after(rows, row_high, height);
-        }
-        else {
-            rows = pieces_cuts_after(rows, row_high, high);
-        }
-        continuing {
-            j++;
-            break if j >= pieces_MOST_PIECES || !(rows.at < high);
-        }
-    }
-    return sum.x / max(sum.y, 1e-12);
-}
-
-fn row_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y_low: f32, y_high: f32) -> vec2f {
-    let half = row_half(kernel, y_low - kernel.center.y, y_high - kernel.center.y);
-    let row_middle = kernel.center.x + kernel.shear * (0.5 * (y_low + y_high) - kernel.center.y);
-    let high = row_middle + half;
-    var sum = vec2f();
-    sums_begin_row();
-    var columns = pieces_cuts_from(row_middle - half, pieces_of(2.0 * half, uniform_soft.subdivisions));
-    var i = 0u;
-    loop {
-        let end = pieces_next_cut(columns, high, map_light_view.map_size.x);
-        let piece = sums_Piece(vec2f(columns.at, y_low), vec2f(end, y_high));
-        sum += sums_area(piece) * vec2f(piece_lit(compared, piece), 1.0);
-        columns = pieces_cuts_after(columns, end, high);
-        continuing {
-            i++;
-            break if i >= pieces_MOST_PIECES || !(columns.at < high);
-        }
-    }
-    return sum;
-}
-
-fn end_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> vec2f {
-    var sum = vec2f();
-    if !has_ends(kernel, low, high) {
-        return sum;
-    }
-    let at_low = soft_kernel_row_half_width(kernel, low);
-    let at_high = soft_kernel_row_half_width(kernel, high);
-    let inner = min(at_low, at_high);
-    let outer = max(at_low, at_high);
-    let is_upper = low > 0.0;
-    let steps = 1u << REFINEMENTS;
-    for (var i = 0u; i < steps; i++) {
-        let near = f32(i) / f32(steps);
-        let far = f32(i + 1u) / f32(steps);
-        let y = select(vec2f(mix(high, low, far), mix(high, low, near)), vec2f(mix(low, high, near), mix(low, high, far)), is_upper);
-        let x = vec2f(mix(outer, inner, far), mix(outer, inner, near));
-        for (var j = 0; j < 2; j++) {
-            sum += select(0.5, 1.0, j == 1) * side_lit(compared, kernel, y, select(x, vec2f(inner, x.x), j == 1));
-        }
-    }
-    return sum;
-}
-
-fn square_lit(compared: compared_Compared, whole: sums_Piece) -> vec2f {
-    var sum = vec2f();
-    var rows = pieces_cuts_from(whole.low.y, pieces_of(whole.high.y - whole.low.y, uniform_soft.subdivisions));
-    for (var j = 0u; j < pieces_MOST_PIECES && rows.at < whole.high.y; j++) {
-        let row_high = pieces_next_cut(rows, whole.high.y, map_light_view.map_size.y);
-        var columns = pieces_cuts_from(whole.low.x, pieces_of(whole.high.x - whole.low.x, uniform_soft.subdivisions));
-        for (var i = 0u; i < pieces_MOST_PIECES && columns.at < whole.high.x; i++) {
-            let end = pieces_next_cut(columns, whole.high.x, map_light_view.map_size.x);
-            let piece = sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
-            sum += sums_area(piece) * vec2f(piece_lit(compared, piece), 1.0);
-            columns = pieces_cuts_after(columns, end, whole.high.x);
-        }
-        rows = pieces_cuts_after(rows, row_high, whole.high.y);
-    }
-    return sum;
-}
-
-const MOST_PRINTED_ROWS = 128u;
-
-fn lit_by_squares(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f32 {
-    let count = clamp(u32(ceil(2.0 * kernel.half_size.y / uniform_soft.row_height)), 1u, MOST_PRINTED_ROWS);
-    var sum = vec2f();
-    for (var j = 0u; j < count; j++) {
-        let low = mix(-kernel.half_size.y, kernel.half_size.y, f32(j) / f32(count));
-        let high = mix(-kernel.half_size.y, kernel.half_size.y, f32(j + 1u) / f32(count));
-        let half = row_half(kernel, low, high);
-        let row_middle = kernel.center.x + kernel.shear * 0.5 * (low + high);
-        let y = kernel.center.y + vec2f(low, high);
-        sum += square_lit(compared, sums_Piece(vec2f(row_middle - half, y.x), vec2f(row_middle + half, y.y)));
-        if REFINEMENTS > 0u {
-            sum += end_lit(compared, kernel, low, high);
-        }
-    }
-    return sum.x / max(sum.y, 1e-12);
-}
-
-fn side_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y: vec2f, x: vec2f) -> vec2f {
-    if abs(x.y - x.x) < 0.001 || y.y - y.x < 0.001 {
-        return vec2f();
-    }
-    let row_middle = kernel.center + vec2f(kernel.shear * 0.5 * (y.x + y.y), 0.0);
-    var sum = vec2f();
-    for (var side = 0; side < 2; side++) {
-        let across = select(x, -x.yx, side == 0);
-        let part = sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y));
-        if uniform_CUTS_SQUARES {
-            sum += square_lit(compared, part);
-        }
-        else {
-            sums_begin_row();
-            sum += (x.y - x.x) * (y.y - y.x) * vec2f(piece_lit(compared, part), 1.0);
-        }
-    }
-    return sum;
-}
-
-fn kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
-    var kernel = asked;
-    kernel.half_size = max(kernel.half_size, vec2f(0.5));
-    let longest = 2.0 * max(kernel.half_size.x, kernel.half_size.y);
-    if longest <= uniform_soft.direct_texels * f32(uniform_soft.subdivisions) {
-        return narrow_lit(compared, kernel);
-    }
-    if uniform_CUTS_SQUARES {
-        return lit_by_squares(compared, kernel);
-    }
-    return wide_lit(compared, kernel);
-}
 
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
@@ -550,7 +31,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !blocker_range_may_be_blocked(compared.own_depth) {
         return above;
     }
-    let blockers = search_blockers(compared);
+    let blockers = search_search_blockers(compared);
     let grown = extent / max(uniform_soft.light_extent, vec2f(1e-20));
     let on_plane = uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
     var covariance = soft_kernel_light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
@@ -571,7 +52,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let center = center_uv * map_light_view.map_size;
     let kernel = soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u);
     let footprint_texels = FOOTPRINT_DEVIATIONS * sqrt(max(footprint.x, footprint.z));
-    return above * kernel_lit(compared_asking_of_kernel(compared, blockers.x, footprint_texels), kernel);
+    return above * kernel_kernel_lit(compared_asking_of_kernel(compared, blockers.x, footprint_texels), kernel);
 }
 
 @compute @workgroup_size(8, 8)
@@ -579,7 +60,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
     let pixel = inputs_known_pixel(id.xy);
     if inputs_is_inside(pixel) {
         let lit = visibility(inputs_load_receiver(pixel), pixel);
-        inputs_write_visibility_rgb(pixel, found_blockers);
+        inputs_write_visibility_rgb(pixel, search_found_blockers);
     }
 }
 
@@ -1144,7 +625,8 @@ struct space_ReceiverPlane {
     depth_per_uv: vec2f,
     farthest_depth: f32,
     surface_step: f32,
-    bias: f32
+    bias: f32,
+    faces_away: bool
 }
 
 const space_SURFACE_SLOPE = 8.0;
@@ -1215,6 +697,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
     var plane: vec2f;
     var biased_z: f32;
     var depth_per_plane: vec2f;
+    var faces_away: bool;
     if view.perspective == 1u {
         let distance = length(p);
         plane = p.xy / p.z;
@@ -1223,12 +706,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let k = dot(n, p) * toward;
         let k_min = least_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+        faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
         let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
+        faces_away = n.z > 0.0;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
@@ -1238,7 +723,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
     let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
 }
 
 fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
@@ -1724,6 +1209,16 @@ fn compared_g_of_z(compared: compared_Compared, z: f32) -> f32 {
     return select(compared.z_m - z, 1.0 / z - 1.0 / compared.z_m, map_light_view.perspective == 1u);
 }
 
+fn compared_hides(compared: compared_Compared, piece: sums_Piece, blocker_g: f32) -> bool {
+    return compared_hides_at(compared, sums_middle(piece), blocker_g);
+}
+
+fn compared_hides_at(compared: compared_Compared, at: vec2f, blocker_g: f32) -> bool {
+    let offset_uv = (at - compared.place) / map_light_view.map_size;
+    let place = space_plane_step_of_uv(map_light_view, compared.plane.uv, offset_uv);
+    return blocker_range_gauge(place, max(blocker_range_RIM * blocker_g * compared.extent, vec2f(compared.finest))) <= 1.0;
+}
+
 const depth_range_FARTHEST_M = 10000000.0;
 
 struct depth_range_DepthRange {
@@ -1747,6 +1242,359 @@ fn depth_range_depth_range() -> depth_range_DepthRange {
 
 fn depth_range_t_of_z(range: depth_range_DepthRange, z_m: f32) -> f32 {
     return (z_m - range.near_m) / (range.far_m - range.near_m);
+}
+
+const kernel_MOST_NARROW_TAPS = 10.0;
+
+fn kernel_narrow_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f32 {
+    let asked = select(2.0 * kernel.half_size, 2.6667 * kernel.half_size - 1.0, uniform_soft.with_footprint == 1u);
+    let taps = vec2u(clamp(ceil(asked), vec2f(1.0), vec2f(kernel_MOST_NARROW_TAPS)));
+    let count = taps.x * taps.y;
+    let plane = map_answer_plane_about(compared, kernel.center);
+    var sum = vec2f();
+    var i = 0u;
+    loop {
+        let place = (vec2f(vec2u(i % taps.x, i / taps.x)) + 0.5) / vec2f(taps) * 2.0 - 1.0;
+        let y = place.y * kernel.half_size.y;
+        let half = soft_kernel_row_half_width(kernel, y);
+        sums_note_reads(1u);
+        let at = kernel.center + vec2f(place.x * half + kernel.shear * y, y);
+        sum += half * vec2f(map_lit_bilinear(plane, compared_place_in_map(compared, at) / map_light_view.map_size), 1.0);
+        continuing {
+            i++;
+            break if i >= count;
+        }
+    }
+    return sum.x / max(sum.y, 1e-12);
+}
+
+fn kernel_wide_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
+    let count = kernel_rows_rows_of(asked);
+    var kernel = asked;
+    if asked.is_ellipse && kernel_rows_REFINEMENTS == 0u {
+        kernel = kernel_rows_ellipse_of_rows(asked, count);
+    }
+    let high = kernel.center.y + kernel.half_size.y;
+    var sum = vec2f();
+    var rows = pieces_cuts_from(kernel.center.y - kernel.half_size.y, count);
+    var j = 0u;
+    loop {
+        var height = (high - rows.at) / rows.left;
+        if kernel.is_ellipse {
+            height = kernel_rows_ellipse_row_height(kernel, rows, count);
+        }
+        let row_high = pieces_cut_after(rows, height, high, map_light_view.map_size.y);
+        if row_high > rows.at {
+            sum += kernel_row_lit(compared, kernel, rows.at, row_high);
+            if kernel_rows_REFINEMENTS > 0u {
+                sum += kernel_ends_end_lit(compared, kernel, rows.at - kernel.center.y, row_high - kernel.center.y);
+            }
+        }
+        if kernel.is_ellipse {
+            rows = kernel_rows_ellipse_rows_after(rows, row_high, height);
+        }
+        else {
+            rows = pieces_cuts_after(rows, row_high, high);
+        }
+        continuing {
+            j++;
+            break if j >= pieces_MOST_PIECES || !(rows.at < high);
+        }
+    }
+    return sum.x / max(sum.y, 1e-12);
+}
+
+fn kernel_row_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y_low: f32, y_high: f32) -> vec2f {
+    let half = kernel_rows_row_half(kernel, y_low - kernel.center.y, y_high - kernel.center.y);
+    let row_middle = kernel.center.x + kernel.shear * (0.5 * (y_low + y_high) - kernel.center.y);
+    let high = row_middle + half;
+    var sum = vec2f();
+    sums_begin_row();
+    var columns = pieces_cuts_from(row_middle - half, pieces_pieces_of(2.0 * half, uniform_soft.subdivisions));
+    var i = 0u;
+    loop {
+        let end = pieces_next_cut(columns, high, map_light_view.map_size.x);
+        let piece = sums_Piece(vec2f(columns.at, y_low), vec2f(end, y_high));
+        sum += sums_area(piece) * vec2f(kernel_piece_piece_lit(compared, piece), 1.0);
+        columns = pieces_cuts_after(columns, end, high);
+        continuing {
+            i++;
+            break if i >= pieces_MOST_PIECES || !(columns.at < high);
+        }
+    }
+    return sum;
+}
+
+const kernel_MOST_PRINTED_ROWS = 128u;
+
+fn kernel_lit_by_squares(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f32 {
+    let count = clamp(u32(ceil(2.0 * kernel.half_size.y / uniform_soft.row_height)), 1u, kernel_MOST_PRINTED_ROWS);
+    var sum = vec2f();
+    for (var j = 0u; j < count; j++) {
+        let low = mix(-kernel.half_size.y, kernel.half_size.y, f32(j) / f32(count));
+        let high = mix(-kernel.half_size.y, kernel.half_size.y, f32(j + 1u) / f32(count));
+        let half = kernel_rows_row_half(kernel, low, high);
+        let row_middle = kernel.center.x + kernel.shear * 0.5 * (low + high);
+        let y = kernel.center.y + vec2f(low, high);
+        sum += kernel_ends_square_lit(compared, sums_Piece(vec2f(row_middle - half, y.x), vec2f(row_middle + half, y.y)));
+        if kernel_rows_REFINEMENTS > 0u {
+            sum += kernel_ends_end_lit(compared, kernel, low, high);
+        }
+    }
+    return sum.x / max(sum.y, 1e-12);
+}
+
+fn kernel_kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
+    var kernel = asked;
+    kernel.half_size = max(kernel.half_size, vec2f(0.5));
+    let longest = 2.0 * max(kernel.half_size.x, kernel.half_size.y);
+    if longest <= uniform_soft.direct_texels * f32(uniform_soft.subdivisions) {
+        return kernel_narrow_lit(compared, kernel);
+    }
+    if uniform_CUTS_SQUARES {
+        return kernel_lit_by_squares(compared, kernel);
+    }
+    return kernel_wide_lit(compared, kernel);
+}
+
+fn kernel_ends_square_lit(compared: compared_Compared, whole: sums_Piece) -> vec2f {
+    var sum = vec2f();
+    var rows = pieces_cuts_from(whole.low.y, pieces_pieces_of(whole.high.y - whole.low.y, uniform_soft.subdivisions));
+    for (var j = 0u; j < pieces_MOST_PIECES && rows.at < whole.high.y; j++) {
+        let row_high = pieces_next_cut(rows, whole.high.y, map_light_view.map_size.y);
+        var columns = pieces_cuts_from(whole.low.x, pieces_pieces_of(whole.high.x - whole.low.x, uniform_soft.subdivisions));
+        for (var i = 0u; i < pieces_MOST_PIECES && columns.at < whole.high.x; i++) {
+            let end = pieces_next_cut(columns, whole.high.x, map_light_view.map_size.x);
+            let piece = sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
+            sum += sums_area(piece) * vec2f(kernel_piece_piece_lit(compared, piece), 1.0);
+            columns = pieces_cuts_after(columns, end, whole.high.x);
+        }
+        rows = pieces_cuts_after(rows, row_high, whole.high.y);
+    }
+    return sum;
+}
+
+fn kernel_ends_end_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> vec2f {
+    var sum = vec2f();
+    if !kernel_rows_has_ends(kernel, low, high) {
+        return sum;
+    }
+    let at_low = soft_kernel_row_half_width(kernel, low);
+    let at_high = soft_kernel_row_half_width(kernel, high);
+    let inner = min(at_low, at_high);
+    let outer = max(at_low, at_high);
+    let is_upper = low > 0.0;
+    let steps = 1u << kernel_rows_REFINEMENTS;
+    for (var i = 0u; i < steps; i++) {
+        let near = f32(i) / f32(steps);
+        let far = f32(i + 1u) / f32(steps);
+        let y = select(vec2f(mix(high, low, far), mix(high, low, near)), vec2f(mix(low, high, near), mix(low, high, far)), is_upper);
+        let x = vec2f(mix(outer, inner, far), mix(outer, inner, near));
+        for (var j = 0; j < 2; j++) {
+            sum += select(0.5, 1.0, j == 1) * kernel_ends_side_lit(compared, kernel, y, select(x, vec2f(inner, x.x), j == 1));
+        }
+    }
+    return sum;
+}
+
+fn kernel_ends_side_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y: vec2f, x: vec2f) -> vec2f {
+    if abs(x.y - x.x) < 0.001 || y.y - y.x < 0.001 {
+        return vec2f();
+    }
+    let row_middle = kernel.center + vec2f(kernel.shear * 0.5 * (y.x + y.y), 0.0);
+    var sum = vec2f();
+    for (var side = 0; side < 2; side++) {
+        let across = select(x, -x.yx, side == 0);
+        let part = sums_Piece(row_middle + vec2f(across.x, y.x), row_middle + vec2f(across.y, y.y));
+        if uniform_CUTS_SQUARES {
+            sum += kernel_ends_square_lit(compared, part);
+        }
+        else {
+            sums_begin_row();
+            sum += (x.y - x.x) * (y.y - y.x) * vec2f(kernel_piece_piece_lit(compared, part), 1.0);
+        }
+    }
+    return sum;
+}
+
+fn kernel_piece_holds_to_depth() -> bool {
+    return (uniform_BASIS == uniform_BASIS_TILES || uniform_BASIS == uniform_BASIS_EXPONENTIAL) && uniform_HAS_SECOND_LOOK && !uniform_IS_ONE_WINDOW;
+}
+
+fn kernel_piece_kernel_answer(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
+    let piece = compared_piece_in_map(compared, asked);
+    var answer = answer_Answer(1.0, 0.0, false);
+    if map_answer_is_summed(piece) {
+        answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, uniform_IS_ONE_PIECE || uniform_CUTS_SQUARES));
+    }
+    if !answer.is_good && (uniform_soft.may_read_map != 0u || !map_answer_is_summed(piece)) {
+        answer = answer_Answer(map_answer_map_lit(compared, piece), 0.0, true);
+        if answer.lit < 1.0 && (kernel_piece_holds_to_depth() || map_answer_is_beyond(asked, piece)) {
+            answer.blocker_g = map_answer_map_answer(compared, piece).blocker_g;
+        }
+    }
+    if !map_answer_is_of_asked(compared, asked, piece, answer.blocker_g) {
+        return answer_Answer(1.0, 0.0, true);
+    }
+    return answer;
+}
+
+const kernel_piece_ONE_DEPTH = 0.1;
+
+fn kernel_piece_piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
+    let first = kernel_piece_kernel_answer(compared, asked);
+    let is_of_light = kernel_piece_holds_to_depth() && compared.kernel_g > 0.0;
+    if !is_of_light || first.lit >= 1.0 || compared_hides(compared, asked, first.blocker_g) {
+        return first.lit;
+    }
+    let scale = first.blocker_g / compared.kernel_g;
+    let own = sums_Piece(mix(compared.place, asked.low, scale), mix(compared.place, asked.high, scale));
+    let piece = compared_piece_in_map(compared, own);
+    let blocker_g = map_answer_map_answer(compared, piece).blocker_g;
+    if blocker_g > 0.0 && compared_hides(compared, own, blocker_g) && map_answer_is_of_asked(compared, own, piece, blocker_g) {
+        return map_answer_map_lit(compared, piece);
+    }
+    if blocker_g <= 0.0 || abs(blocker_g - first.blocker_g) <= kernel_piece_ONE_DEPTH * first.blocker_g {
+        return 1.0;
+    }
+    return kernel_piece_lit_by_texels(compared, compared_piece_in_map(compared, asked));
+}
+
+fn kernel_piece_lit_by_texels(compared: compared_Compared, piece: sums_Piece) -> f32 {
+    let center = sums_middle(piece);
+    let quarter = 0.25 * (piece.high - piece.low);
+    let hidden = vec2<bool>(kernel_piece_texel_hides(compared, center - quarter), kernel_piece_texel_hides(compared, center + quarter));
+    return 1.0 - 0.5 * dot(vec2f(hidden), vec2f(1.0));
+}
+
+fn kernel_piece_texel_hides(compared: compared_Compared, place: vec2f) -> bool {
+    let at_place = map_answer_texel_blocks(compared, map_answer_about(compared, place), place);
+    if at_place.x == 0.0 || compared_hides_at(compared, place, at_place.y) {
+        return at_place.x > 0.0;
+    }
+    let nearer = mix(compared.place, place, at_place.y / compared.kernel_g);
+    let at_nearer = map_answer_texel_blocks(compared, map_answer_about(compared, nearer), nearer);
+    return at_nearer.x > 0.0 && compared_hides_at(compared, nearer, at_nearer.y);
+}
+
+override kernel_rows_REFINEMENTS: u32 = 0u;
+
+const kernel_rows_SHEAR_SHARE = 0.2;
+
+const kernel_rows_MOST_SHEARED_ROWS = 8u;
+
+const kernel_rows_LEAST_ELLIPSE_ROWS = 5u;
+
+fn kernel_rows_rows_of(kernel: soft_kernel_SoftKernel) -> u32 {
+    let size = 2.0 * kernel.half_size;
+    let by_shear = ceil(abs(kernel.shear) * size.y / max(kernel_rows_SHEAR_SHARE * size.x, 1.0));
+    let least = select(uniform_soft.subdivisions, max(uniform_soft.subdivisions, kernel_rows_LEAST_ELLIPSE_ROWS), kernel.is_ellipse);
+    return clamp(u32(by_shear), pieces_pieces_of(size.y, least), pieces_pieces_of(size.y, max(2u * least, kernel_rows_MOST_SHEARED_ROWS)));
+}
+
+const kernel_rows_ROW_SPREAD: f32 = 1.2;
+
+const kernel_rows_ROW_SHORTER: f32 = 0.75;
+
+const kernel_rows_ROW_WIDER: f32 = 0.38;
+
+const kernel_rows_ROW_SHORTEST: f32 = 0.8660254;
+
+const kernel_rows_ROW_WIDEST: f32 = 1.09;
+
+fn kernel_rows_ellipse_of_rows(kernel: soft_kernel_SoftKernel, rows: u32) -> soft_kernel_SoftKernel {
+    let per_square = 1.0 / f32(rows * rows);
+    var scaled = kernel;
+    let wider = min(1.0 + kernel_rows_ROW_WIDER * per_square, kernel_rows_ROW_WIDEST);
+    scaled.half_size *= vec2f(wider, max(1.0 - kernel_rows_ROW_SHORTER * per_square, kernel_rows_ROW_SHORTEST));
+    return scaled;
+}
+
+fn kernel_rows_ellipse_row_height(kernel: soft_kernel_SoftKernel, rows: pieces_Cuts, count: u32) -> f32 {
+    let place = 1.0 - 2.0 * (rows.left - 1.0) / f32(count);
+    return kernel.center.y + kernel.half_size.y * (sin(kernel_rows_ROW_SPREAD * place) / sin(kernel_rows_ROW_SPREAD)) - rows.at;
+}
+
+fn kernel_rows_ellipse_rows_after(rows: pieces_Cuts, next: f32, height: f32) -> pieces_Cuts {
+    let is_done = next <= rows.at || next - rows.at >= 0.5 * height;
+    return pieces_Cuts(next, max(rows.left - select(0.0, 1.0, is_done), 1.0));
+}
+
+const kernel_rows_GAUSS: f32 = 0.28867513;
+
+fn kernel_rows_row_half(kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> f32 {
+    if kernel_rows_REFINEMENTS > 0u && kernel_rows_has_ends(kernel, low, high) {
+        return min(soft_kernel_row_half_width(kernel, low), soft_kernel_row_half_width(kernel, high));
+    }
+    let between = 0.5 * (low + high);
+    if uniform_CUTS_SQUARES || !kernel.is_ellipse {
+        return max(soft_kernel_row_half_width(kernel, between), 0.5);
+    }
+    let aside = kernel_rows_GAUSS * (high - low);
+    return max(0.5 * (soft_kernel_row_half_width(kernel, between - aside) + soft_kernel_row_half_width(kernel, between + aside)), 0.5);
+}
+
+fn kernel_rows_has_ends(kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> bool {
+    return kernel.is_ellipse && min(soft_kernel_row_half_width(kernel, low), soft_kernel_row_half_width(kernel, high)) > 1.0 && low * high > 0.0;
+}
+
+fn map_answer_plane_about(compared: compared_Compared, place: vec2f) -> space_ReceiverPlane {
+    var about = compared.plane;
+    about.farthest_depth = compared.own_depth * compared_inverse_divisor_at(compared, place);
+    return about;
+}
+
+struct map_answer_About {
+    inverse_divisor: f32,
+    farthest: f32,
+    is_in_map: bool
+}
+
+fn map_answer_about(compared: compared_Compared, place: vec2f) -> map_answer_About {
+    let inverse_divisor = compared_inverse_divisor_at(compared, place);
+    let is_in_map = all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size);
+    return map_answer_About(inverse_divisor, compared.own_depth * inverse_divisor, is_in_map);
+}
+
+fn map_answer_texel_blocks(compared: compared_Compared, about: map_answer_About, place: vec2f) -> vec2f {
+    let texel = clamp(floor(place), vec2f(0.0), map_light_view.map_size - 1.0);
+    sums_note_reads(1u);
+    let stored = textureLoad(map_light_map, vec2i(texel), 0);
+    let in_plane = compared.plane.depth + dot(compared.depth_step, texel + 0.5 - compared.place);
+    let sign = map_light_view.depth_sign;
+    let held = saturate(sign * max(sign * in_plane, sign * about.farthest));
+    let g = sign * (stored / about.inverse_divisor - compared.own_depth) / abs(map_light_view.depth_scale);
+    return select(vec2f(), vec2f(1.0, g), sign * (stored - held) > 0.0 && about.is_in_map);
+}
+
+fn map_answer_map_answer(compared: compared_Compared, piece: sums_Piece) -> answer_Answer {
+    let center = sums_middle(piece);
+    let quarter = 0.25 * (piece.high - piece.low);
+    let about = map_answer_about(compared, center);
+    let blocks = map_answer_texel_blocks(compared, about, center - quarter) + map_answer_texel_blocks(compared, about, center + quarter) + map_answer_texel_blocks(compared, about, center + vec2f(quarter.x, -quarter.y)) + map_answer_texel_blocks(compared, about, center + vec2f(-quarter.x, quarter.y));
+    return answer_Answer(1.0 - 0.25 * blocks.x, blocks.y / max(blocks.x, 1.0), true);
+}
+
+fn map_answer_map_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
+    let center = sums_middle(piece);
+    let plane = map_answer_plane_about(compared, center);
+    let uv = center / map_light_view.map_size;
+    let quarter = 0.25 * (piece.high - piece.low) / map_light_view.map_size;
+    sums_note_reads(4u);
+    return 0.25 * (map_lit_bilinear(plane, uv - quarter) + map_lit_bilinear(plane, uv + quarter) + map_lit_bilinear(plane, uv + vec2f(quarter.x, -quarter.y)) + map_lit_bilinear(plane, uv + vec2f(-quarter.x, quarter.y)));
+}
+
+fn map_answer_is_summed(piece: sums_Piece) -> bool {
+    let size = piece.high - piece.low;
+    return max(size.x, size.y) > uniform_soft.direct_texels && sums_area(piece) <= uniform_soft.max_part_texels;
+}
+
+fn map_answer_is_beyond(asked: sums_Piece, piece: sums_Piece) -> bool {
+    return any(asked.low != piece.low) || any(asked.high != piece.high);
+}
+
+fn map_answer_is_of_asked(compared: compared_Compared, asked: sums_Piece, piece: sums_Piece, blocker_g: f32) -> bool {
+    return !map_answer_is_beyond(asked, piece) || blocker_g > compared.edge_g;
 }
 
 const pieces_MOST_PIECES = 1024u;
@@ -1781,6 +1629,182 @@ const pieces_SLIVER = 0.25;
 fn pieces_cuts_after(cuts: pieces_Cuts, next: f32, high: f32) -> pieces_Cuts {
     let left = round((high - next) * cuts.left / (high - cuts.at) - select(pieces_SLIVER, 0.0, uniform_CUTS_SQUARES));
     return pieces_Cuts(next, clamp(left, 1.0, cuts.left));
+}
+
+fn pieces_pieces_of(length_texels: f32, most: u32) -> u32 {
+    let least = u32(min(ceil(length_texels / (sqrt(uniform_soft.max_part_texels) - 1.0)), f32(pieces_MOST_PIECES)));
+    return clamp(u32(ceil(0.5 * length_texels)), 1u, max(most, least));
+}
+
+override search_HAS_SEARCH_TAPS: bool = false;
+
+override search_AVERAGES_DEPTH: bool = false;
+
+fn search_averaged(compared: compared_Compared, g: f32) -> f32 {
+    if search_AVERAGES_DEPTH {
+        return compared_z_of_g(compared, g);
+    }
+    return g;
+}
+
+fn search_g_of_mean(compared: compared_Compared, sum: f32, count: f32) -> f32 {
+    let mean = sum / max(count, 1e-12);
+    if search_AVERAGES_DEPTH {
+        return select(0.0, max(compared_g_of_z(compared, mean), 0.0), count > 0.0);
+    }
+    return mean;
+}
+
+fn search_piece_blockers(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
+    let piece = compared_piece_in_map(compared, asked);
+    var answer = answer_Answer(1.0, 0.0, false);
+    if map_answer_is_summed(piece) {
+        answer = answer_basis_answer(compared, piece, answer_WHOLE);
+    }
+    if !answer.is_good && (uniform_soft.may_read_map != 0u || !map_answer_is_summed(piece)) {
+        answer = map_answer_map_answer(compared, piece);
+    }
+    if !map_answer_is_of_asked(compared, asked, piece, answer.blocker_g) {
+        return answer_Answer(1.0, 0.0, true);
+    }
+    return answer;
+}
+
+fn search_search_side(k: u32) -> u32 {
+    if uniform_IS_ONE_WINDOW {
+        return uniform_soft.subdivisions;
+    }
+    return max(u32(round(f32(uniform_soft.subdivisions) * (f32(k) + 0.5) / f32(uniform_soft.search_scales))), 1u);
+}
+
+var<private> search_found_blockers: vec3f;
+
+struct search_Search {
+    g: f32,
+    window_g: f32,
+    center: vec2f,
+    half_at_1: vec2f
+}
+
+fn search_search_of(compared: compared_Compared) -> search_Search {
+    let g = blocker_range_largest_g(compared.plane, compared.extent);
+    let half_at_1 = blocker_range_half_extent_uv_at_1(compared.plane.uv, compared.extent) * map_light_view.map_size;
+    return search_Search(g, g, compared.place, half_at_1);
+}
+
+fn search_window_g(search: search_Search, k: u32) -> f32 {
+    if uniform_IS_ONE_WINDOW {
+        return search.window_g;
+    }
+    let scale = (f32(k) + 0.5) / f32(uniform_soft.search_scales);
+    return blocker_range_RIM * search.window_g * scale * scale;
+}
+
+fn search_window_half(search: search_Search, k: u32) -> vec2f {
+    return max(search.half_at_1 * search_window_g(search, k), vec2f(1.0));
+}
+
+fn search_counted(search: search_Search, compared: compared_Compared, piece: sums_Piece, answer: answer_Answer) -> vec2f {
+    let g = clamp(answer.blocker_g, 0.0, search.g);
+    if uniform_IS_ONE_WINDOW {
+        return (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, search_averaged(compared, g));
+    }
+    let counts = g > 0.0 && compared_hides(compared, piece, g);
+    return select(vec2f(), (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, search_averaged(compared, g)), counts);
+}
+
+fn search_search_tables(search: search_Search, compared: compared_Compared) -> vec2f {
+    var sum = vec2f();
+    if search.g <= 0.0 {
+        return sum;
+    }
+    var k = 0u;
+    loop {
+        sum += search_window_blockers(search, compared, k);
+        continuing {
+            k++;
+            break if k >= uniform_soft.search_scales;
+        }
+    }
+    return sum;
+}
+
+fn search_window_blockers(search: search_Search, receiver: compared_Compared, k: u32) -> vec2f {
+    let compared = compared_asking_for(receiver, search_window_g(search, k));
+    let half = search_window_half(search, k);
+    let most = search_search_side(k);
+    let is_summed = 2.0 * max(half.x, half.y) > uniform_soft.direct_texels;
+    let low = select(search.center - half, round(search.center - half), is_summed);
+    let high = select(search.center + half, round(search.center + half), is_summed);
+    var sum = vec2f();
+    var rows = pieces_cuts_from(low.y, pieces_pieces_of(2.0 * half.y, most));
+    var j = 0u;
+    loop {
+        let row_high = pieces_next_cut(rows, high.y, map_light_view.map_size.y);
+        sums_begin_row();
+        var columns = pieces_cuts_from(low.x, pieces_pieces_of(2.0 * half.x, most));
+        var i = 0u;
+        loop {
+            let end = pieces_next_cut(columns, high.x, map_light_view.map_size.x);
+            let piece = sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
+            sum += search_counted(search, compared, piece, search_piece_blockers(compared, piece));
+            columns = pieces_cuts_after(columns, end, high.x);
+            continuing {
+                i++;
+                break if i >= pieces_MOST_PIECES || !(columns.at < high.x);
+            }
+        }
+        rows = pieces_cuts_after(rows, row_high, high.y);
+        continuing {
+            j++;
+            break if j >= pieces_MOST_PIECES || !(rows.at < high.y);
+        }
+    }
+    return sum / (4.0 * half.x * half.y);
+}
+
+fn search_search_taps(search: search_Search, compared: compared_Compared) -> vec2f {
+    let side = max(u32(round(sqrt(f32(uniform_soft.search_taps) / f32(uniform_soft.search_scales)))), 1u);
+    let count = select(0u, uniform_soft.search_scales * side * side, search.g > 0.0);
+    var sum = vec2f();
+    for (var i = 0u; i < count; i++) {
+        let k = i / (side * side);
+        let half = search_window_half(search, k);
+        let size = 2.0 * half / f32(side);
+        let low = search.center - half + size * vec2f(vec2u(i % side, i / side % side));
+        let piece = sums_Piece(low, low + size);
+        let place = compared_place_in_map(compared_asking_for(compared, search_window_g(search, k)), sums_middle(piece));
+        let found = map_answer_texel_blocks(compared, map_answer_about(compared, place), place);
+        let is_of_asked = all(place == sums_middle(piece)) || found.y > compared.edge_g;
+        let blocks = select(vec2f(), found, is_of_asked);
+        sum += search_counted(search, compared, piece, answer_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
+    }
+    return sum;
+}
+
+const search_MUCH_NEARER = 0.5;
+
+const search_MOST_LOOKS = 2u;
+
+fn search_search_blockers(compared: compared_Compared) -> vec2f {
+    var search = search_search_of(compared);
+    var sum: vec2f;
+    var mean_g: f32;
+    for (var look = 0u; look < search_MOST_LOOKS; look++) {
+        if search_HAS_SEARCH_TAPS {
+            sum = search_search_taps(search, compared);
+        }
+        else {
+            sum = search_search_tables(search, compared);
+        }
+        mean_g = search_g_of_mean(compared, sum.y, sum.x);
+        if !uniform_HAS_SECOND_LOOK || !(sum.x > 0.0) || !(mean_g < search_MUCH_NEARER * search.g) {
+            break;
+        }
+        search.window_g = mean_g;
+    }
+    search_found_blockers = vec3f(mean_g, search.g, sum.x);
+    return vec2f(mean_g, sum.x / f32(uniform_soft.search_scales));
 }
 
 alias sums_Sum = vec4u;
@@ -2015,6 +2039,12 @@ const uniform_BASIS_MOMENT = 4u;
 const uniform_BASIS_CONVOLUTION = 5u;
 
 override uniform_CUTS_SQUARES: bool = false;
+
+override uniform_IS_ONE_PIECE: bool = false;
+
+override uniform_IS_ONE_WINDOW: bool = false;
+
+override uniform_HAS_SECOND_LOOK: bool = false;
 
 struct uniform_SoftUniform {
     light_extent: vec2f,
