@@ -203,6 +203,18 @@ fn no_light_comes_below_eaves() {
     place.holds("eaves under a lamp", &[("smrt", 0.05)]);
 }
 
+/// Posts' sides that look away from the middle of a wide lamp and see a part of it: their own surface, edge-on in the map, hides nothing.
+#[test]
+fn sides_that_face_away_from_a_lamp_s_middle_see_the_rest_of_it() {
+    let post = |x: f32| Mesh::cuboid(Vec3::new(x, 0.0, -0.1), Vec3::new(x + 0.05, 1.0, 0.1));
+    let overhang = Mesh::cuboid(Vec3::new(0.05, 1.0, -0.3), Vec3::new(0.2, 1.05, 0.3));
+    let scene = base_with([post(0.1), post(0.5), post(0.9), overhang]);
+    let light = Light::new(LightShape::Rectangle { size_m: Vec2::splat(2.4) }, Vec3::Y * 3.0, Vec3::ZERO);
+    let camera = Camera { eye: Vec3::new(2.2, 0.7, 0.9), target: Vec3::new(0.5, 0.6, 0.0), ..Camera::base() };
+    let Some(place) = Place::new(&scene, &camera, light) else { return };
+    place.holds("sides of posts", &[("smrt", 0.03), ("sample_based", 0.02)]);
+}
+
 /// A room of walls of five millimetres around the receivers, and the lamp outside.
 #[test]
 fn corners_of_thin_walls_do_not_leak() {

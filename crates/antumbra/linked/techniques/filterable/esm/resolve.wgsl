@@ -279,7 +279,8 @@ struct space_ReceiverPlane {
     depth_per_uv: vec2f,
     farthest_depth: f32,
     surface_step: f32,
-    bias: f32
+    bias: f32,
+    faces_away: bool
 }
 
 const space_SURFACE_SLOPE = 8.0;
@@ -322,6 +323,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
     var plane: vec2f;
     var biased_z: f32;
     var depth_per_plane: vec2f;
+    var faces_away: bool;
     if view.perspective == 1u {
         let distance = length(p);
         plane = p.xy / p.z;
@@ -330,12 +332,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let k = dot(n, p) * toward;
         let k_min = least_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+        faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
         let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
+        faces_away = n.z > 0.0;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
@@ -345,7 +349,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
     let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
 }
 
 fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {

@@ -160,6 +160,9 @@ fn tile_bins() -> bins_Bins {
 }
 
 fn magnification(open: Open, least_g: f32) -> f32 {
+    if !open.has_rays {
+        return noisy_NO_SMOOTHING;
+    }
     if least_g == map_receiver_NO_G {
         return noisy_NO_MAGNIFICATION;
     }
@@ -466,6 +469,8 @@ fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
 
 const noisy_NO_MAGNIFICATION = 65504.0;
 
+const noisy_NO_SMOOTHING = 0.0;
+
 fn noisy_packed_noisy(visibility: f32, magnification: f32) -> u32 {
     return pack2x16float(vec2f(visibility, min(magnification, noisy_NO_MAGNIFICATION)));
 }
@@ -649,7 +654,8 @@ struct space_ReceiverPlane {
     depth_per_uv: vec2f,
     farthest_depth: f32,
     surface_step: f32,
-    bias: f32
+    bias: f32,
+    faces_away: bool
 }
 
 const space_SURFACE_SLOPE = 8.0;
@@ -711,6 +717,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
     var plane: vec2f;
     var biased_z: f32;
     var depth_per_plane: vec2f;
+    var faces_away: bool;
     if view.perspective == 1u {
         let distance = length(p);
         plane = p.xy / p.z;
@@ -719,12 +726,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let k = dot(n, p) * toward;
         let k_min = least_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+        faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
         let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
+        faces_away = n.z > 0.0;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
@@ -734,7 +743,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
     let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
 }
 
 fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
@@ -895,7 +904,9 @@ struct map_receiver_MapReceiver {
     depth_at_origin: f32,
     slope: vec2f,
     g_per_depth: f32,
-    edge_g: f32
+    edge_g: f32,
+    faces_away: bool,
+    away_margin: f32
 }
 
 fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiver_MapReceiver {
@@ -903,7 +914,7 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m));
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), plane.faces_away, 2.0 * abs(plane.bias));
 }
 
 fn map_receiver_least_depth() -> f32 {
@@ -924,6 +935,13 @@ fn map_receiver_plane_depth_at(receiver: map_receiver_MapReceiver, texel: vec2f)
 
 fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
     return map_receiver_held(receiver, map_receiver_plane_depth_at(receiver, texel));
+}
+
+fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
+    if receiver.faces_away {
+        return vec2f(map_receiver_held(receiver, receiver.depth), map_receiver_plane_depth_at(receiver, texel) - receiver.away_margin);
+    }
+    return vec2f(map_receiver_plane_depth(receiver, texel), map_receiver_NO_G);
 }
 
 fn map_receiver_is_texel(texel: vec2f) -> bool {
@@ -1020,13 +1038,13 @@ fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane,
 }
 
 fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) {
-    let least = map_receiver_plane_depth(receiver, look.texel);
+    let depths = map_receiver_blocking_depths(receiver, look.texel);
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(look.texel, layer);
-        if depth <= least {
+        if depth <= depths.x {
             break;
         }
-        if fan_g_of(receiver, depth) >= look.hiding_g {
+        if depth < depths.y && fan_g_of(receiver, depth) >= look.hiding_g {
             let place = bins_place_among(bins, depth);
             let bin = bins_bin_at(place);
             let beside = (1u << bins_bin_at(place - bins_ROOM)) | (1u << bins_bin_at(place + bins_ROOM));
@@ -1127,18 +1145,22 @@ fn fan_blocker_g_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> f32
         return map_receiver_NO_G;
     }
     let begin = max(fan.at.depth, fan_depth_at_g(fan.at, begin_g));
-    let least = max(map_receiver_plane_depth(fan.at, texel), begin);
+    let depths = max(map_receiver_blocking_depths(fan.at, texel), vec2f(begin));
+    var found = map_receiver_NO_G;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(texel, layer);
-        if depth <= least {
-            return select(map_receiver_NO_G, fan_BEHIND_PLANE_G, depth > begin);
+        if depth <= depths.x {
+            return select(found, fan_BEHIND_PLANE_G, depth > begin);
         }
         let g = fan_g_of(fan.at, depth);
         if fan_far_side(fan, g, layer) <= end_g {
-            return g;
+            if depth < depths.y {
+                return g;
+            }
+            found = fan_BEHIND_PLANE_G;
         }
     }
-    return map_receiver_NO_G;
+    return found;
 }
 
 fn fan_blocker_g_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: f32) -> f32 {
@@ -1147,8 +1169,9 @@ fn fan_blocker_g_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: 
         return blocker_g;
     }
     let steepness = max(length(fan.at.slope), 1e-30);
-    let forward = -fan.at.slope / steepness;
-    let behind = max(map_receiver_plane_depth_at(fan.at, texel) - fan_depth_at_g(fan.at, g), 0.0) / steepness;
+    let towards_light = select(1.0, -1.0, fan.at.faces_away);
+    let forward = -towards_light * fan.at.slope / steepness;
+    let behind = max(towards_light * (map_receiver_plane_depth_at(fan.at, texel) - fan_depth_at_g(fan.at, g)), 0.0) / steepness;
     let in_front = texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y)));
     return min(fan_blocker_g_in(fan, floor(in_front), begin_g, end_g), map_receiver_NO_G);
 }

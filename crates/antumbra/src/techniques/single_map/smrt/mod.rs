@@ -48,6 +48,10 @@
 //! decides: of a wall that is edge-on to the light, texels' centres lie to either side (eaves under a lamp, a host test: .101 and .001
 //! of what is dark was lit; 640 × 360: roughness on `window` .0023 and .0010).
 //!
+//! A receiver that faces away from the light's middle and sees a part of the light is compared from its other side: what is nearer
+//! to the light than its plane is behind it, its own surface among that, and what is farther than the plane and nearer than the
+//! receiver is in front (posts' sides beside a wide lamp, a host test).
+//!
 //! The automatic bias is one texel's width, twice that of the techniques that gather texels by fours: a single texel shows a
 //! surface that lies up to half a texel away.
 //!
