@@ -67,6 +67,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<techniques::filterable::lvsm::gpu_types::LvsmHistogramUniform>(),
         entry::<techniques::filterable::lvsm::gpu_types::LvsmUniform>(),
         entry::<techniques::filterable::moment::gpu_types::MomentUniform>(),
+        entry::<techniques::single_map::bitmask::gpu_types::BitmaskUniform>(),
         entry::<techniques::single_map::hard::gpu_types::HardUniform>(),
         entry::<techniques::multi_layer::gpu_types::FilterStep>(),
         entry::<techniques::multi_layer::gpu_types::NearestStep>(),

@@ -12,6 +12,7 @@ use crate::gpu::{
 };
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
+pub mod bitmask;
 pub mod hard;
 pub mod pcf;
 pub mod pcss;

@@ -1,0 +1,128 @@
+//! `bitmask`: a bit for each point of the light, set where a texel of the light map hides the point.
+//!
+//! Michael Schwarz, Marc Stamminger, "Bitmask Soft Shadows", Computer Graphics Forum 26(3) (Eurographics 2007), 515–524. The map
+//! stands for the casters: each texel is a *micro-patch*, a square at the texel's depth. Projected from the receiver onto
+//! the light's plane it hides an upright rectangle of the light (`patch.wesl`; Guennebaud, Barthe, Paulin, "Real-time soft shadow mapping by
+//! backprojection", EGSR 2006, add such rectangles' areas up). A bit for each of a set of light points records what is hidden: where
+//! patches overlap, a point is counted once, however many hide it, and several layers of casters are one more set of
+//! patches each.
+//!
+//! For each receiver:
+//! 1. **Search area** (`window.wesl`). The part of the map through which the receiver sees the light, which a min/max pyramid of the map
+//!    narrows down.
+//! 2. **Patches.** Each texel there that is in front of the receiver's plane is a patch, in every layer. If there are more than
+//!    `search_patches` along a side, squares of 2, 4, 8 and so on texels are one patch each, of the depth of one of their
+//!    texels. Which one is random: the mean over neighbouring pixels is the share of the square that is covered, where its nearest depth
+//!    would darken whatever is near a silhouette.
+//! 3. **Gaps** (`gaps`). The side that two texels share lies at two places of the light's plane where their depths differ. Each patch
+//!    is carried on to where its neighbours begin, corners included, as in section 3 of the backprojection paper; bits make overlaps
+//!    harmless.
+//! 4. **Bits** (`light_bits.wesl`). A table of the points, sorted into 32 bins along either axis, gives those that may lie in the
+//!    rectangle; they are tested one by one.
+//!
+//! # Departures from the paper
+//! - The points are those of the other techniques of one map, moved at each pixel (`rotate`); the paper's are the same at all pixels, which
+//!   shows bands.
+//! - The table holds prefixes of bins for a rectangle's, a disk's, a sun's or a sphere's points in their own coordinates, and the points
+//!   are tested exactly. An ellipsoid's and a list's points are all tested.
+//! - A patch is in front where it is in front of the receiver's plane at the texel's centre and nearer to the light than the receiver.
+//! - Points below the receiver's horizon are hidden. Receivers without blockers get the share above it in closed form.
+//!
+//! # Limits
+//! Silhouettes are staircases of texels, and no penumbra is narrower than a texel. Nothing is known behind the last layer, nor behind
+//! a host's own depth map: light leaks in below stacked occluders. Filled gaps close narrow openings between surfaces that are next to
+//! each other in the map. Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide penumbrae. Loops are
+//! bounded by the counts of patches, layers and points.
+
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
+use crate::gpu::{Gpu, Recorder, Stage};
+use crate::light_map::light_spread::LightSpread;
+use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::shaders;
+use crate::techniques::Technique;
+use crate::techniques::single_map::taps::{TapLists, TapUse, Taps, TapsProgram};
+use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
+
+#[cfg(test)]
+mod cpu;
+pub(crate) mod gpu_types;
+mod params;
+#[cfg(test)]
+mod tests;
+
+use gpu_types::BitmaskUniform;
+pub use params::{BitmaskGaps, BitmaskParams};
+
+/// Bitmask soft shadows.
+#[derive(Debug)]
+pub struct Bitmask {
+    resolve: MapResolve<BitmaskUniform>,
+}
+
+impl Bitmask {
+    /// The technique with another resolve shader.
+    fn with_shader(gpu: &Gpu, wgsl: &'static str) -> Self {
+        let defaults = BitmaskParams::default();
+        let constants = constants(TapsProgram::usual(defaults.layers), defaults.samples);
+        Self { resolve: MapResolve::new(gpu, Self::NAME, wgsl, &constants, MapSearch::Layers) }
+    }
+}
+
+impl Technique for Bitmask {
+    const NAME: &'static str = "bitmask";
+    type Params = BitmaskParams;
+    type Prepared = PreparedMapResolve;
+
+    fn new(gpu: &Gpu) -> Result<Self, Error> {
+        Ok(Self::with_shader(gpu, shaders::BITMASK_RESOLVE))
+    }
+
+    fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        frame: &PreparedFrame<'_>,
+        params: &BitmaskParams,
+    ) -> Result<PreparedMapResolve, Error> {
+        let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run: stage.noise_frame() };
+        let spread = LightSpread::of(frame.light);
+        let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
+        let layers = if is_own { params.layers } else { 1 };
+        let uniform = BitmaskUniform {
+            sample_count: params.samples,
+            search_patches: params.search_patches,
+            rotate: params.rotate.into(),
+            steepest_gap: match params.gaps {
+                BitmaskGaps::Open => -1.0,
+                BitmaskGaps::Surfaces => 1.0,
+                BitmaskGaps::All => f32::MAX,
+            },
+            light_extent: spread.extent,
+            light_extent_axis: spread.extent_axis,
+            bias_scale: params.bias_scale,
+        };
+        let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
+        let constants = constants(TapsProgram::of(&taps, layers), params.samples);
+        let pass = ResolvePass { map, constants: &constants, is_sparse: false };
+        let lists = TapLists([(taps, TapUse::Search, 0), (taps, TapUse::Filter, params.samples)]);
+        lists.with_kernel(|kernel| self.resolve.prepare(stage, frame, &pass, &uniform, kernel))
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
+        self.resolve.record(recorder, frame, prepared);
+    }
+
+    fn drawn_map(&self) -> Option<DrawnMap> {
+        self.resolve.drawn_map()
+    }
+
+    fn memory_bytes(&self) -> u64 {
+        self.resolve.memory_bytes()
+    }
+}
+
+/// Of the resolve's shader, by their names.
+fn constants(taps: TapsProgram, samples: u32) -> [(&'static str, f64); 4] {
+    // Points are walked to their end, whatever their order.
+    let [kind, layers, emission, _] = taps.constants();
+    [kind, layers, emission, ("WORD_COUNT", f64::from(samples.div_ceil(32)))]
+}

@@ -1,0 +1,228 @@
+//! Patches against rays in space, bits against tests of every point, and what bits are for: occluders one behind another.
+
+use antumbra_light::{Light, LightShape, hash_u32, unit_f32};
+use glam::{Vec2, Vec3};
+
+use super::cpu::{Patch, Squares, hidden_point};
+use super::{Bitmask, BitmaskParams, gpu_types};
+use crate::TechniqueKind;
+use crate::contract::Params;
+use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, compute_pipeline};
+use crate::shaders;
+use crate::techniques::Technique;
+use crate::testing::{
+    Case, Mesh, RECTANGLE, SIZE, View, gpu, half_plane_visibility, read_storage, read_texture, rmse, test_ground,
+};
+
+const KIND: TechniqueKind = TechniqueKind::Bitmask;
+
+/// In [0, 1).
+fn random(i: u32, of: u32) -> f32 {
+    unit_f32(hash_u32(i ^ hash_u32(of + 0x51ed)))
+}
+
+#[test]
+fn the_reference_hides_what_lies_on_the_segment() {
+    // Halfway up, an occluder hides the point that mirrors the receiver in it.
+    let hidden = hidden_point(Vec3::new(0.5, 0.0, 4.0), Vec2::new(100.0, 0.0), 2.0, 100.0);
+    assert!((hidden - Vec2::new(350.0, 0.0)).length() < 1e-3, "{hidden}");
+}
+
+bindings! {
+    struct Probe = "patch probe", COMPUTE, group 0 of [BITMASK_PATCH_PROBE] {
+        0 inputs: Storage,
+        1 outputs: ReadWrite,
+    }
+}
+
+/// `ProbedSquare` of the shader, as words.
+type ProbedSquare = [f32; 16];
+
+/// The shader's patches of squares, alone and joined.
+fn probed(gpu: &Gpu, squares: &[ProbedSquare]) -> Vec<[Patch; 2]> {
+    let buffer = |bytes: usize, usage| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("test probe"),
+            size: bytes as u64,
+            usage: usage | wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        })
+    };
+    let input = buffer(size_of_val(squares), wgpu::BufferUsages::COPY_DST);
+    let output = buffer(32 * squares.len(), wgpu::BufferUsages::COPY_SRC);
+    gpu.queue().write_buffer(&input, 0, bytemuck::cast_slice(squares));
+    let layout = Probe::layout(gpu);
+    let pipeline = compute_pipeline(gpu, "test probe", shaders::BITMASK_PATCH_PROBE, &[&layout]);
+    let group = Probe { inputs: &input, outputs: &output }.kept_group(gpu, &layout);
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.dispatch_workgroups(squares.len().div_ceil(64) as u32, 1, 1);
+    drop(pass);
+    gpu.queue().submit([encoder.finish()]);
+    let patch = |v: &[f32]| Patch { low: Vec2::new(v[0], v[1]), high: Vec2::new(v[2], v[3]) };
+    read_storage::<[f32; 8]>(gpu, &output).iter().map(|v| [patch(&v[..4]), patch(&v[4..])]).collect()
+}
+
+#[test]
+fn patches_are_what_rays_through_their_corners_hit() {
+    let Some(gpu) = gpu() else { return };
+    const TEXELS_PER_TANGENT: f32 = 512.0;
+    let scene = |i: u32| {
+        let receiver_m = Vec3::new(2.0 * random(i, 0) - 1.0, 2.0 * random(i, 1) - 1.0, 5.0 + random(i, 2));
+        let depth_m = move |x: i32, y: i32| {
+            let square = hash_u32(i ^ hash_u32((x + 3) as u32 ^ ((y + 3) as u32) << 8));
+            // A quarter of the neighbours hides nothing.
+            let hides = (x, y) == (0, 0) || unit_f32(hash_u32(square)) > 0.25;
+            hides.then(|| 1.0 + 3.0 * unit_f32(square))
+        };
+        (receiver_m, depth_m)
+    };
+    let square = |i: u32| {
+        let (receiver_m, depth_m) = scene(i);
+        let center = TEXELS_PER_TANGENT * receiver_m.truncate() / receiver_m.z;
+        let scale = |x, y| depth_m(x, y).map_or(0.0, |z_m: f32| 1.0 / (1.0 / z_m - 1.0 / receiver_m.z));
+        let (low, high) = (-center, Vec2::ONE - center);
+        [
+            [low.x, low.y, high.x, high.y],
+            [scale(-1, -1), scale(0, -1), scale(1, -1), scale(0, 0)],
+            [scale(-1, 1), scale(0, 1), scale(1, 1), 0.0],
+            [scale(-1, 0), scale(1, 0), 0.0, 0.0],
+        ]
+        .concat()
+        .try_into()
+        .expect("sixteen words")
+    };
+    let squares: Vec<ProbedSquare> = (0..4096).map(square).collect();
+    let mut wider = 0;
+    for (i, [alone, joined]) in (0..).zip(probed(gpu, &squares)) {
+        let (receiver_m, depth_m) = scene(i);
+        let squares = Squares { receiver_m, texels_per_tangent: TEXELS_PER_TANGENT, depth_m: &depth_m };
+        for (is, of) in [(alone, squares.alone(0, 0)), (joined, squares.joined(0, 0))] {
+            let off = (is.low - of.low).abs().max((is.high - of.high).abs()).max_element();
+            assert!(off < 0.02, "square {i}: {is:?}, and {of:?} by rays");
+        }
+        wider += usize::from(joined != alone);
+    }
+    assert!(wider > 2000, "{wider} squares have gaps beside them");
+}
+
+/// The mask of a technique that is made by hand.
+fn mask_of(gpu: &Gpu, case: &Case, technique: &mut Bitmask, params: &BitmaskParams) -> Vec<f32> {
+    let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
+    case.with_prepared(&casters, |frame| {
+        let prepared = technique.prepare(&Stage::at_once(gpu), frame, params).expect("a good frame");
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        technique.record(&mut Recorder::new(&mut encoder, None), frame, &prepared);
+        gpu.queue().submit([encoder.finish()]);
+        bytemuck::pod_collect_to_vec(&read_texture(gpu, frame.mask.texture(), 0, SIZE))
+    })
+}
+
+/// Every shape's points, few and many, found by the table are those that a test of all finds.
+#[test]
+fn the_table_leaves_no_point_out() {
+    let Some(gpu) = gpu() else { return };
+    for shape in [
+        RECTANGLE,
+        LightShape::Rectangle { size_m: Vec2::new(1.6, 0.3) },
+        LightShape::Disk { radius_m: 0.6 },
+        LightShape::Sphere { radius_m: 0.6 },
+        LightShape::Ellipsoid { radii_m: Vec3::new(0.6, 0.3, 0.4) },
+        LightShape::Sun { angular_diameter_rad: 0.2 },
+    ] {
+        let mut case = Case::half_plane(gpu, shape.clone());
+        // Neither upright nor in the middle.
+        case.light = Light::new(shape.clone(), Vec3::new(0.7, 4.0, -0.4), Vec3::new(0.1, 0.0, 0.3));
+        for (key, value) in [("samples", "64"), ("samples", "200"), ("rotate", "false"), ("gaps", "open")] {
+            let masks = [shaders::BITMASK_RESOLVE, shaders::BITMASK_RESOLVE_EXHAUSTIVE].map(|wgsl| {
+                let mut params = BitmaskParams::default();
+                for (key, value) in [("map_size", "256"), (key, value)] {
+                    params.set(Bitmask::NAME, key, value).expect("in range");
+                }
+                mask_of(gpu, &case, &mut Bitmask::with_shader(gpu, wgsl), &params)
+            });
+            let partly = masks[0].iter().filter(|v| (0.02..0.98).contains(*v)).count();
+            assert!(partly > 300, "{shape:?}: {partly} pixels in penumbrae");
+            let off = masks[0].iter().zip(&masks[1]).filter(|(a, b)| a != b).count();
+            assert_eq!(off, 0, "{shape:?}, {key}={value}: pixels that differ");
+        }
+    }
+}
+
+/// A second occluder inside the first one's shadow changes nothing, and one that reaches beyond hides what it hides alone: their areas
+/// are not added up.
+#[test]
+fn what_is_hidden_twice_counts_once() {
+    let Some(gpu) = gpu() else { return };
+    let mut case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    // At 3 m, where the segment to the light point o is at x + (o − x) · 3/4: hidden below −0.1 m.
+    case.meshes.push(Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(-0.1, 4.0), 3.0));
+    let truth = |p: Vec3| {
+        let first_past_upper = (-0.1 - 0.25 * p.x) / 0.75;
+        half_plane_visibility(p.x, 1.0).min((0.5 - first_past_upper).clamp(0.0, 1.0))
+    };
+    let both = pixels.iter().filter(|(_, p)| half_plane_visibility(p.x, 1.0) < 0.9 && truth(*p) > 0.1).count();
+    assert!(both > 500, "{both} pixels see both edges");
+    let error = |layers: &str| {
+        rmse(&pixels, &case.run(gpu, KIND, &[("samples", "256"), ("layers", layers)]), truth)
+    };
+    let (one, two) = (error("1"), error("2"));
+    println!("rmse {one:.4} with the nearest casters alone, {two:.4} with those behind them");
+    assert!(two < 0.004, "rmse {two}");
+    assert!(one > 5.0 * two, "rmse {one} without those behind");
+}
+
+/// Below a sheet that rises steeply towards the light, texels lie one above another, and the receiver sees between them.
+#[test]
+fn filled_gaps_keep_light_out() {
+    let Some(gpu) = gpu() else { return };
+    let light = Light::new(RECTANGLE, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
+    let view = View::new(Vec3::new(2.0, 1.2, 5.0), Vec3::new(0.6, 0.0, 0.0));
+    let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
+    let corners = [
+        Vec3::new(-0.2, 3.4, -4.0),
+        Vec3::new(-0.2, 3.4, 4.0),
+        Vec3::new(2.2, 0.5, 4.0),
+        Vec3::new(2.2, 0.5, -4.0),
+    ];
+    let sheet = Mesh::new(gpu, &corners, &[0, 1, 2, 0, 2, 3]);
+    let case = Case::new(gpu, light, view, vec![ground, sheet]);
+    // Rays from here to all of the light pass through the sheet: at height h it lies at x = 2.2 − 2.4 (h − .5) / 2.9.
+    let below = case.ground_pixels(|p| (0.8..1.6).contains(&p.x) && p.z.abs() < 1.0);
+    assert!(below.len() > 100, "{} pixels", below.len());
+    let lit = |gaps: &str| {
+        let mask = case.run(gpu, KIND, &[("map_size", "128"), ("gaps", gaps), ("search_patches", "64")]);
+        below.iter().map(|(i, _)| mask[*i]).sum::<f32>() / below.len() as f32
+    };
+    let (open, filled) = (lit("open"), lit("surfaces"));
+    println!("{open:.4} of the light comes through gaps, {filled:.4} where they are filled");
+    assert!(filled < 1e-4 && open > 0.01, "{open} through gaps, {filled} where they are filled");
+}
+
+/// Fewer and larger patches cost noise and no light: the mean over pixels stays.
+#[test]
+fn larger_patches_keep_the_mean() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let pixels = case.ground_pixels(test_ground);
+    let truth = |p: Vec3| half_plane_visibility(p.x, 1.0);
+    let of = |search_patches: &str| {
+        let settings = [("map_size", "2048"), ("samples", "256"), ("search_patches", search_patches)];
+        let mask = case.run(gpu, KIND, &settings);
+        let bias = pixels.iter().map(|(i, p)| mask[*i] - truth(*p)).sum::<f32>() / pixels.len() as f32;
+        (rmse(&pixels, &mask, truth), bias)
+    };
+    let ((few, few_bias), (many, many_bias)) = (of("4"), of("64"));
+    println!("rmse {few:.4} with 4 patches a side, {many:.4} with 64; mean error {few_bias:.5} and {many_bias:.5}");
+    assert!(few_bias.abs() < 0.004 && many_bias.abs() < 0.002, "{few_bias} and {many_bias}");
+    assert!(many < 0.5 * few, "rmse {few} and {many}");
+}
+
+#[test]
+fn words_hold_every_number_of_samples() {
+    let spec = BitmaskParams::specs().iter().find(|spec| spec.key == "samples").expect("a parameter");
+    assert_eq!(spec.range, Some((1.0, f64::from(32 * gpu_types::MOST_WORDS))));
+}
