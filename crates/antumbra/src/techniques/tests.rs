@@ -82,7 +82,13 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
         let first_visible = -p.x * (1.0 - 0.375) / 0.375;
         0.5 * f32::from(u8::from(-0.5 > first_visible) + u8::from(0.5 > first_visible))
     };
-    let kinds = [TechniqueKind::MultiView, TechniqueKind::Pcss, TechniqueKind::Smrt, TechniqueKind::Bitmask, TechniqueKind::RayTraced];
+    let kinds = [
+        TechniqueKind::MultiView,
+        TechniqueKind::Pcss,
+        TechniqueKind::Smrt,
+        TechniqueKind::Bitmask,
+        TechniqueKind::RayTraced,
+    ];
     for kind in kinds {
         let error = rmse(&pixels, &case.run(gpu, kind, &[]), truth);
         println!("{kind}, points: rmse {error:.4}");
@@ -312,8 +318,7 @@ fn a_host_s_depth_map_may_be_infinitely_deep() {
     let size_px = UVec2::splat(512);
     let fov_y = 2.0 * 1.2f32.atan();
     let near_m = 0.3;
-    let take_depth =
-        "hard pcf pcss smrt bitmask pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
+    let take_depth = "hard pcf pcss smrt bitmask pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
     for name in take_depth.split(' ') {
         let kind = TechniqueKind::from_name(name).expect("a technique");
         let masks = [

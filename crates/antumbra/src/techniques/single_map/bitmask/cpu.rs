@@ -45,8 +45,7 @@ impl Squares<'_> {
             let Some(z_m) = (self.depth_m)(x + beside, y + above) else { continue };
             let [low_left, low_right, high_left, high_right] = self.corners(x, y, z_m);
             let mut shared = Vec::new();
-            for (corner, right, up) in
-                [(low_left, -1, -1), (low_right, 1, -1), (high_left, -1, 1), (high_right, 1, 1)]
+            for (corner, right, up) in [(low_left, -1, -1), (low_right, 1, -1), (high_left, -1, 1), (high_right, 1, 1)]
             {
                 if [0, right].contains(&beside) && [0, up].contains(&above) {
                     shared.push((corner, right, up));

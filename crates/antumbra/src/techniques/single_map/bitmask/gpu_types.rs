@@ -11,8 +11,8 @@ gpu_structs! {
     /// Parameters of `resolve.wesl`.
     pub(crate) struct BitmaskUniform {
         sample_count: u32,
-        /// Patches along a side of the search area, at the most.
-        search_patches: u32,
+        /// Of the light's width a patch hides one part in so many at the most, unless it is a texel's.
+        patches: u32,
         rotate: u32,
         /// Of a step between neighbours over which a gap is filled the steepest slope, in that of one surface; negative where none is.
         steepest_gap: f32,

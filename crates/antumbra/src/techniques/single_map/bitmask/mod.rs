@@ -8,15 +8,15 @@
 //! patches each.
 //!
 //! For each receiver:
-//! 1. **Search area** (`window.wesl`). The part of the map through which the receiver sees the light, which a min/max pyramid of the map
-//!    narrows down.
-//! 2. **Patches.** Each texel there that is in front of the receiver's plane is a patch, in every layer. If there are more than
-//!    `search_patches` along a side, squares of 2, 4, 8 and so on texels are one patch each, of the depth of one of their
-//!    texels. Which one is random: the mean over neighbouring pixels is the share of the square that is covered, where its nearest depth
-//!    would darken whatever is near a silhouette.
-//! 3. **Gaps** (`gaps`). The side that two texels share lies at two places of the light's plane where their depths differ. Each patch
-//!    is carried on to where its neighbours begin, corners included, as in section 3 of the backprojection paper; bits make overlaps
-//!    harmless.
+//! 1. **Search area.** The part of the map through which the receiver sees the light, which a min/max pyramid of the map narrows down.
+//! 2. **Patches** (`window.wesl`). A quadtree over that part: a square whose nearest depth hides nothing of the light is skipped, and one whose
+//!    patch may be wider than the light's width / `patches` is split, down to texels. A square of several texels shows the depth of one of
+//!    them, at a place that is random at each pixel and evenly spread over squares: the share of squares that counts as covered is
+//!    then that of their area, where the nearest depth of each would darken whatever is near a silhouette. What is in front of the receiver's plane
+//!    is a patch, in every layer.
+//! 3. **Gaps** (`gaps`). The side that two squares share lies at two places of the light's plane where their depths differ. Each patch is
+//!    carried on to where its neighbours begin, corners included, as Guennebaud et al. fill gaps; bits make overlaps harmless. Between two
+//!    occluders the gap stays open, as it is in space: what one hides of the other is in the layers behind.
 //! 4. **Bits** (`light_bits.wesl`). A table of the points, sorted into 32 bins along either axis, gives those that may lie in the
 //!    rectangle; they are tested one by one.
 //!
@@ -26,13 +26,14 @@
 //! - The table holds prefixes of bins for a rectangle's, a disk's, a sun's or a sphere's points in their own coordinates, and the points
 //!   are tested exactly. An ellipsoid's and a list's points are all tested.
 //! - A patch is in front where it is in front of the receiver's plane at the texel's centre and nearer to the light than the receiver.
+//! - Squares of the quadtree take the place of one level of the map for all of the search area.
 //! - Points below the receiver's horizon are hidden. Receivers without blockers get the share above it in closed form.
 //!
 //! # Limits
 //! Silhouettes are staircases of texels, and no penumbra is narrower than a texel. Nothing is known behind the last layer, nor behind
-//! a host's own depth map: light leaks in below stacked occluders. Filled gaps close narrow openings between surfaces that are next to
-//! each other in the map. Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide penumbrae. Loops are
-//! bounded by the counts of patches, layers and points.
+//! a host's own depth map: light leaks in below stacked occluders. Micro-patches are parallel to the map: the paper's micro-quads, between
+//! texels' centres, are not here. Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide penumbrae. Loops
+//! are bounded by the counts of patches, layers and points.
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -50,7 +51,7 @@ mod params;
 #[cfg(test)]
 mod tests;
 
-use gpu_types::BitmaskUniform;
+use gpu_types::{BitmaskUniform, MOST_WORDS};
 pub use params::{BitmaskGaps, BitmaskParams};
 
 /// Bitmask soft shadows.
@@ -89,7 +90,7 @@ impl Technique for Bitmask {
         let layers = if is_own { params.layers } else { 1 };
         let uniform = BitmaskUniform {
             sample_count: params.samples,
-            search_patches: params.search_patches,
+            patches: params.patches,
             rotate: params.rotate.into(),
             steepest_gap: match params.gaps {
                 BitmaskGaps::Open => -1.0,
@@ -124,5 +125,5 @@ impl Technique for Bitmask {
 fn constants(taps: TapsProgram, samples: u32) -> [(&'static str, f64); 4] {
     // Points are walked to their end, whatever their order.
     let [kind, layers, emission, _] = taps.constants();
-    [kind, layers, emission, ("WORD_COUNT", f64::from(samples.div_ceil(32)))]
+    [kind, layers, emission, ("WORD_COUNT", f64::from(samples.div_ceil(32).min(MOST_WORDS)))]
 }

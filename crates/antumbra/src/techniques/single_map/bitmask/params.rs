@@ -21,9 +21,9 @@ params! {
         /// Number of points of the light, a bit for each.
         samples: u32 = 64, in 1..=256, scale Log,
             more "Smoother penumbrae; time grows more slowly than the number.";
-        /// Maximum number of patches along each side of the search area: of larger ones, patches of 2, 4, 8 and so on texels a
-        /// side show one texel each.
-        search_patches: u32 = 16, in 4..=64, scale Log,
+        /// Number of patches along the light: squares of the map are split until each hides less of the light, or is a texel.
+        /// Those of several texels show one of them.
+        patches: u32 = 16, in 4..=64, scale Log,
             more "Finer occluders in wide penumbrae and less noise; time grows with the square.";
         /// Gaps that are filled between patches at different depths.
         gaps: BitmaskGaps = BitmaskGaps::Surfaces,
@@ -41,7 +41,7 @@ params! {
         shared seed;
         shared bias_scale;
     }
-    Fast { map_size: MapSize::Texels(640), samples: 32, search_patches: 8, layers: 2, }
-    High { map_size: MapSize::Texels(2048), samples: 128, search_patches: 32, layers: 4, }
-    Best { map_size: MapSize::Texels(4096), samples: 256, search_patches: 64, layers: 4, }
+    Fast { map_size: MapSize::Texels(640), samples: 32, patches: 8, layers: 2, }
+    High { map_size: MapSize::Texels(2048), samples: 128, patches: 32, layers: 4, }
+    Best { map_size: MapSize::Texels(4096), samples: 256, patches: 64, layers: 4, }
 }

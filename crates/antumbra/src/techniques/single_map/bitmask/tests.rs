@@ -166,9 +166,7 @@ fn what_is_hidden_twice_counts_once() {
     };
     let both = pixels.iter().filter(|(_, p)| half_plane_visibility(p.x, 1.0) < 0.9 && truth(*p) > 0.1).count();
     assert!(both > 500, "{both} pixels see both edges");
-    let error = |layers: &str| {
-        rmse(&pixels, &case.run(gpu, KIND, &[("samples", "256"), ("layers", layers)]), truth)
-    };
+    let error = |layers: &str| rmse(&pixels, &case.run(gpu, KIND, &[("samples", "256"), ("layers", layers)]), truth);
     let (one, two) = (error("1"), error("2"));
     println!("rmse {one:.4} with the nearest casters alone, {two:.4} with those behind them");
     assert!(two < 0.004, "rmse {two}");
@@ -182,19 +180,15 @@ fn filled_gaps_keep_light_out() {
     let light = Light::new(RECTANGLE, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
     let view = View::new(Vec3::new(2.0, 1.2, 5.0), Vec3::new(0.6, 0.0, 0.0));
     let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
-    let corners = [
-        Vec3::new(-0.2, 3.4, -4.0),
-        Vec3::new(-0.2, 3.4, 4.0),
-        Vec3::new(2.2, 0.5, 4.0),
-        Vec3::new(2.2, 0.5, -4.0),
-    ];
+    let corners =
+        [Vec3::new(-0.2, 3.4, -4.0), Vec3::new(-0.2, 3.4, 4.0), Vec3::new(2.2, 0.5, 4.0), Vec3::new(2.2, 0.5, -4.0)];
     let sheet = Mesh::new(gpu, &corners, &[0, 1, 2, 0, 2, 3]);
     let case = Case::new(gpu, light, view, vec![ground, sheet]);
     // Rays from here to all of the light pass through the sheet: at height h it lies at x = 2.2 − 2.4 (h − .5) / 2.9.
     let below = case.ground_pixels(|p| (0.8..1.6).contains(&p.x) && p.z.abs() < 1.0);
     assert!(below.len() > 100, "{} pixels", below.len());
     let lit = |gaps: &str| {
-        let mask = case.run(gpu, KIND, &[("map_size", "128"), ("gaps", gaps), ("search_patches", "64")]);
+        let mask = case.run(gpu, KIND, &[("map_size", "128"), ("gaps", gaps), ("patches", "64")]);
         below.iter().map(|(i, _)| mask[*i]).sum::<f32>() / below.len() as f32
     };
     let (open, filled) = (lit("open"), lit("surfaces"));
@@ -209,8 +203,8 @@ fn larger_patches_keep_the_mean() {
     let case = Case::half_plane(gpu, RECTANGLE);
     let pixels = case.ground_pixels(test_ground);
     let truth = |p: Vec3| half_plane_visibility(p.x, 1.0);
-    let of = |search_patches: &str| {
-        let settings = [("map_size", "2048"), ("samples", "256"), ("search_patches", search_patches)];
+    let of = |patches: &str| {
+        let settings = [("map_size", "2048"), ("samples", "256"), ("patches", patches)];
         let mask = case.run(gpu, KIND, &settings);
         let bias = pixels.iter().map(|(i, p)| mask[*i] - truth(*p)).sum::<f32>() / pixels.len() as f32;
         (rmse(&pixels, &mask, truth), bias)

@@ -2,7 +2,7 @@
 
 const TEXEL_BIAS = 2.0;
 
-const MOST_SQUARES = 65u;
+const LEVELS = 13u;
 
 const R2 = vec2f(0.754877666, 0.569840291);
 
@@ -49,7 +49,7 @@ fn hidden_by(patch_: patch_Patch, light: light_taps_LightPlane, before: Hidden) 
     return hidden;
 }
 
-fn hidden_in(window: window_Window, square: vec2u, light: light_taps_LightPlane, before: Hidden) -> Hidden {
+fn hidden_in(window: window_Window, square: window_Square, light: light_taps_LightPlane, before: Hidden) -> Hidden {
     var hidden = before;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let scale = window_scale_in(window, square, layer);
@@ -57,6 +57,31 @@ fn hidden_in(window: window_Window, square: vec2u, light: light_taps_LightPlane,
             break;
         }
         hidden = hidden_by(window_patch_in(window, square, scale, layer, settings_bitmask.steepest_gap), light, hidden);
+    }
+    return hidden;
+}
+
+fn hidden_below(window: window_Window, root: vec2u, light: light_taps_LightPlane, before: Hidden) -> Hidden {
+    var hidden = before;
+    let across = 2u * settings_bitmask.patches + 4u;
+    let end = 1u << (2u * window.level);
+    var level = window.level;
+    var code = 0u;
+    for (var i = 0u; i < LEVELS * across * across; i++) {
+        if code >= end || is_all_hidden(hidden) {
+            break;
+        }
+        let square = window_square_at(window, root, code, level);
+        let most_g = select(0.0, window_most_g_in(window, square), level > 0u);
+        if window_side_of(square) > window.widest * most_g && most_g > 0.0 {
+            level -= 1u;
+            continue;
+        }
+        if level == 0u || most_g > 0.0 {
+            hidden = hidden_in(window, square, light, hidden);
+        }
+        code += 1u << (2u * level);
+        level = min(countTrailingZeros(code) / 2u, window.level);
     }
     return hidden;
 }
@@ -97,13 +122,13 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let shift = select(vec2f(), noise_shift_of_pixel(pixel), settings_bitmask.rotate == 1u);
     let light = light_taps_light_plane(receiver, pos_in_light, shift);
     let texels = light_taps_texels_per_offset();
-    let reach = most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y);
-    let shown = select(vec2f(0.5), fract(shift + R2), settings_bitmask.rotate == 1u);
-    let window = window_window_of(map_receiver_map_receiver(plane, pos_in_light.z), pos_in_light.z, reach, settings_bitmask.search_patches, shown);
+    let reach = abs(texels[0]) * extent.x + abs(texels[1]) * extent.y;
+    let at = map_receiver_map_receiver(plane, pos_in_light.z);
+    let window = window_window_of(at, pos_in_light.z, reach, most_g, settings_bitmask.patches, shift + R2);
     var hidden = below_horizon(light, share);
-    for (var y = 0u; y < min(window.count.y, MOST_SQUARES) && !is_all_hidden(hidden); y++) {
-        for (var x = 0u; x < min(window.count.x, MOST_SQUARES); x++) {
-            hidden = hidden_in(window, window.first + vec2u(x, y), light, hidden);
+    for (var y = 0u; y < min(window.count.y, window_ROOTS + 1u); y++) {
+        for (var x = 0u; x < min(window.count.x, window_ROOTS + 1u); x++) {
+            hidden = hidden_below(window, window.first + vec2u(x, y), light, hidden);
         }
     }
     return visible_share(light, hidden);
@@ -744,7 +769,7 @@ fn patch_joined(low: vec2f, high: vec2f, own: f32, around: patch_Neighbours) -> 
 
 struct settings_BitmaskUniform {
     sample_count: u32,
-    search_patches: u32,
+    patches: u32,
     rotate: u32,
     steepest_gap: f32,
     light_extent: vec2f,
@@ -762,21 +787,74 @@ const settings_MOST_WORDS: u32 = 8;
 struct window_Window {
     at: map_receiver_MapReceiver,
     inverse_z: f32,
-    side: u32,
+    extent: vec2f,
+    widest: f32,
+    level: u32,
     first: vec2u,
     count: vec2u,
-    shown: vec2u
+    share: vec2f
 }
 
-fn window_window_of(at: map_receiver_MapReceiver, z_m: f32, reach: vec2f, most_squares: u32, share: vec2f) -> window_Window {
+struct window_Square {
+    place: vec2u,
+    level: u32
+}
+
+const window_ROOTS = 4u;
+
+fn window_window_of(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, most_g: f32, parts: u32, share: vec2f) -> window_Window {
     let last = map_light_view.map_size - 1.0;
-    let low = vec2u(clamp(at.center - reach, vec2f(), last));
-    let high = vec2u(clamp(at.center + reach, vec2f(), last));
+    let low = vec2u(clamp(at.center - extent * most_g, vec2f(), last));
+    let high = vec2u(clamp(at.center + extent * most_g, vec2f(), last));
     let span = max(high.x - low.x, high.y - low.y);
-    let shift = vec2u(32u - countLeadingZeros(span / most_squares));
-    let side = 1u << shift.x;
-    let first = low >> shift;
-    return window_Window(at, 1.0 / z_m, side, first, (high >> shift) - first + 1u, vec2u(share * f32(side)));
+    let level = 32u - countLeadingZeros(span / window_ROOTS);
+    let first = low >> vec2u(level);
+    let widest = 2.0 * sqrt(extent.x * extent.y) / f32(parts);
+    return window_Window(at, 1.0 / z_m, extent, widest, level, first, (high >> vec2u(level)) - first + 1u, share);
+}
+
+fn window_even_bits(number: u32) -> u32 {
+    var x = number & 1431655765u;
+    x = (x | (x >> 1u)) & 858993459u;
+    x = (x | (x >> 2u)) & 252645135u;
+    x = (x | (x >> 4u)) & 16711935u;
+    return (x | (x >> 8u)) & 65535u;
+}
+
+fn window_square_at(window: window_Window, root: vec2u, code: u32, level: u32) -> window_Square {
+    let texel = (root << vec2u(window.level)) + vec2u(window_even_bits(code), window_even_bits(code >> 1u));
+    return window_Square(texel >> vec2u(level), level);
+}
+
+fn window_side_of(square: window_Square) -> f32 {
+    return f32(1u << square.level);
+}
+
+struct window_Sides {
+    low: vec2f,
+    high: vec2f
+}
+
+fn window_sides_of(window: window_Window, square: window_Square) -> window_Sides {
+    let low = vec2f(square.place << vec2u(square.level)) - window.at.center;
+    return window_Sides(low, low + window_side_of(square));
+}
+
+fn window_most_g_in(window: window_Window, square: window_Square) -> f32 {
+    let ends = textureLoad(blocker_range_light_map_pyramid, square.place, square.level - 1u).xy;
+    let nearest = select(-ends.x, ends.y, map_light_view.depth_sign > 0.0);
+    let g = (nearest - window.at.depth) * window.at.g_per_depth;
+    let sides = window_sides_of(window, square);
+    let is_beside = any(sides.low > g * window.extent) || any(sides.high < -g * window.extent);
+    return select(g, 0.0, g <= 0.0 || (is_beside && g < window.at.edge_g));
+}
+
+const window_GOLDEN = 0.618033989;
+
+fn window_shown_texel(window: window_Window, square: window_Square) -> vec2u {
+    let share = fract(window.share + window_GOLDEN * vec2f(square.place.yx & vec2u(63u)));
+    let texel = (square.place << vec2u(square.level)) + vec2u(share * window_side_of(square));
+    return min(texel, vec2u(map_light_view.map_size) - 1u);
 }
 
 fn window_stored_depth(texel: vec2u, layer: u32) -> f32 {
@@ -786,52 +864,48 @@ fn window_stored_depth(texel: vec2u, layer: u32) -> f32 {
     return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
 }
 
-fn window_scale_in(window: window_Window, square: vec2u, layer: u32) -> f32 {
-    let texel = min(square * window.side + window.shown, vec2u(map_light_view.map_size) - 1u);
+fn window_scale_in(window: window_Window, square: window_Square, layer: u32) -> f32 {
+    let texel = window_shown_texel(window, square);
     let depth = window_stored_depth(texel, layer);
     let g = (depth - window.at.depth) * window.at.g_per_depth;
     return select(0.0, 1.0 / max(g, 1e-20), depth > map_receiver_plane_depth(window.at, vec2f(texel)));
 }
 
-fn window_scale_beside(window: window_Window, square: vec2i, layer: u32) -> f32 {
-    if !map_receiver_is_texel(vec2f(square) * f32(window.side)) {
+fn window_scale_beside(window: window_Window, square: window_Square, step: vec2i, layer: u32) -> f32 {
+    let place = vec2i(square.place) + step;
+    if !map_receiver_is_texel(vec2f(place) * window_side_of(square)) {
         return 0.0;
     }
-    return window_scale_in(window, vec2u(square), layer);
+    return window_scale_in(window, window_Square(vec2u(place), square.level), layer);
 }
 
-fn window_step_of(window: window_Window, g: f32, slope: f32) -> f32 {
-    let per_slope = map_light_view.texel_in_plane * f32(window.side);
+fn window_step_of(window: window_Window, square: window_Square, g: f32, slope: f32) -> f32 {
+    let per_slope = map_light_view.texel_in_plane * window_side_of(square);
     return slope * space_SURFACE_SLOPE * per_slope * select(1.0, g + window.inverse_z, map_light_view.perspective == 1u);
 }
 
-fn window_joining(scales: vec3f, g: f32, step: f32) -> vec3f {
+fn window_joining_row(window: window_Window, square: window_Square, y: i32, layer: u32, g: f32, step: f32) -> vec3f {
+    let scales = vec3f(window_scale_beside(window, square, vec2i(-1, y), layer), window_scale_beside(window, square, vec2i(0, y), layer), window_scale_beside(window, square, vec2i(1, y), layer));
     let steps = abs(1.0 / max(scales, vec3f(1e-30)) - g);
     return select(vec3f(), scales, (scales > vec3f()) & (steps <= vec3f(step)));
 }
 
-fn window_row_of(window: window_Window, middle: vec2i, layer: u32) -> vec3f {
-    return vec3f(window_scale_beside(window, middle - vec2i(1, 0), layer), window_scale_beside(window, middle, layer), window_scale_beside(window, middle + vec2i(1, 0), layer));
-}
-
-fn window_neighbours_of(window: window_Window, square: vec2u, scale: f32, layer: u32, slope: f32) -> patch_Neighbours {
-    let own = vec2i(square);
+fn window_neighbours_of(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Neighbours {
     let g = 1.0 / scale;
-    let step = window_step_of(window, g, slope);
-    return patch_Neighbours(window_joining(window_row_of(window, own - vec2i(0, 1), layer), g, step), window_joining(window_row_of(window, own, layer), g, step).xz, window_joining(window_row_of(window, own + vec2i(0, 1), layer), g, step));
+    let step = window_step_of(window, square, g, slope);
+    return patch_Neighbours(window_joining_row(window, square, -1, layer, g, step), window_joining_row(window, square, 0, layer, g, step).xz, window_joining_row(window, square, 1, layer, g, step));
 }
 
-fn window_patch_in(window: window_Window, square: vec2u, scale: f32, layer: u32, slope: f32) -> patch_Patch {
-    let low = vec2f(square * window.side) - window.at.center;
-    let high = low + f32(window.side);
-    var patch_ = patch_patch_of(low, high, scale);
+fn window_patch_in(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    var patch_ = patch_patch_of(sides.low, sides.high, scale);
     if slope > 0.0 {
-        patch_ = patch_joined(low, high, scale, window_neighbours_of(window, square, scale, layer, slope));
+        patch_ = patch_joined(sides.low, sides.high, scale, window_neighbours_of(window, square, scale, layer, slope));
     }
     if scale * window.at.edge_g < 1.0 {
-        let last = (vec2u(map_light_view.map_size) - 1u) / window.side;
-        patch_.low = select(patch_.low, vec2f(-1e30), square == vec2u());
-        patch_.high = select(patch_.high, vec2f(1e30), square == last);
+        let last = (vec2u(map_light_view.map_size) - 1u) >> vec2u(square.level);
+        patch_.low = select(patch_.low, vec2f(-1e30), square.place == vec2u());
+        patch_.high = select(patch_.high, vec2f(1e30), square.place == last);
     }
     return patch_;
 }
