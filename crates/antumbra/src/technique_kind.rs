@@ -219,8 +219,8 @@ techniques! {
         penumbra: "from the texels of three layers, each a small square",
         light_maps: "3",
         good_for: "occluders at any depths, fused without double counting",
-        fails_where: "staircases of texels where penumbrae are narrow; casters behind the last layer",
-        worst_case: "tree", "leaves behind the third layer are missing, and gaps between leaves are filled",
+        fails_where: "cost; staircases of texels where penumbrae are narrow; casters behind the last layer",
+        worst_case: "tree", "leaves behind the third layer are missing, and speckles of light remain",
     }
     "light_views", MultiView, "multi_view", "light_views::multi_view", {
         title: "One depth map per light sample",

@@ -32,7 +32,7 @@
 //! # Limits
 //! Silhouettes are staircases of texels, and no penumbra is narrower than a texel. Nothing is known behind the last layer, nor behind
 //! a host's own depth map: light leaks in below stacked occluders. Micro-patches are parallel to the map: the paper's micro-quads, between
-//! texels' centres, are not here. Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide penumbrae. Loops
+//! texels' centres, are not here. It takes about ten times as long as `smrt` on a software renderer (640 × 360 and less). Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide penumbrae. Loops
 //! are bounded by the counts of patches, layers and points.
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
@@ -104,7 +104,7 @@ impl Technique for Bitmask {
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
         let constants = constants(TapsProgram::of(&taps, layers), params.samples);
         let pass = ResolvePass { map, constants: &constants, is_sparse: false };
-        let lists = TapLists([(taps, TapUse::Search, 0), (taps, TapUse::Filter, params.samples)]);
+        let lists = TapLists([(taps, TapUse::Filter, params.samples)]);
         lists.with_kernel(|kernel| self.resolve.prepare(stage, frame, &pass, &uniform, kernel))
     }
 

@@ -35,55 +35,65 @@ fn is_all_hidden(hidden: Hidden) -> bool {
     return bits == 4294967295u;
 }
 
-fn hidden_by(patch_: patch_Patch, light: light_taps_LightPlane, before: Hidden) -> Hidden {
-    var hidden = before;
-    let bins = light_bits_bins_of(light, patch_);
-    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
-        var rest = ~hidden.words[word];
-        for (; rest > 0u; rest &= rest - 1u) {
-            let i = countTrailingZeros(rest);
-            let offset = light_taps_texels_of(light, light_taps_place_of(light, light_taps_taps[32u * word + i].xyz));
-            hidden.words[word] |= select(0u, 1u << i, patch_hides(patch_, offset));
-        }
-    }
-    return hidden;
+fn open_points(bits: u32, bins: light_bits_Bins, word: u32) -> u32 {
+    var rest = ~bits;
+    return rest;
 }
 
-fn hidden_in(window: window_Window, square: window_Square, light: light_taps_LightPlane, before: Hidden) -> Hidden {
-    var hidden = before;
+fn hide_by(patch_: patch_Patch, wider: patch_Patch, bins: light_bits_Bins, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) -> bool {
+    var has_more = false;
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
+        let before = (*hidden).words[word];
+        var bits = before;
+        for (var rest = open_points(before, bins, word); rest > 0u; rest &= rest - 1u) {
+            let i = countTrailingZeros(rest);
+            let offset = light_taps_texels_of(light, light_taps_place_of(light, light_taps_taps[32u * word + i].xyz));
+            let is_hidden = patch_hides(patch_, offset);
+            bits |= select(0u, 1u << i, is_hidden);
+            has_more |= !is_hidden && patch_hides(wider, offset);
+        }
+        (*hidden).words[word] = bits;
+    }
+    return has_more;
+}
+
+fn hide_in(window: window_Window, square: window_Square, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) {
+    let slope = max(settings_bitmask.steepest_gap, 0.0);
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let scale = window_scale_in(window, square, layer);
         if scale <= 0.0 {
             break;
         }
-        hidden = hidden_by(window_patch_in(window, square, scale, layer, settings_bitmask.steepest_gap), light, hidden);
+        let widest = window_widest_patch(window, square, scale, slope);
+        let bins = light_bits_bins_of(light, widest);
+        if hide_by(window_own_patch(window, square, scale), widest, bins, light, hidden) {
+            let filled = window_joined_patch(window, square, scale, layer, slope);
+            _ = hide_by(filled, filled, bins, light, hidden);
+        }
     }
-    return hidden;
 }
 
-fn hidden_below(window: window_Window, root: vec2u, light: light_taps_LightPlane, before: Hidden) -> Hidden {
-    var hidden = before;
+fn hide_below(window: window_Window, root: vec2u, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) {
     let across = 2u * settings_bitmask.patches + 4u;
     let end = 1u << (2u * window.level);
     var level = window.level;
     var code = 0u;
     for (var i = 0u; i < LEVELS * across * across; i++) {
-        if code >= end || is_all_hidden(hidden) {
+        if code >= end {
             break;
         }
         let square = window_square_at(window, root, code, level);
         let most_g = select(0.0, window_most_g_in(window, square), level > 0u);
-        if window_side_of(square) > window.widest * most_g && most_g > 0.0 {
+        if most_g > 0.0 && window_side_of(square) > window.widest * most_g {
             level -= 1u;
             continue;
         }
         if level == 0u || most_g > 0.0 {
-            hidden = hidden_in(window, square, light, hidden);
+            hide_in(window, square, light, hidden);
         }
         code += 1u << (2u * level);
         level = min(countTrailingZeros(code) / 2u, window.level);
     }
-    return hidden;
 }
 
 fn visible_share(light: light_taps_LightPlane, hidden: Hidden) -> f32 {
@@ -127,8 +137,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let window = window_window_of(at, pos_in_light.z, reach, most_g, settings_bitmask.patches, shift + R2);
     var hidden = below_horizon(light, share);
     for (var y = 0u; y < min(window.count.y, window_ROOTS + 1u); y++) {
-        for (var x = 0u; x < min(window.count.x, window_ROOTS + 1u); x++) {
-            hidden = hidden_below(window, window.first + vec2u(x, y), light, hidden);
+        for (var x = 0u; x < min(window.count.x, window_ROOTS + 1u) && !is_all_hidden(hidden); x++) {
+            hide_below(window, window.first + vec2u(x, y), light, &hidden);
         }
     }
     return visible_share(light, hidden);
@@ -767,6 +777,10 @@ fn patch_joined(low: vec2f, high: vec2f, own: f32, around: patch_Neighbours) -> 
     return patch_Patch(vec2f(patch_reach_of(low.x, own, left).x, patch_reach_of(low.y, own, around.below).x), vec2f(patch_reach_of(high.x, own, right).y, patch_reach_of(high.y, own, around.above).y));
 }
 
+fn patch_widest_of(low: vec2f, high: vec2f, scales: vec3f) -> patch_Patch {
+    return patch_Patch(min(min(low * scales.x, low * scales.y), low * scales.z), max(max(high * scales.x, high * scales.y), high * scales.z));
+}
+
 struct settings_BitmaskUniform {
     sample_count: u32,
     patches: u32,
@@ -896,18 +910,33 @@ fn window_neighbours_of(window: window_Window, square: window_Square, scale: f32
     return patch_Neighbours(window_joining_row(window, square, -1, layer, g, step), window_joining_row(window, square, 0, layer, g, step).xz, window_joining_row(window, square, 1, layer, g, step));
 }
 
-fn window_patch_in(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Patch {
-    let sides = window_sides_of(window, square);
-    var patch_ = patch_patch_of(sides.low, sides.high, scale);
-    if slope > 0.0 {
-        patch_ = patch_joined(sides.low, sides.high, scale, window_neighbours_of(window, square, scale, layer, slope));
-    }
+fn window_beyond_edge(window: window_Window, square: window_Square, scale: f32, inside: patch_Patch) -> patch_Patch {
+    var patch_ = inside;
     if scale * window.at.edge_g < 1.0 {
         let last = (vec2u(map_light_view.map_size) - 1u) >> vec2u(square.level);
         patch_.low = select(patch_.low, vec2f(-1e30), square.place == vec2u());
         patch_.high = select(patch_.high, vec2f(1e30), square.place == last);
     }
     return patch_;
+}
+
+fn window_own_patch(window: window_Window, square: window_Square, scale: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    return window_beyond_edge(window, square, scale, patch_patch_of(sides.low, sides.high, scale));
+}
+
+fn window_widest_patch(window: window_Window, square: window_Square, scale: f32, slope: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    let g = 1.0 / scale;
+    let step = window_step_of(window, square, g, slope);
+    let scales = vec3f(1.0 / (g + step), scale, 1.0 / max(g - step, 1e-20));
+    return window_beyond_edge(window, square, scale, patch_widest_of(sides.low, sides.high, scales));
+}
+
+fn window_joined_patch(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    let around = window_neighbours_of(window, square, scale, layer, slope);
+    return window_beyond_edge(window, square, scale, patch_joined(sides.low, sides.high, scale, around));
 }
 
 override light_taps_LIGHT_KIND: u32 = 0u;
