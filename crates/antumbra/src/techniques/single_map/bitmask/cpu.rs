@@ -38,33 +38,24 @@ impl Squares<'_> {
         box_of(&self.corners(x, y, z_m))
     }
 
-    /// The same, carried on to where its eight neighbours begin: to their corners that are its own in the map.
+    /// The same, carried on to where its eight neighbours begin: outwards, to the sides and corners that it shares with them.
     pub(crate) fn joined(&self, x: i32, y: i32) -> Patch {
-        let mut points = self.corners(x, y, (self.depth_m)(x, y).expect("a depth")).to_vec();
+        let mut patch = self.alone(x, y);
         for (beside, above) in (-1..=1).flat_map(|beside| (-1..=1).map(move |above| (beside, above))) {
             let Some(z_m) = (self.depth_m)(x + beside, y + above) else { continue };
-            let [low_left, low_right, high_left, high_right] = self.corners(x, y, z_m);
-            let mut shared = Vec::new();
-            for (corner, right, up) in [(low_left, -1, -1), (low_right, 1, -1), (high_left, -1, 1), (high_right, 1, 1)]
-            {
-                if [0, right].contains(&beside) && [0, up].contains(&above) {
-                    shared.push((corner, right, up));
-                }
+            let there = box_of(&self.corners(x, y, z_m));
+            match beside {
+                -1 => patch.low.x = patch.low.x.min(there.low.x),
+                1 => patch.high.x = patch.high.x.max(there.high.x),
+                _ => {}
             }
-            // Only outwards, along the sides that are shared.
-            let own = self.alone(x, y);
-            for (corner, right, up) in shared {
-                let mut point = own.low;
-                if beside == right {
-                    point.x = corner.x;
-                }
-                if above == up {
-                    point.y = corner.y;
-                }
-                points.push(point);
+            match above {
+                -1 => patch.low.y = patch.low.y.min(there.low.y),
+                1 => patch.high.y = patch.high.y.max(there.high.y),
+                _ => {}
             }
         }
-        box_of(&points)
+        patch
     }
 }
 

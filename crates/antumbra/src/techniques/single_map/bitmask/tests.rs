@@ -144,7 +144,7 @@ fn the_table_leaves_no_point_out() {
                 mask_of(gpu, &case, &mut Bitmask::with_shader(gpu, wgsl), &params)
             });
             let partly = masks[0].iter().filter(|v| (0.02..0.98).contains(*v)).count();
-            assert!(partly > 300, "{shape:?}: {partly} pixels in penumbrae");
+            assert!(partly > 200, "{shape:?}: {partly} pixels in penumbrae");
             let off = masks[0].iter().zip(&masks[1]).filter(|(a, b)| a != b).count();
             assert_eq!(off, 0, "{shape:?}, {key}={value}: pixels that differ");
         }
@@ -165,7 +165,7 @@ fn what_is_hidden_twice_counts_once() {
         half_plane_visibility(p.x, 1.0).min((0.5 - first_past_upper).clamp(0.0, 1.0))
     };
     let both = pixels.iter().filter(|(_, p)| half_plane_visibility(p.x, 1.0) < 0.9 && truth(*p) > 0.1).count();
-    assert!(both > 500, "{both} pixels see both edges");
+    assert!(both > 100, "{both} pixels see both edges");
     let error = |layers: &str| rmse(&pixels, &case.run(gpu, KIND, &[("samples", "256"), ("layers", layers)]), truth);
     let (one, two) = (error("1"), error("2"));
     println!("rmse {one:.4} with the nearest casters alone, {two:.4} with those behind them");
@@ -181,11 +181,12 @@ fn filled_gaps_keep_light_out() {
     let view = View::new(Vec3::new(2.0, 1.2, 5.0), Vec3::new(0.6, 0.0, 0.0));
     let ground = Mesh::horizontal(gpu, Vec2::splat(-6.0), Vec2::splat(6.0), 0.0);
     let corners =
-        [Vec3::new(-0.2, 3.4, -4.0), Vec3::new(-0.2, 3.4, 4.0), Vec3::new(2.2, 0.5, 4.0), Vec3::new(2.2, 0.5, -4.0)];
+        [Vec3::new(0.3, 3.1, -4.0), Vec3::new(0.3, 3.1, 4.0), Vec3::new(-2.5, 0.6, 4.0), Vec3::new(-2.5, 0.6, -4.0)];
     let sheet = Mesh::new(gpu, &corners, &[0, 1, 2, 0, 2, 3]);
     let case = Case::new(gpu, light, view, vec![ground, sheet]);
-    // Rays from here to all of the light pass through the sheet: at height h it lies at x = 2.2 − 2.4 (h − .5) / 2.9.
-    let below = case.ground_pixels(|p| (0.8..1.6).contains(&p.x) && p.z.abs() < 1.0);
+    // From here each segment to the light begins before the sheet and passes behind its upper edge: at 3.1 m it is at
+    // x + (o − x) · 3.1/4, below 0.3 for every o up to half a metre.
+    let below = case.ground_pixels(|p| (-1.8..-0.8).contains(&p.x) && p.z.abs() < 1.0);
     assert!(below.len() > 100, "{} pixels", below.len());
     let lit = |gaps: &str| {
         let mask = case.run(gpu, KIND, &[("map_size", "128"), ("gaps", gaps), ("patches", "64")]);
@@ -200,9 +201,13 @@ fn filled_gaps_keep_light_out() {
 #[test]
 fn larger_patches_keep_the_mean() {
     let Some(gpu) = gpu() else { return };
-    let case = Case::half_plane(gpu, RECTANGLE);
+    let mut case = Case::half_plane(gpu, RECTANGLE);
+    // Beside the occluder's edge, which lies on the sides of squares otherwise.
+    const BESIDE_M: f32 = 0.37;
+    case.light = Light::new(RECTANGLE, Vec3::new(BESIDE_M, 4.0, 0.1), Vec3::new(BESIDE_M, 0.0, 0.1));
     let pixels = case.ground_pixels(test_ground);
-    let truth = |p: Vec3| half_plane_visibility(p.x, 1.0);
+    // Hidden are light points up to o = −x · (1 − 3/8) / (3/8), from the origin.
+    let truth = |p: Vec3| (0.5 + BESIDE_M + p.x * 0.625 / 0.375).clamp(0.0, 1.0);
     let of = |patches: &str| {
         let settings = [("map_size", "2048"), ("samples", "256"), ("patches", patches)];
         let mask = case.run(gpu, KIND, &settings);

@@ -718,11 +718,18 @@ fn light_bits_place_at(light: light_taps_LightPlane, offset: vec2f) -> vec2f {
 
 const light_bits_ROUNDING = 0.01;
 
+const light_bits_THINNEST = 0.001;
+
+fn light_bits_is_thin(light: light_taps_LightPlane) -> bool {
+    let determinant = light.right.x * light.up.y - light.right.y * light.up.x;
+    return abs(determinant) <= light_bits_THINNEST * max(dot(light.right, light.right), dot(light.up, light.up));
+}
+
 const light_bits_FAR_OUT = 100000000.0;
 
 fn light_bits_bins_of(light: light_taps_LightPlane, patch_: patch_Patch) -> light_bits_Bins {
     let farthest = max(abs(patch_.low), abs(patch_.high));
-    if max(farthest.x, farthest.y) > light_bits_FAR_OUT {
+    if max(farthest.x, farthest.y) > light_bits_FAR_OUT || light_bits_is_thin(light) {
         return light_bits_Bins(vec2i(), vec2i(i32(light_bits_BINS) - 1));
     }
     let a = light_bits_place_at(light, patch_.low);
