@@ -1,6 +1,6 @@
 //! `cargo xtask book` and `cargo xtask docs`: the pages of docs/ as a book, and what of them is made of declarations.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::shell::{self, cargo, find};
@@ -23,15 +23,27 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
         ["--serve"] => true,
         _ => return Err("`cargo xtask book` takes `--serve` or nothing".into()),
     };
-    write_generated_parts()?;
     let folder = crate::root().join("target/book");
-    // Of an older book nothing may stay.
-    if folder.exists() {
-        std::fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    }
-    shell::run(Command::new(mdbook()?).arg("build").arg(crate::root().join("docs")))?;
+    build(&folder, None)?;
     println!("The book: {}", folder.join("index.html").display());
     if is_served { serve(&folder, PORT, "a browser") } else { Ok(()) }
+}
+
+/// Writes the generated parts and builds the book in a folder, in place of what it holds. Files of the folder `theme` replace those of
+/// mdbook's own theme.
+///
+/// # Errors
+/// What cannot be installed or does not build.
+pub fn build(folder: &Path, theme: Option<&Path>) -> Result<(), String> {
+    write_generated_parts()?;
+    // Nothing of an older book may remain.
+    if folder.exists() {
+        std::fs::remove_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    let mut build = Command::new(mdbook()?);
+    build.arg("build").arg(crate::root().join("docs")).arg("--dest-dir").arg(folder);
+    build.envs(theme.map(|theme| ("MDBOOK_OUTPUT__HTML__THEME", theme)));
+    shell::run(&mut build)
 }
 
 /// Makes the generated parts of pages what the declarations say. The program that does is one of its own, since it is built with the
@@ -40,7 +52,15 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
 /// # Errors
 /// What of a page cannot be made.
 pub fn write_generated_parts() -> Result<(), String> {
-    shell::run(cargo().args(["run", "--quiet", "--locked", "--package", "antumbra-book"]))
+    shell::run(&mut generator()?)
+}
+
+/// The program that writes the generated parts and the site's own pages, built with what tests and the command `antumbra` are built of.
+///
+/// # Errors
+/// What does not build.
+pub fn generator() -> Result<Command, String> {
+    shell::built_of_workspace("antumbra-book").map(Command::new)
 }
 
 /// The program that makes a book of pages.

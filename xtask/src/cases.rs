@@ -34,6 +34,8 @@ default settings. In **bold**: more than .02, and more than 1.2 times the error 
 #[derive(Clone, Debug, PartialEq)]
 struct Case {
     name: String,
+    /// Adapter that drew it.
+    adapter: String,
     /// By technique; none where it was skipped or no pixel is judged.
     errors: Vec<(String, Option<f64>)>,
 }
@@ -61,8 +63,9 @@ pub fn run(names: &[String]) -> Result<(), String> {
         println!("{tables}");
         return Ok(());
     }
+    let origin = origin(&cases, &shell::output(Command::new(&binary).arg("--version"))?)?;
     let page = crate::root().join("bench/cases.md");
-    std::fs::write(&page, format!("{HEAD}{tables}")).map_err(|error| format!("{}: {error}", page.display()))
+    std::fs::write(&page, format!("{HEAD}{origin}\n\n{tables}")).map_err(|error| format!("{}: {error}", page.display()))
 }
 
 /// The folder of cases: beside that of scenes.
@@ -102,7 +105,25 @@ fn measure(binary: &Path, scene: &Path) -> Result<Case, String> {
     compare.arg("compare").arg(scene).arg("--setup").arg(setup);
     compare.args(["--size", "240x135", "--samples", "144", "--frames", "1", "-o"]);
     compare.arg(crate::root().join("out/cases").join(&name));
-    Ok(Case { errors: errors_in(&shell::output(&mut compare)?), name })
+    let printed = shell::output(&mut compare)?;
+    let adapter = adapter_in(&printed).ok_or_else(|| format!("{name}: `antumbra compare` names no adapter"))?;
+    Ok(Case { errors: errors_in(&printed), adapter, name })
+}
+
+/// The adapter that `antumbra compare` names behind the last semicolon of the line about the ground truth.
+fn adapter_in(printed: &str) -> Option<String> {
+    let line = printed.lines().find(|line| line.contains("; ground truth: "))?;
+    line.rsplit("; ").next().map(str::to_owned)
+}
+
+/// What the figures are of: the adapter, and the commit in what `antumbra --version` prints. Cases that another adapter drew are named.
+fn origin(cases: &[Case], version: &str) -> Result<String, String> {
+    let commit = version.trim().strip_suffix(')').and_then(|text| text.rsplit_once("(commit "));
+    let (_, commit) = commit.ok_or_else(|| format!("`antumbra --version` names no commit: {version}"))?;
+    let first = cases.first().ok_or("no cases were measured")?;
+    let others = cases.iter().filter(|case| case.adapter != first.adapter);
+    let others: String = others.map(|case| format!("; `{}` on {}", case.name, case.adapter)).collect();
+    Ok(format!("{}, commit {commit}{others}.", first.adapter))
 }
 
 /// The first two columns of the table that `antumbra compare` prints.
@@ -151,6 +172,23 @@ mod tests {
     const PRINTED: &str = "\ncover: 12 triangles\n\nTECHNIQUE  RMSE    PENUMBRA RMSE\nhard       0.0100  –\n\
                            essm       0.9800  –\nray_traced skipped: no rays\n/tmp/out/index.html\n";
 
+    fn case(name: &str, adapter: &str) -> Case {
+        Case { name: name.into(), adapter: adapter.into(), errors: errors_in(PRINTED) }
+    }
+
+    #[test]
+    fn the_page_names_adapter_and_commit() {
+        let line =
+            "\ncover: 12 triangles; ground truth: 144 light samples per pixel, 0.1 s, 3.0 M rays/s; NVIDIA H200\n";
+        assert_eq!(adapter_in(line).as_deref(), Some("NVIDIA H200"));
+        assert_eq!(adapter_in("TECHNIQUE  RMSE\nhard  0.1; a\n"), None);
+        let version = "antumbra 0.1.0 (commit b5e93ddb8170)\n";
+        let cases = [case("cover", "NVIDIA H200"), case("room", "NVIDIA H200"), case("webp", "llvmpipe")];
+        assert_eq!(origin(&cases[..2], version).as_deref(), Ok("NVIDIA H200, commit b5e93ddb8170."));
+        assert_eq!(origin(&cases, version).as_deref(), Ok("NVIDIA H200, commit b5e93ddb8170; `webp` on llvmpipe."));
+        assert!(origin(&cases, "antumbra 0.1.0").is_err() && origin(&[], version).is_err());
+    }
+
     #[test]
     fn errors_are_those_of_the_printed_table() {
         let expected = [("hard", Some(0.01)), ("essm", Some(0.98)), ("ray_traced", None)];
@@ -159,7 +197,7 @@ mod tests {
 
     #[test]
     fn what_is_worse_than_hard_shadows_is_set_in_bold() {
-        let case = Case { name: "cover".into(), errors: errors_in(PRINTED) };
+        let case = case("cover", "card");
         let expected =
             "| technique | `cover` |\n|---|---:|\n| `hard` | .010 |\n| `essm` | **.980** |\n| `ray_traced` | – |\n";
         assert_eq!(tables(&[case]), Ok(expected.to_owned()));

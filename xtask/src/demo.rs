@@ -14,7 +14,7 @@ const SCENES: [&str; 4] =
 
 /// The techniques of the demo: of every family those that one would choose, and the baselines beside them. All of them
 /// would take a software renderer half an hour.
-const TECHNIQUES: &str = "pcf,pcss,smrt,lvsm,moment,multi_layer,reprojection_layered,sample_based,multi_view";
+const TECHNIQUES: &str = "hard,pcf,pcss,smrt,lvsm,moment,multi_layer,reprojection_layered,sample_based,multi_view";
 
 /// Sets up, builds, compares, and opens the report where there is a display.
 ///

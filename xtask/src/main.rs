@@ -16,6 +16,7 @@ mod packages;
 mod portability;
 mod qualities;
 mod shell;
+mod site;
 mod skips;
 mod test;
 mod wasm;
@@ -41,7 +42,7 @@ Development commands of Antumbra. They install what is missing where they can, a
         Choose with --driver or ANTUMBRA_DRIVER; VK_DRIVER_FILES is respected.
 
     cargo xtask ci [--driver default|installed|newer]
-        Runs `test`, each family of techniques alone, `packages` without nightly, `wasm`, `web --shaders`,
+        Runs `test`, each family of techniques alone, that the program of `packages` compiles, `wasm`, `web --shaders`,
         `portability` and `gpu-cost --check`. Fails where a check would be skipped, except in the last three, where a browser, a
         compiler or a driver may be missing.
 
@@ -53,6 +54,10 @@ Development commands of Antumbra. They install what is missing where they can, a
 
     cargo xtask book [--serve]
         Builds the book in target/book; --serve serves it on this machine. Installs mdbook in target/tools once.
+
+    cargo xtask site [-o FOLDER] [--check | --serve]
+        Builds the book, a gallery and the web viewer as static files in target/site, for any server and any path.
+        --check: crawls them in a headless browser: links, anchors, console, time to the first image. --serve: serves them on this machine.
 
     cargo xtask packages
         Makes the packages for publication, and builds and runs a program from them outside the repository; with nightly, too, where
@@ -118,13 +123,14 @@ fn main() -> ExitCode {
         "shaders" => link_shaders(),
         "mutants" => find_mutants(rest, []),
         "portability" => portability::run(rest),
-        "packages" => packages::check().and_then(|()| packages::run()),
+        "packages" => packages::run(),
         "qualities" => qualities::run(),
         "cases" => cases::run(rest),
         "wasm" => wasm::check(Missing::Skip),
         "web" => web::run(rest),
         "gpu-cost" => gpu_cost::run(rest),
         "figures" => figures::run(rest),
+        "site" => site::run(rest),
         "setup" => machine::set_up(),
         other => {
             eprintln!("xtask: there is no command `{other}`; there are {}", commands().join(", "));

@@ -1,5 +1,7 @@
 //! Declaration of the command line. All texts of `--help` are here.
 
+mod run;
+
 use std::path::PathBuf;
 
 use antumbra::TechniqueKind;
@@ -13,6 +15,8 @@ use glam::UVec2;
 
 use crate::technique_text::techniques_help;
 use crate::values::{self, Setting};
+
+pub use run::RunArgs;
 
 /// Version, and the commit that the program was built from.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("ANTUMBRA_COMMIT"), ")");
@@ -31,8 +35,8 @@ Start here:
 
 SCENE is a .glb or .gltf file, or builtin:NAME (`antumbra scenes` lists them). Names are not case-sensitive.
 
-Exit codes: 0 success; 2 wrong arguments or input file; 3 no usable adapter or feature; 130 interrupted; 1 anything else. \
-Output files appear complete or not at all.")]
+Exit codes: 0 success; 2 wrong arguments or input file; 3 no usable adapter or feature; 4 the deadline came before the end; 130 interrupted; \
+1 anything else. Output files appear complete or not at all.")]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -252,7 +256,11 @@ Examples:
   antumbra compare builtin:lantern-wall --motion all --size 320x180 -o out
   antumbra compare scene.glb --setup end.toml --motion camera --path start.toml,corner.toml -o out
 
-Open DIR/index.html; DIR/metrics.json has the numbers.
+  antumbra compare builtin:street --deadline 60 --technique-limit 10 --resume -o out
+  antumbra compare builtin:street --baseline other/metrics.json -o out
+
+Open DIR/index.html; DIR/metrics.json has the numbers. Both are written as they are made: if the command is stopped, DIR keeps what was measured, and \
+--resume continues it. --baseline is the metrics.json of another run, or, of several scenes, its folder.
 
 A technique may have a quality: fast, balanced, high or best; `all:fast` is every technique at fast. `essm:paper` is as its paper publishes it; --preset is a \
 paper's whole comparison. With `+denoised` (pcss:fast+denoised) masks are denoised over --frames frames. `--set NAME.KEY=VALUE` sets a parameter of one \
@@ -300,6 +308,8 @@ pub struct CompareArgs {
     pub frames: u32,
     #[command(flatten)]
     pub motion: MotionArgs,
+    #[command(flatten)]
+    pub run: RunArgs,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
@@ -395,8 +405,16 @@ Examples:
   antumbra bench builtin:street scene.glb --techniques pcss --sizes 1280x720,1920x1080 --frames 100 --json times.json
   antumbra bench scene.glb --setup evening.toml --light lamp --minutes 60
 
+  antumbra bench builtin:street --deadline 60 --json times.json --resume
+  antumbra bench builtin:street --baseline other.json
+  antumbra bench --share card.json
+
 Prints medians, with the number of timed frames and of warm-up frames, in which pipelines are compiled and lists grow. --minutes is shared equally \
-among the measurements: slow ones time fewer frames, and those without time are reported as skipped. The JSON also has adapter, driver and commit.
+among the measurements: slow ones time fewer frames, and those without time are reported as skipped. The JSON also has adapter, driver and commit; \
+it is written as it grows, and --resume continues it.
+
+--share measures columns and street at 1920x1080, unless scenes and sizes are named, and writes one file for bench/cards: what the device says of \
+itself, versions, and times; no paths and no names. --cards prints the page of all such files.
 
   antumbra bench --suite results.json --minutes 7
   antumbra bench --suite results.json --minutes 7 --parts times,growth
@@ -427,12 +445,15 @@ pub struct BenchArgs {
     /// Minimum number of warm-up frames; at least one is drawn, and more until two take about as long
     #[arg(long, value_name = "N", default_value = "3", value_parser = values::warm_up)]
     pub warm_up: u32,
-    /// Time limit in minutes; the measurement that runs then is finished
-    #[arg(long, value_name = "N", default_value = "10", value_parser = values::minutes)]
-    pub minutes: u32,
+    /// Time limit in minutes; the measurement that runs then is finished. Default: 10, or until --deadline
+    #[arg(long, value_name = "N", value_parser = values::minutes)]
+    pub minutes: Option<u32>,
     /// Also writes everything as JSON
     #[arg(long, value_name = "out.json")]
     pub json: Option<PathBuf>,
+    /// Also writes one file that can be sent: adapter, driver, versions and times, of built-in scenes
+    #[arg(long, value_name = "card.json", conflicts_with_all = ["setup", "light"])]
+    pub share: Option<PathBuf>,
     /// Measures what BENCHMARKS.md shows and this file lacks, within --minutes
     #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE)]
     pub suite: Option<PathBuf>,
@@ -442,13 +463,34 @@ pub struct BenchArgs {
     /// Prints the results file of a suite as a page
     #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE, conflicts_with = "suite")]
     pub tables: Option<PathBuf>,
+    /// Prints a folder of shared results as a page
+    #[arg(long, value_name = "DIR", conflicts_with_all = NOT_OF_A_SUITE, conflicts_with_all = ["suite", "tables"])]
+    pub cards: Option<PathBuf>,
+    #[command(flatten)]
+    pub run: RunArgs,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }
 
 /// Options that choose what is measured, which a suite does itself.
-const NOT_OF_A_SUITE: [&str; 11] =
-    ["scenes", "setup", "time", "ground", "light", "techniques", "settings", "sizes", "frames", "warm_up", "json"];
+const NOT_OF_A_SUITE: [&str; 16] = [
+    "scenes",
+    "setup",
+    "time",
+    "ground",
+    "light",
+    "techniques",
+    "settings",
+    "sizes",
+    "frames",
+    "warm_up",
+    "json",
+    "share",
+    "deadline",
+    "technique_limit",
+    "resume",
+    "baseline",
+];
 
 /// Runs many comparisons as independent jobs, on one machine or many
 #[derive(Debug, Args)]
@@ -603,6 +645,7 @@ Examples:
   antumbra reproduce marrs-2014/figure1          that figure: the paper's numbers beside ours
   antumbra reproduce --all -o reproduced         everything, as a page for each paper; started again, it goes on
   antumbra reproduce selgrad-2014 -o reproduced --dear
+  antumbra reproduce --all --deadline 300 --technique-limit 20
 
 Scenes that are files lie in the folder that the environment variable ANTUMBRA_SCENES names; rows whose scene is not
 there are not ready.")]
@@ -635,6 +678,8 @@ pub struct ReproduceArgs {
     /// Also writes everything that is run as JSON
     #[arg(long, value_name = "out.json")]
     pub json: Option<PathBuf>,
+    #[command(flatten)]
+    pub run: RunArgs,
     #[command(flatten)]
     pub adapter: AdapterArgs,
 }

@@ -1,6 +1,7 @@
 //! How a command fails: one line, and the exit code that goes with it.
 
 use std::fmt;
+use std::path::Path;
 use std::process::ExitCode;
 
 use antumbra_lab::device::DeviceError;
@@ -16,6 +17,8 @@ pub enum Failure {
     Input(String),
     /// No usable adapter, or a feature is missing: 3.
     Device(String),
+    /// The deadline came before the end, and what was measured is written: 4.
+    Incomplete(String),
     /// Anything else: 1.
     Other(String),
 }
@@ -25,6 +28,7 @@ impl Failure {
         ExitCode::from(match self {
             Self::Input(_) => 2,
             Self::Device(_) => 3,
+            Self::Incomplete(_) => 4,
             Self::Other(_) => 1,
         })
     }
@@ -33,8 +37,44 @@ impl Failure {
 impl fmt::Display for Failure {
     /// One line, whatever the message was made of.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Input(message) | Self::Device(message) | Self::Other(message)) = self;
+        let (Self::Input(message) | Self::Device(message) | Self::Incomplete(message) | Self::Other(message)) = self;
         f.write_str(&message.split_whitespace().collect::<Vec<_>>().join(" "))
+    }
+}
+
+/// Where a run that ended early left what it measured.
+#[derive(Debug)]
+pub enum Kept<'a> {
+    /// Nowhere.
+    Nothing,
+    /// In a file that is not resumed.
+    Alone(&'a Path),
+    /// In a file or folder that `--resume` continues.
+    ToResume(&'a Path),
+}
+
+impl fmt::Display for Kept<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nothing => f.write_str("nothing was written"),
+            Self::Alone(path) => write!(f, "what was measured is in {}", path.display()),
+            Self::ToResume(path) => {
+                write!(f, "what was measured is in {}, and the same line with --resume continues", path.display())
+            }
+        }
+    }
+}
+
+impl Failure {
+    /// Failure of a run that its deadline ended: what is missing of how many, and where what was measured is.
+    pub fn incomplete<T: AsRef<str>>(missing: &[T], of: usize, kept: &Kept<'_>) -> Self {
+        const NAMED: usize = 8;
+        let mut names: Vec<&str> = missing.iter().take(NAMED).map(AsRef::as_ref).collect();
+        let more = format!("and {} more", missing.len().saturating_sub(NAMED));
+        if missing.len() > NAMED {
+            names.push(&more);
+        }
+        Self::Incomplete(format!("the deadline left out {} of {of}: {}; {kept}", missing.len(), names.join("; ")))
     }
 }
 
@@ -88,7 +128,7 @@ impl From<LabError> for Failure {
             LabError::Reference(error) => error.into(),
             LabError::File(error) => error.into(),
             LabError::Request(message) => Self::Input(message),
-            error @ LabError::NoRoom { .. } => Self::Other(error.to_string()),
+            error @ (LabError::NoRoom { .. } | LabError::CutShort { .. }) => Self::Other(error.to_string()),
             LabError::Metrics(error) => Self::Other(error.to_string()),
         }
     }

@@ -13,13 +13,15 @@ mod technique_text;
 mod values;
 
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 
 use clap::Parser;
 use clap::error::ErrorKind;
 
 use args::{Cli, Command};
-use failure::Failure;
+use failure::{Failure, Kept};
 use progress::Bars;
 
 fn main() -> ExitCode {
@@ -72,8 +74,19 @@ fn keep_wayland_quiet() {
 /// The handler of Ctrl-C: no half-written file stays, and the exit code says so.
 fn stop() {
     antumbra_lab::output_files::remove_unfinished();
-    tell(&"interrupted; nothing half-written is left");
+    match &*KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
+        Some(path) => tell(&format_args!("interrupted; {}", Kept::ToResume(path))),
+        None => tell(&"interrupted; nothing half-written is left"),
+    }
     leave_at_once(INTERRUPTED);
+}
+
+/// Where results are that an interruption leaves; none before the first is written.
+static KEPT: Mutex<Option<PathBuf>> = Mutex::new(None);
+
+/// Says where results are, should the user interrupt.
+fn keep(path: &Path) {
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.to_path_buf());
 }
 
 /// 128 + SIGINT, as shells report it.

@@ -1,6 +1,7 @@
 //! What the values of options may be. Each parser's message says what would be right; clap puts the option in front.
 
 use std::path::Path;
+use std::time::Duration;
 
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::advise::{Budget, Prefer};
@@ -69,6 +70,12 @@ pub fn frames(text: &str) -> Result<u32, String> {
 
 pub fn warm_up(text: &str) -> Result<u32, String> {
     whole_number(text, 0, 10_000)
+}
+
+/// A time limit of up to eleven days.
+pub fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0 && *seconds <= 1e6);
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "it takes seconds above 0, such as 60 or 0.5".into())
 }
 
 pub fn minutes(text: &str) -> Result<u32, String> {
@@ -360,6 +367,14 @@ mod tests {
         }
         assert_eq!(kinds("pcf, pcss,pcf").unwrap().0, [TechniqueKind::Pcf, TechniqueKind::Pcss]);
         assert!(kinds("pcss:fast").is_err() && prefer("moving").is_err());
+    }
+
+    #[test]
+    fn time_limits() {
+        assert_eq!((seconds("60"), seconds("0.5")), (Ok(Duration::from_secs(60)), Ok(Duration::from_millis(500))));
+        for wrong in ["0", "-1", "NaN", "inf", "1e9", "60s", ""] {
+            assert!(seconds(wrong).unwrap_err().contains("such as 60"), "{wrong}");
+        }
     }
 
     #[test]

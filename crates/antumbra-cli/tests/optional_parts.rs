@@ -65,6 +65,12 @@ const WALKS: &[Walk] = &[
         ],
         alone: &["--motion all", "--motion camera --motion-frames 1 --step 0"],
     },
+    // Of a run that is there already.
+    Walk {
+        base: "compare builtin:overlap --size 16x9 --samples 1 --techniques hard -o again",
+        parts: &["--deadline 600", "--technique-limit 600", "--resume", "--baseline again/metrics.json"],
+        alone: &[],
+    },
     // A whole preset in the techniques' place, and what a kernel of fixed width is held against.
     Walk { base: "compare builtin:overlap --size 16x9 --samples 1 --preset marrs-2014 -o out", parts: &[], alone: &[] },
     Walk {
@@ -98,6 +104,11 @@ const WALKS: &[Walk] = &[
             "--json t.json",
             "--adapter ADAPTER",
         ],
+        alone: &[],
+    },
+    Walk {
+        base: "bench builtin:overlap --sizes 16x9 --techniques hard --json b.json",
+        parts: &["--deadline 600", "--technique-limit 600", "--resume", "--baseline b.json", "--share card.json"],
         alone: &[],
     },
     Walk {
@@ -142,10 +153,16 @@ const WALKS: &[Walk] = &[
         parts: &["-o more"],
         alone: &[],
     },
+    Walk {
+        base: "reproduce lauritzen-2008/figure6 --size 16x9 --samples 1 --frames 1 --json b.json -o again",
+        parts: &["--deadline 600", "--technique-limit 600", "--resume", "--baseline b.json"],
+        alone: &[],
+    },
 ];
 
 /// Options that no line above has: they need minutes, or a window, or what the others are refused with; other tests have them.
-const ELSEWHERE: &[(&str, &[&str])] = &[("bench", &["--suite", "--parts", "--tables"]), ("reproduce", &["--all"])];
+const ELSEWHERE: &[(&str, &[&str])] =
+    &[("bench", &["--suite", "--parts", "--tables", "--cards"]), ("reproduce", &["--all"])];
 
 /// A camera and a light with a name.
 const SETUP: &str = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n[[light]]\nname = \"lamp\"\nshape = \"disk\"\n\

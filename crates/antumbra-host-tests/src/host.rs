@@ -5,7 +5,9 @@ use antumbra::casters::{
     Positions,
 };
 use antumbra::light::{Aabb, Light};
-use antumbra::{AnyShadow, CasterSet, Casters, Error, Frame, Mask, MaskChannels, Receivers, Recorder, TechniqueKind};
+use antumbra::{
+    AnyShadow, CasterSet, Casters, Error, Frame, Gpu, Mask, MaskChannels, Receivers, Recorder, TechniqueKind,
+};
 use glam::Mat4;
 
 use crate::device::Device;
@@ -37,6 +39,14 @@ impl HostCasters {
         Self::with(device, scene, |_, _| None)
     }
 
+    /// The same for another handle on the device.
+    ///
+    /// # Panics
+    /// Where the library refuses them.
+    pub fn for_gpu(device: &Device, gpu: &Gpu, scene: &Scene) -> Self {
+        Self::of_set(device, CasterSet::new(gpu), scene, |_, _| None)
+    }
+
     /// The same, with the matrices of some objects in buffers: `instances` gives them for an object's number and its matrix.
     ///
     /// # Panics
@@ -46,7 +56,15 @@ impl HostCasters {
         scene: &Scene,
         instances: impl Fn(usize, &Object) -> Option<InstanceBuffer<'b>>,
     ) -> Self {
-        let mut set = CasterSet::new(&device.gpu);
+        Self::of_set(device, CasterSet::new(&device.gpu), scene, instances)
+    }
+
+    fn of_set<'b>(
+        device: &Device,
+        mut set: CasterSet,
+        scene: &Scene,
+        instances: impl Fn(usize, &Object) -> Option<InstanceBuffer<'b>>,
+    ) -> Self {
         let mut ids = Vec::new();
         for (i, object) in scene.objects.iter().enumerate() {
             let mesh = add_mesh(device, &mut set, &object.mesh);

@@ -1,18 +1,25 @@
 //! The time of every pass of every technique: scenes × sizes × techniques.
 
+mod file;
+
+use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use antumbra_scene::{Scene, Setup};
 use glam::UVec2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+
+pub use file::{FORMAT, file_json, rows_in, rows_to_resume};
 
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
+use crate::limits::{Limits, Pace, Planned};
+use crate::names::numbered;
 use crate::progress::Progress;
-use crate::technique_run::{TechniqueChoice, TechniqueRun, Timing, Timings, create, parameters_of};
+use crate::technique_run::{StartUp, TechniqueChoice, TechniqueRun, Timing, Timings, create, parameters_of};
 use crate::view::View;
 
 /// A scene to measure.
@@ -37,9 +44,29 @@ pub struct Frames {
     pub timed: u32,
 }
 
+/// What to measure.
+#[derive(Clone, Copy, Debug)]
+pub struct BenchRequest<'a> {
+    /// Scenes.
+    pub scenes: &'a [BenchScene],
+    /// Techniques.
+    pub choices: &'a [TechniqueChoice],
+    /// Sizes of images, pixels.
+    pub sizes_px: &'a [UVec2],
+    /// Frames of a measurement.
+    pub frames: Frames,
+    /// Time that the measurements share equally.
+    pub at_most: Duration,
+    /// When it ends, whatever is missing, and how long a technique may take.
+    pub limits: Limits,
+}
+
 /// One measurement.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BenchRow {
+    /// `builtin:street, 640x360, pcss`; several techniques of one name, with other settings, are numbered: `pcss, 2`.
+    #[serde(default)]
+    pub name: String,
     /// How the scene was named.
     pub scene: String,
     /// Its triangles as drawn.
@@ -52,13 +79,19 @@ pub struct BenchRow {
     pub technique: String,
     /// Every parameter with its value.
     pub parameters: Map<String, Value>,
+    /// The limit of a technique, seconds, where it cut this short.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cut_short_s: Option<f64>,
+    /// Time that the measurement took in all, seconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
     /// What came of it.
     #[serde(flatten)]
     pub outcome: BenchOutcome,
 }
 
 /// What came of a measurement.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BenchOutcome {
     /// It ran.
@@ -68,73 +101,194 @@ pub enum BenchOutcome {
         /// GPU memory that the technique holds, bytes.
         memory_bytes: u64,
         /// Texels along a side of each map whose size is `auto`.
+        #[serde(default)]
         auto_map_sizes: Vec<u32>,
+        /// Time before its first result.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        start_up: Option<StartUp>,
     },
-    /// The device lacks something, or the scene does not suit.
+    /// The device lacks something, the scene does not suit, or there was no time.
     Skipped(String),
 }
 
-/// Measures every scene at every size with every technique, and ends within `at_most` but for the measurement that
-/// runs then: each has an equal share of the time that is left, so that what fast ones leave falls to slow ones, and those
-/// for which none is left are skipped.
+/// Why a row has no times that there was no time for.
+const NO_TIME: &str = "no time was left for it";
+
+/// Rows so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BenchRows {
+    /// What was measured, or cannot be, in the plan's order.
+    pub rows: Vec<BenchRow>,
+    /// What was not measured yet, in the same order; each says that there was no time.
+    pub missing: Vec<BenchRow>,
+}
+
+impl BenchRows {
+    /// All rows, those without a result where no time was left included.
+    pub fn all(&self) -> Vec<BenchRow> {
+        self.rows.iter().chain(&self.missing).cloned().collect()
+    }
+
+    /// Names of what is missing.
+    pub fn missing_names(&self) -> Vec<&str> {
+        self.missing.iter().map(|row| row.name.as_str()).collect()
+    }
+}
+
+/// A measurement in the plan.
+struct Job<'a> {
+    name: String,
+    size_px: UVec2,
+    choice: &'a TechniqueChoice,
+}
+
+/// Measures every scene at every size with every technique but for `earlier` rows, and ends within `at_most` but for the measurement
+/// that runs then: each has an equal share of the time that is left, so that what fast ones leave falls to slow ones, and those for which
+/// none is left are missing. `each` receives what there is after every measurement.
 ///
 /// # Errors
-/// Where a parameter is wrong or the device fails; a technique that the device cannot run is a skipped row.
+/// Where a parameter is wrong or the device fails, and those of `each`; a technique that the device cannot run is a skipped row.
 pub fn bench(
     lab: &LabDevice,
-    scenes: &[BenchScene],
-    choices: &[TechniqueChoice],
-    sizes_px: &[UVec2],
-    frames: Frames,
-    at_most: Duration,
+    request: &BenchRequest<'_>,
+    earlier: Vec<BenchRow>,
+    each: &mut dyn FnMut(&BenchRows) -> Result<(), LabError>,
     progress: &dyn Progress,
-) -> Result<Vec<BenchRow>, LabError> {
-    let deadline = Instant::now() + at_most;
-    let mut rows = Vec::new();
-    let steps = (scenes.len() * sizes_px.len() * choices.len()) as u64;
+) -> Result<BenchRows, LabError> {
+    let mut run = Run::new(lab, request, earlier);
+    let steps = (request.scenes.len() * request.sizes_px.len() * request.choices.len()) as u64;
     progress.begin("measuring", steps);
-    for BenchScene { spec, scene, setup, light } in scenes {
-        let gpu_scene = Rc::new(GpuScene::upload(lab, scene));
-        for &size_px in sizes_px {
-            let view = View::of_uploaded(lab, &gpu_scene, setup, size_px)?;
-            for choice in choices {
-                let left = deadline.saturating_duration_since(Instant::now());
-                let share = left / (steps as usize - rows.len()) as u32;
-                let Frames { warm_up, timed } = frames;
-                let timing = Timing { warm_up, frames: timed, at_least: Duration::ZERO, at_most: share };
-                let measured = if left.is_zero() {
-                    Ok(None)
-                } else {
-                    create(&lab.gpu(), choice).map_err(LabError::from).and_then(|mut technique| {
-                        let parameters = parameters_of(&technique);
-                        Ok(Some((parameters, view.run(&mut technique, *light, &timing)?)))
-                    })
-                };
-                let (parameters, outcome) = match measured {
-                    Ok(None) => (Map::new(), BenchOutcome::Skipped("no time was left for it".into())),
-                    Ok(Some((parameters, TechniqueRun { timings, memory_bytes, auto_map_sizes, .. }))) => {
-                        (parameters, BenchOutcome::Ran { timings, memory_bytes, auto_map_sizes })
-                    }
-                    Err(LabError::Technique(error @ antumbra::Error::Unsupported { .. })) => {
-                        (Map::new(), BenchOutcome::Skipped(error.to_string()))
-                    }
-                    Err(error) => return Err(error),
-                };
-                rows.push(BenchRow {
-                    scene: spec.clone(),
-                    triangles: gpu_scene.triangle_count,
-                    light: setup.lights[*light].name.clone(),
-                    size: size_px.to_array(),
-                    technique: choice.name(),
-                    parameters,
-                    outcome,
-                });
-                progress.reach(rows.len() as u64);
+    for scene in request.scenes {
+        let planned = jobs(request, scene);
+        if planned.iter().flatten().all(|job| run.done.contains_key(&job.name)) {
+            continue;
+        }
+        let gpu_scene = Rc::new(GpuScene::upload(lab, &scene.scene));
+        for jobs in planned {
+            let size_px = jobs[0].size_px;
+            let view = View::of_uploaded(lab, &gpu_scene, &scene.setup, size_px)?;
+            for job in jobs {
+                if run.done.contains_key(&job.name) {
+                    continue;
+                }
+                if let Some(row) = run.measure(&view, scene, &job)? {
+                    run.done.insert(job.name, row);
+                    each(&run.rows())?;
+                }
+                progress.reach(run.done.len() as u64);
             }
         }
     }
     progress.end();
-    Ok(rows)
+    Ok(run.rows())
+}
+
+/// A row's name, before rows of the same are numbered: `builtin:street, 640x360, pcss`.
+pub(crate) fn plain_name(scene: &str, size_px: UVec2, technique: &str) -> String {
+    format!("{scene}, {}x{}, {technique}", size_px.x, size_px.y)
+}
+
+/// The measurements of a scene, size by size. Techniques of one name are numbered.
+fn jobs<'a>(request: &BenchRequest<'a>, scene: &BenchScene) -> Vec<Vec<Job<'a>>> {
+    let of_size = |&size_px: &UVec2| {
+        let names = request.choices.iter().map(|choice| plain_name(&scene.spec, size_px, &choice.name()));
+        let names = numbered(names, ", ");
+        request.choices.iter().zip(names).map(|(choice, name)| Job { name, size_px, choice }).collect()
+    };
+    request.sizes_px.iter().map(of_size).collect()
+}
+
+/// A run of measurements.
+struct Run<'a> {
+    lab: &'a LabDevice,
+    request: &'a BenchRequest<'a>,
+    /// When the time that is shared is over.
+    over: Instant,
+    pace: Pace,
+    done: BTreeMap<String, BenchRow>,
+}
+
+impl<'a> Run<'a> {
+    fn new(lab: &'a LabDevice, request: &'a BenchRequest<'a>, earlier: Vec<BenchRow>) -> Self {
+        let mut pace = Pace::new(request.limits);
+        let mut done = BTreeMap::new();
+        for row in earlier {
+            if let Some(seconds) = row.seconds {
+                pace.took(Planned::new(&row.technique, UVec2::from_array(row.size)), seconds);
+            }
+            if !pace.is_longer_than(row.cut_short_s) {
+                done.insert(row.name.clone(), row);
+            }
+        }
+        Self { lab, request, over: Instant::now() + request.at_most, pace, done }
+    }
+
+    /// One measurement; `None` if there is no time for it.
+    fn measure(&mut self, view: &View<'_>, scene: &BenchScene, job: &Job<'_>) -> Result<Option<BenchRow>, LabError> {
+        let left = self.over.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Ok(None);
+        }
+        let Self { lab, request, pace, .. } = self;
+        let all = request.scenes.len() * request.sizes_px.len() * request.choices.len();
+        let share = left / (all - self.done.len()).max(1) as u32;
+        let Frames { warm_up, timed } = request.frames;
+        let began = Instant::now();
+        let technique = job.choice.name();
+        let ran = pace.measure(Planned::new(&technique, job.size_px), |end| {
+            let mut technique = create(&lab.gpu(), job.choice)?;
+            let timing = Timing { warm_up, frames: timed, at_least: Duration::ZERO, at_most: share, end };
+            Ok((parameters_of(&technique), view.run(&mut technique, scene.light, &timing)?))
+        });
+        let mut row = empty_row(scene, view, job);
+        row.seconds = Some(began.elapsed().as_secs_f64());
+        match ran {
+            Ok(None) => return Ok(None),
+            Ok(Some((parameters, run))) => {
+                let TechniqueRun { timings, memory_bytes, auto_map_sizes, start_up, cut_short_s, .. } = run;
+                (row.parameters, row.cut_short_s) = (parameters, cut_short_s);
+                row.outcome = BenchOutcome::Ran { timings, memory_bytes, auto_map_sizes, start_up: Some(start_up) };
+            }
+            Err(error) => {
+                let Some(why) = error.why_skipped() else { return Err(error) };
+                (row.outcome, row.cut_short_s) = (BenchOutcome::Skipped(why), error.limit_s());
+            }
+        }
+        Ok(Some(row))
+    }
+
+    fn rows(&self) -> BenchRows {
+        let mut rows = BenchRows::default();
+        for scene in self.request.scenes {
+            for job in jobs(self.request, scene).into_iter().flatten() {
+                match self.done.get(&job.name) {
+                    Some(row) => rows.rows.push(row.clone()),
+                    None => rows.missing.push(unmeasured(scene, &job)),
+                }
+            }
+        }
+        rows
+    }
+}
+
+fn empty_row(scene: &BenchScene, view: &View<'_>, job: &Job<'_>) -> BenchRow {
+    BenchRow { triangles: view.triangle_count(), ..unmeasured(scene, job) }
+}
+
+/// Row of what there was no time for.
+fn unmeasured(scene: &BenchScene, job: &Job<'_>) -> BenchRow {
+    BenchRow {
+        name: job.name.clone(),
+        scene: scene.spec.clone(),
+        triangles: scene.scene.triangle_count(),
+        light: scene.setup.lights[scene.light].name.clone(),
+        size: job.size_px.to_array(),
+        technique: job.choice.name(),
+        parameters: Map::new(),
+        cut_short_s: None,
+        seconds: None,
+        outcome: BenchOutcome::Skipped(NO_TIME.into()),
+    }
 }
 
 #[cfg(test)]
@@ -146,23 +300,73 @@ mod tests {
     use crate::progress::Silent;
     use crate::test_support::lab_or_skip;
 
-    #[test]
-    fn what_there_is_no_time_for_is_said() {
-        let Some(lab) = lab_or_skip() else { return };
+    const SIZES_PX: [UVec2; 1] = [UVec2::new(32, 18)];
+
+    fn scenes() -> [BenchScene; 1] {
         let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
         let setup = Setup::for_scene(&scene);
-        let scenes = [BenchScene { spec: "builtin:overlap".into(), scene, setup, light: 0 }];
-        let choices = [TechniqueKind::Hard, TechniqueKind::Pcf].map(TechniqueChoice::default_of);
-        let frames = Frames { warm_up: 1, timed: 3 };
-        let measure = |at_most| {
-            let rows = bench(lab, &scenes, &choices, &[UVec2::new(32, 18)], frames, at_most, &Silent).unwrap();
-            let outcomes = rows.into_iter().map(|row| match row.outcome {
-                BenchOutcome::Ran { timings, .. } => timings.frames.to_string(),
-                BenchOutcome::Skipped(why) => why,
-            });
-            outcomes.collect::<Vec<_>>()
+        [BenchScene { spec: "builtin:overlap".into(), scene, setup, light: 0 }]
+    }
+
+    fn outcomes(rows: &BenchRows) -> Vec<String> {
+        let of = |row: BenchRow| match row.outcome {
+            BenchOutcome::Ran { timings, .. } => format!("{} {}", row.technique, timings.frames),
+            BenchOutcome::Skipped(why) => why,
         };
-        assert_eq!(measure(Duration::ZERO), ["no time was left for it"; 2]);
-        assert_eq!(measure(Duration::from_secs(60)), ["3"; 2]);
+        rows.all().into_iter().map(of).collect()
+    }
+
+    #[test]
+    fn what_there_is_no_time_for_is_said_and_measured_when_resumed() {
+        let Some(lab) = lab_or_skip() else { return };
+        let scenes = scenes();
+        let choices = [TechniqueKind::Hard, TechniqueKind::Pcf].map(TechniqueChoice::default_of);
+        let request = |at_most, limits| BenchRequest {
+            scenes: &scenes,
+            choices: &choices,
+            sizes_px: &SIZES_PX,
+            frames: Frames { warm_up: 1, timed: 3 },
+            at_most,
+            limits,
+        };
+        let minute = Duration::from_secs(60);
+        let run = |request, earlier| bench(lab, &request, earlier, &mut |_| Ok(()), &Silent).unwrap();
+        let none = run(request(Duration::ZERO, Limits::default()), Vec::new());
+        assert_eq!((outcomes(&none), none.missing.len()), (vec![NO_TIME.to_owned(); 2], 2));
+        let over = Limits { deadline: Some(Instant::now()), technique: None };
+        assert_eq!(run(request(minute, over), Vec::new()).missing_names()[1], "builtin:overlap, 32x18, pcf");
+        let all = run(request(minute, Limits::default()), Vec::new());
+        assert_eq!((outcomes(&all), all.missing.len()), (vec!["hard 3".to_owned(), "pcf 3".to_owned()], 0));
+        // What is there stays as it is.
+        let resumed = run(request(minute, Limits::default()), all.rows[..1].to_vec());
+        assert_eq!((&resumed.rows[0], outcomes(&resumed)), (&all.rows[0], outcomes(&all)));
+    }
+
+    #[test]
+    fn a_technique_beyond_its_limit_is_cut_short_and_said() {
+        let Some(lab) = lab_or_skip() else { return };
+        let scenes = scenes();
+        let choices = [TechniqueKind::Hard, TechniqueKind::Pcf].map(TechniqueChoice::default_of);
+        let of = |technique| BenchRequest {
+            scenes: &scenes,
+            choices: &choices,
+            sizes_px: &SIZES_PX,
+            frames: Frames { warm_up: 1, timed: 10_000 },
+            at_most: Duration::from_secs(600),
+            limits: Limits { deadline: None, technique: Some(technique) },
+        };
+        let run = |limit, earlier| bench(lab, &of(limit), earlier, &mut |_| Ok(()), &Silent).unwrap();
+        let nothing = run(Duration::ZERO, Vec::new());
+        assert!(outcomes(&nothing).iter().all(|why| why.contains("cut short by the limit of 0 s")), "{nothing:?}");
+        let some = run(Duration::from_secs(3), nothing.rows.clone());
+        for row in &some.rows {
+            let BenchOutcome::Ran { timings, .. } = &row.outcome else { panic!("{row:?}") };
+            assert!((1..10_000).contains(&timings.frames) && row.cut_short_s == Some(3.0), "{row:?}");
+        }
+        assert_eq!(
+            run(Duration::from_secs(2), some.rows.clone()).rows,
+            some.rows,
+            "a shorter limit measures nothing again"
+        );
     }
 }

@@ -3,6 +3,7 @@
 use antumbra_reference::ReferenceError;
 use antumbra_scene::SceneError;
 
+use crate::cut_short::CutShort;
 use crate::device::DeviceError;
 use crate::metrics::MetricsError;
 use crate::output_files::FileError;
@@ -36,7 +37,44 @@ pub enum LabError {
         /// Of what there was too much.
         overflow: antumbra::Overflow,
     },
+    /// A limit of time came before a frame that counts.
+    #[error("{technique}: {cut}")]
+    CutShort {
+        /// Which technique.
+        technique: antumbra::TechniqueKind,
+        /// By which limit, after how much.
+        cut: CutShort,
+    },
     /// What was asked for does not exist: which, and what there is.
     #[error("{0}")]
     Request(String),
+}
+
+impl LabError {
+    /// Whether the run's deadline came before there was a result.
+    pub fn is_deadline(&self) -> bool {
+        matches!(
+            self,
+            Self::CutShort { cut: CutShort { limit: None, .. }, .. } | Self::Reference(ReferenceError::Cancelled)
+        )
+    }
+
+    /// The reason of a measurement that gave nothing, where the others go on: the device lacks something, there is no room, or the
+    /// technique exceeds its limit.
+    pub fn why_skipped(&self) -> Option<String> {
+        match self {
+            Self::Technique(antumbra::Error::Unsupported { .. }) | Self::NoRoom { .. } | Self::CutShort { .. } => {
+                Some(self.to_string())
+            }
+            _ => None,
+        }
+    }
+
+    /// The limit that cut a measurement short, seconds; `None` for other errors.
+    pub fn limit_s(&self) -> Option<f64> {
+        match self {
+            Self::CutShort { cut: CutShort { limit, .. }, .. } => limit.map(|limit| limit.as_secs_f64()),
+            _ => None,
+        }
+    }
 }

@@ -30,20 +30,27 @@
 //! - [`preset`] — a technique with its parameters as a file.
 //! - [`sweep`] — scenes × sizes × settings as jobs in files, for many machines.
 //! - [`reproduce`] — the papers' tables and figures beside ours.
+//! - [`limits`], [`identity`] — when a run ends, and which file it may resume: shared by all of these.
+//! - [`baseline`], [`share`] — results beside those of another adapter.
 //! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
 
 mod adapter_info;
 pub mod advise;
 mod antialiasing;
+pub mod baseline;
 pub mod bench;
 pub mod color_maps;
 pub mod compare;
+pub mod cut_short;
 mod date;
 pub mod device;
 pub mod error;
+pub mod identity;
 pub mod image_io;
+pub mod limits;
 pub mod metrics;
 pub mod motion;
+mod names;
 pub mod output_files;
 pub mod preset;
 pub mod progress;
@@ -53,6 +60,7 @@ pub mod report;
 pub mod reproduce;
 pub mod scene_facts;
 pub mod shading;
+pub mod share;
 mod stopwatch;
 mod store;
 pub mod suite;

@@ -17,6 +17,8 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use crate::limits::End;
+
 /// How long and how often to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
@@ -29,6 +31,8 @@ pub struct Timing {
     pub at_least: Duration,
     /// Once timed frames took this long together, no further one is begun; one is always timed.
     pub at_most: Duration,
+    /// No frame is begun after it, be one timed or not.
+    pub end: Option<End>,
 }
 
 /// How many frames a time is the median of, and after how many: what stands beside every time.
@@ -166,6 +170,21 @@ impl Stopwatch {
         self.is_warm && (is_enough || is_over)
     }
 
+    /// Whether the end has come, be there enough or not.
+    pub(crate) fn is_over(&self) -> bool {
+        self.timing.end.is_some_and(|end| end.is_past())
+    }
+
+    /// Whether a frame counts.
+    pub(crate) fn has_timed(&self) -> bool {
+        self.seen > self.warm_up
+    }
+
+    /// Whether the end came before there was enough.
+    pub(crate) fn is_cut_short(&self) -> bool {
+        !self.is_done() && self.is_over()
+    }
+
     /// Frames before the first that counts.
     pub(crate) fn warm_up(&self) -> u32 {
         self.warm_up
@@ -180,7 +199,8 @@ fn are_alike(a_ms: f64, b_ms: f64) -> bool {
 mod tests {
     use super::*;
 
-    const TIMING: Timing = Timing { warm_up: 1, frames: 3, at_least: Duration::ZERO, at_most: Duration::from_secs(3) };
+    const TIMING: Timing =
+        Timing { warm_up: 1, frames: 3, at_least: Duration::ZERO, at_most: Duration::from_secs(3), end: None };
 
     /// Frames until it is done: how many warmed up, and which count. A negative number is a frame that makes something.
     fn counted(timing: Timing, frames_ms: &[f64]) -> (u32, Vec<f64>) {

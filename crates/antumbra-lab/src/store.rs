@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::error::LabError;
-use crate::output_files::{FileError, write_atomically};
+use crate::output_files::{FileError, read_json, write_atomically};
 
 /// The file is written no oftener.
 const WRITE_EVERY: Duration = Duration::from_secs(1);
@@ -95,9 +95,7 @@ pub(crate) fn fingerprint(bytes: impl IntoIterator<Item = u8>) -> String {
 
 fn read<R: DeserializeOwned>(path: &Path, kind: Kind) -> Result<File<R>, FileError> {
     const REMEDY: &str = "name another folder, or move the file away";
-    let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
-    let file: File<R> =
-        serde_json::from_str(&text).map_err(|error| FileError::bad_content(path, error.to_string(), REMEDY))?;
+    let file: File<R> = read_json(path, REMEDY)?;
     if file.format != kind.format || file.version != kind.version {
         return Err(FileError::bad_content(path, "it holds no measurements of this version", REMEDY));
     }

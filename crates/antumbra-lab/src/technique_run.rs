@@ -9,11 +9,13 @@ use antumbra::{
 };
 use antumbra_light::Light;
 use glam::{UVec2, Vec3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Number, Value};
 
+use crate::cut_short::CutShort;
 use crate::device::{DeviceError, LabDevice};
 use crate::error::LabError;
+use crate::limits::End;
 use crate::picture::Visibility;
 use crate::readback::read_f32_layer;
 use crate::stopwatch::{Seen, Stopwatch, clock_rise};
@@ -108,7 +110,7 @@ impl TechniqueChoice {
 const MOST_OVERFLOWS: u32 = 8;
 
 /// A pass's time over the timed frames.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassStatistics {
     /// The pass's label.
     pub label: String,
@@ -121,7 +123,7 @@ pub struct PassStatistics {
 }
 
 /// Which clock measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Clock {
     /// The GPU's own timestamps about every pass.
@@ -134,7 +136,7 @@ pub enum Clock {
 }
 
 /// The times of one technique.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timings {
     /// By pass, in the order of recording; empty where the device has no timestamps.
     pub passes: Vec<PassStatistics>,
@@ -166,10 +168,19 @@ impl Timings {
 pub struct Drawn {
     /// The mask.
     pub visibility: Visibility,
-    /// GPU memory that the technique holds, bytes.
+    /// GPU memory that the technique takes for the light, bytes.
     pub memory_bytes: u64,
     /// Texels along a side of each map whose size is `auto`; none where sizes are given.
     pub auto_map_sizes: Vec<u32>,
+}
+
+/// Time before a technique's first result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StartUp {
+    /// Making its pipelines, milliseconds: those that no technique before it has made on this device.
+    pub compile_ms: f64,
+    /// Its first frame, milliseconds, in which drivers compile what they put off, and memory is made.
+    pub first_frame_ms: f64,
 }
 
 /// What a technique gave.
@@ -179,10 +190,14 @@ pub struct TechniqueRun {
     pub visibility: Visibility,
     /// Its times.
     pub timings: Timings,
-    /// GPU memory that the technique holds, bytes.
+    /// GPU memory that the technique takes for the light, bytes.
     pub memory_bytes: u64,
     /// Texels along a side of each map whose size is `auto`; none where sizes are given.
     pub auto_map_sizes: Vec<u32>,
+    /// Time before its first result.
+    pub start_up: StartUp,
+    /// The technique's limit, seconds, where fewer frames are timed because of it.
+    pub cut_short_s: Option<f64>,
 }
 
 /// Makes a technique and sets its parameters.
@@ -229,12 +244,33 @@ pub fn draw(
     receivers: Receivers<'_>,
     frames: u32,
 ) -> Result<Drawn, LabError> {
+    draw_until(lab, technique, light, casters, receivers, frames, None)
+}
+
+/// The same, given up at an end.
+///
+/// # Errors
+/// As [`draw`], and where the end comes first.
+pub(crate) fn draw_until(
+    lab: &LabDevice,
+    technique: &mut AnyShadow,
+    light: &Light,
+    casters: Casters<'_>,
+    receivers: Receivers<'_>,
+    frames: u32,
+    end: Option<End>,
+) -> Result<Drawn, LabError> {
     let mask = mask_for(lab, technique, &casters, receivers.size_px);
     let frame = Frame { light, casters, receivers, mask: &mask };
-    draw_frames(lab, technique, &frame, None, &mut Counted { frames: frames.max(1), drawn: 0 })?;
+    let began = Instant::now();
+    let mut counted = Counted { frames: frames.max(1), drawn: 0, end };
+    draw_frames(lab, technique, &frame, None, &mut counted)?;
+    if counted.drawn < counted.frames {
+        return Err(cut_short(technique, end, began, counted.drawn));
+    }
     Ok(Drawn {
         visibility: read_mask(lab, &mask)?,
-        memory_bytes: technique.memory_bytes(),
+        memory_bytes: memory_of(lab, technique),
         auto_map_sizes: technique.auto_map_sizes(),
     })
 }
@@ -245,7 +281,8 @@ pub fn draw(
 /// where time ran out before.
 ///
 /// # Errors
-/// Where the technique cannot be prepared or finds no room, or the device fails.
+/// Where the technique cannot be prepared or finds no room, the device fails, or the end that `timing` sets comes before a frame that
+/// counts.
 pub fn run(
     lab: &LabDevice,
     technique: &mut AnyShadow,
@@ -254,7 +291,9 @@ pub fn run(
     receivers: Receivers<'_>,
     timing: &Timing,
 ) -> Result<TechniqueRun, LabError> {
+    let began = Instant::now();
     technique.warm_up(kinds_of(&casters))?;
+    let compile_ms = began.elapsed().as_secs_f64() * 1e3;
     let mask = mask_for(lab, technique, &casters, receivers.size_px);
     let asked_for = (timing.warm_up + timing.frames.max(1)) as usize;
     // The error of what is denoised hangs on how many frames it has seen, so that all of them are drawn.
@@ -266,14 +305,35 @@ pub fn run(
     draw_frames(lab, technique, &frame, timer.as_mut(), &mut timed)?;
     let Timed { watch, frames, visibility, .. } = timed;
     let warm_up = watch.warm_up();
+    if !watch.has_timed() {
+        return Err(cut_short(technique, timing.end, began, frames.len() as u32));
+    }
+    let first_frame_ms = frames[0].processor_ms + frames[0].submit_to_done_ms;
     let timings = medians(&frames[warm_up as usize..], warm_up, lab.adapter.is_software());
     let visibility = visibility.map_or_else(|| read_mask(lab, &mask), Ok)?;
     Ok(TechniqueRun {
         visibility,
         timings,
-        memory_bytes: technique.memory_bytes(),
+        memory_bytes: memory_of(lab, technique),
         auto_map_sizes: technique.auto_map_sizes(),
+        start_up: StartUp { compile_ms, first_frame_ms },
+        cut_short_s: timing
+            .end
+            .filter(|_| watch.is_cut_short())
+            .and_then(|end| end.limit)
+            .map(|limit| limit.as_secs_f64()),
     })
+}
+
+/// What is said of a technique whose end came before a result.
+pub(crate) fn cut_short(technique: &AnyShadow, end: Option<End>, began: Instant, frames: u32) -> LabError {
+    let (limit, seconds) = (end.and_then(|end| end.limit), began.elapsed().as_secs_f64());
+    LabError::CutShort { technique: technique.kind(), cut: CutShort { limit, seconds, frames } }
+}
+
+/// GPU memory that one light takes, bytes: what it retains, and what it would share with others.
+fn memory_of(lab: &LabDevice, technique: &AnyShadow) -> u64 {
+    technique.memory_bytes() + lab.gpu().memory_bytes().shared
 }
 
 /// Observer of frames as they are drawn, which decides when there are enough.
@@ -290,6 +350,7 @@ trait Audience {
 struct Counted {
     frames: u32,
     drawn: u32,
+    end: Option<End>,
 }
 
 impl Audience for Counted {
@@ -297,7 +358,7 @@ impl Audience for Counted {
         self.drawn = 0;
     }
     fn is_done(&self) -> bool {
-        self.drawn >= self.frames
+        self.drawn >= self.frames || self.end.is_some_and(|end| end.is_past())
     }
     fn see(&mut self, _: FrameTimes) -> Result<(), LabError> {
         self.drawn += 1;
@@ -324,7 +385,7 @@ impl Audience for Timed<'_> {
         self.visibility = None;
     }
     fn is_done(&self) -> bool {
-        self.watch.is_done() && self.frames.len() >= self.least
+        (self.watch.is_done() && self.frames.len() >= self.least) || self.watch.is_over()
     }
     fn see(&mut self, frame: FrameTimes) -> Result<(), LabError> {
         self.watch.see(Seen { ms: frame.processor_ms + frame.submit_to_done_ms, has_made: frame.has_made });

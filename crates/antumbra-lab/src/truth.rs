@@ -1,7 +1,8 @@
 //! The truth of a setup: what the camera sees, and how much of each light it sees from there.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use antumbra_light::Light;
 use antumbra_reference::{ReceiverPoint, Receivers, ReferenceError, Tracer, VisibilityImage, VisibilityOptions};
@@ -98,15 +99,28 @@ pub fn trace_lights(
     options: &VisibilityOptions,
     progress: &dyn Progress,
 ) -> Result<Vec<LightTruth>, ReferenceError> {
+    trace_lights_until(tracer, receivers, lights, options, None, progress)
+}
+
+/// The same, given up at a deadline.
+///
+/// # Errors
+/// Where a light or the options are invalid, or the deadline comes first.
+pub fn trace_lights_until(
+    tracer: &Tracer,
+    receivers: &Receivers,
+    lights: &[Light],
+    options: &VisibilityOptions,
+    deadline: Option<Instant>,
+    progress: &dyn Progress,
+) -> Result<Vec<LightTruth>, ReferenceError> {
     let first_hits = first_hits(receivers);
-    let never = AtomicBool::new(false);
     let truths = lights
         .iter()
         .map(|light| {
             progress.begin(&format!("tracing light {}", light.name), STEPS);
             let report = |fraction: f32| progress.reach((f64::from(fraction) * STEPS as f64) as u64);
-            tracer
-                .visibility(receivers, light, options, &report, &never)
+            until(deadline, &report, |report, stop| tracer.visibility(receivers, light, options, report, stop))
                 .map(|image| LightTruth::of(image, first_hits.clone()))
         })
         .collect();
@@ -118,16 +132,35 @@ pub fn trace_lights(
 /// done, from 0 to 1.
 ///
 /// # Errors
-/// Where the light or the options are invalid.
+/// Where the light or the options are invalid, or the deadline comes first.
 pub fn trace_light(
     tracer: &Tracer,
     receivers: &Receivers,
     light: &Light,
     options: &VisibilityOptions,
+    deadline: Option<Instant>,
     report: &(dyn Fn(f32) + Sync),
 ) -> Result<LightTruth, ReferenceError> {
-    let image = tracer.visibility(receivers, light, options, report, &AtomicBool::new(false))?;
+    let image = until(deadline, report, |report, stop| tracer.visibility(receivers, light, options, report, stop))?;
     Ok(LightTruth::of(image, first_hits(receivers)))
+}
+
+/// Traces with a report of progress that stops the work after a deadline.
+fn until(
+    deadline: Option<Instant>,
+    report: &(dyn Fn(f32) + Sync),
+    trace: impl FnOnce(&(dyn Fn(f32) + Sync), &AtomicBool) -> Result<VisibilityImage, ReferenceError>,
+) -> Result<VisibilityImage, ReferenceError> {
+    let is_over = || deadline.is_some_and(|deadline| Instant::now() >= deadline);
+    let stop = AtomicBool::new(is_over());
+    let watched = |fraction: f32| {
+        report(fraction);
+        // What is complete is kept.
+        if fraction < 1.0 && is_over() {
+            stop.store(true, Ordering::Relaxed);
+        }
+    };
+    trace(&watched, &stop)
 }
 
 fn first_hits(receivers: &Receivers) -> Arc<[Option<SurfacePoint>]> {

@@ -13,10 +13,11 @@ use crate::antialiasing::{Samples, gathered};
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
+use crate::limits::End;
 use crate::picture::{Picture, Visibility, pixel_count};
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
 use crate::shading::{Shading, VisibilitySource};
-use crate::technique_run::{Drawn, FrameCount, TechniqueChoice, TechniqueRun, Timing, create, draw, run};
+use crate::technique_run::{Drawn, FrameCount, TechniqueChoice, TechniqueRun, Timing, create, draw_until, run};
 use crate::truth::SurfacePoint;
 
 /// A scene on the GPU, seen and lit as a setup says.
@@ -124,11 +125,25 @@ impl<'a> View<'a> {
     /// A technique's mask for a light of the setup: drawn once, or so many times where it changes from frame to frame.
     ///
     /// # Errors
-    /// As [`draw`].
+    /// As [`crate::technique_run::draw`].
     pub fn draw(&self, technique: &mut AnyShadow, light: usize, frames: u32) -> Result<Drawn, LabError> {
+        self.draw_until(technique, light, frames, None)
+    }
+
+    /// The same, given up at an end.
+    ///
+    /// # Errors
+    /// As [`crate::technique_run::draw`], and where the end comes first.
+    pub fn draw_until(
+        &self,
+        technique: &mut AnyShadow,
+        light: usize,
+        frames: u32,
+        end: Option<End>,
+    ) -> Result<Drawn, LabError> {
         let light = &self.setup.lights[light];
         let casters: Vec<MeshCaster<'_>> = self.scene.casters_for(light);
-        draw(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), frames)
+        draw_until(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), frames, end)
     }
 
     /// Runs a technique for a light of the setup, and times it.

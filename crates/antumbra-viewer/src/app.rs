@@ -2,6 +2,7 @@
 
 #[cfg(not(target_arch = "wasm32"))]
 mod headless;
+mod history;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod random_input;
 
@@ -16,7 +17,8 @@ use glam::UVec2;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use web_time::Instant;
 
-use crate::file_dialog::{Chosen, FileDialog};
+use self::history::History;
+use crate::file_dialog::{Chosen, FileDialog, Purpose};
 use crate::loader::{Loaded, Loader, Opened, Wanted, read_setup, write_setup, write_whole};
 use crate::message::one_line;
 use crate::options::ViewerOptions;
@@ -64,6 +66,7 @@ pub enum Ended {
 #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is loaded anew"))]
 pub struct Kept {
     state: State,
+    history: History,
     scene: Option<Arc<Scene>>,
     poser: Option<Poser>,
     panels: Panels,
@@ -75,6 +78,7 @@ pub struct App {
     render_state: RenderState,
     adapter: String,
     state: State,
+    history: History,
     renderer: Renderer,
     /// The renderer's output, and what egui calls it.
     texture: Option<(wgpu::TextureView, egui::TextureId)>,
@@ -141,6 +145,7 @@ impl App {
             renderer: Renderer::new(&gpu, Compile::Aside(wake.clone())),
             render_state,
             state: State::new(TechniqueKind::Smrt, TechniqueKind::Hard),
+            history: History::default(),
             texture: None,
             size_px: UVec2::ZERO,
             unframed: None,
@@ -170,13 +175,13 @@ impl App {
     /// The application in another window, as it was in the one before, whose device was lost.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn kept(ctx: &egui::Context, render_state: RenderState, kept: Kept, outcome: Outcome) -> Self {
-        let Kept { state, scene, poser, panels, screenshot } = kept;
+        let Kept { state, history, scene, poser, panels, screenshot } = kept;
         let mut app = Self::bare(ctx, render_state, screenshot, outcome);
         if let (Some(scene), Some(open)) = (&scene, &state.scene) {
             app.renderer.open(scene, open.generation);
         }
         app.say("the graphics device was lost, and made anew");
-        Self { state, scene, poser, panels, ..app }
+        Self { state, history, scene, poser, panels, ..app }
     }
 
     /// Closes the window where its device is lost, and keeps all else. Nothing may be drawn then.
@@ -187,6 +192,7 @@ impl App {
             self.truth.want(None);
             let kept = Kept {
                 state: self.state.clone(),
+                history: std::mem::take(&mut self.history),
                 scene: self.scene.take(),
                 poser: self.poser.take(),
                 panels: std::mem::take(&mut self.panels),
@@ -296,7 +302,13 @@ impl App {
                 self.say(format!("loading {spec}"));
                 self.loader.load(Wanted::plain(spec), self.wake.clone());
             }
-            Action::Choose => self.file_dialog.open(self.wake.clone()),
+            Action::Choose(purpose, name) => self.file_dialog.open(purpose, &name, self.wake.clone()),
+            Action::Undo => {
+                self.history.undo(&mut self.state);
+            }
+            Action::Redo => {
+                self.history.redo(&mut self.state);
+            }
             Action::OpenSetup(path) => match read_setup(&path) {
                 Ok(setup) => self.take_setup(path, setup),
                 Err(why) => self.complain(why),
@@ -352,8 +364,10 @@ impl App {
     fn take_chosen(&mut self, ctx: &egui::Context) {
         match self.file_dialog.take() {
             None => {}
-            Some(Some(chosen)) => self.open_chosen(ctx, chosen),
-            Some(None) => self.say(if cfg!(target_arch = "wasm32") {
+            Some((Purpose::Open, Some(chosen))) => self.open_chosen(ctx, chosen),
+            Some((Purpose::SaveSetup, Some(chosen))) => self.act(ctx, Action::SaveSetup(chosen.path)),
+            Some((Purpose::SavePicture, Some(chosen))) => self.act(ctx, Action::SavePicture(chosen.path)),
+            Some((_, None)) => self.say(if cfg!(target_arch = "wasm32") {
                 "no file was chosen"
             } else {
                 "no file was chosen; where no dialog opens this desktop has none: enter the path, or drop the file"
@@ -408,6 +422,14 @@ impl App {
         ctx.input_mut(|input| {
             if input.consume_key(egui::Modifiers::COMMAND, egui::Key::O) {
                 self.panels.open.is_open = true;
+            }
+            // The one with more keys first: consuming ignores a Shift that is not asked for.
+            let (with_shift, command) = (egui::Modifiers::COMMAND | egui::Modifiers::SHIFT, egui::Modifiers::COMMAND);
+            if input.consume_key(with_shift, egui::Key::Z) || input.consume_key(command, egui::Key::Y) {
+                actions.push(Action::Redo);
+            }
+            if input.consume_key(command, egui::Key::Z) {
+                actions.push(Action::Undo);
             }
             if input.consume_key(egui::Modifiers::NONE, egui::Key::F) {
                 actions.push(Action::FrameAll);
@@ -611,6 +633,7 @@ impl App {
         self.take_loaded(&ctx);
         self.take_chosen(&ctx);
         self.pose();
+        self.history.note(&self.state, ctx.input(|input| input.time));
         let mut actions = self.keys(&ctx);
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
@@ -621,7 +644,8 @@ impl App {
         let sides = 0..self.state.shown_sides().len();
         let choices = sides.map(of_side).reduce(MapChoices::or_more).unwrap_or_default();
         egui::Panel::top("top").resizable(false).show(ui, |ui| {
-            actions.extend(ui::top(ui, &mut self.state, &mut self.panels, choices));
+            let can = self.history.can_undo_and_redo(&self.state);
+            actions.extend(ui::top(ui, &mut self.state, &mut self.panels, choices, can));
         });
         let rmse = |side: usize, estimate: Option<&crate::truth::Estimate>| {
             let (version, mask) = self.masks[side].as_ref()?;

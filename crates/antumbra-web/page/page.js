@@ -1,6 +1,7 @@
 // Starts the viewer, or says why it cannot and shows pictures instead.
 //
-// The address chooses what it starts with: ?scene=builtin:street&technique=pcss:fast&against=vsm&show=error.
+// The address chooses what it starts with: ?scene=builtin:street&technique=pcss:fast&against=vsm&show=error. It follows the scene and
+// the technique that are chosen later.
 // With ?test the page tries itself and posts what it finds; see check.js.
 
 const waiting = document.getElementById("waiting");
@@ -22,6 +23,17 @@ async function lackOfWebGpu() {
   return adapter ? null : "this browser offers it, but has no graphics adapter for it";
 }
 
+/** Puts a built-in scene and the technique of the image into the address. A quality in the address remains while its technique does. */
+function updateAddress(viewer) {
+  const [scene, technique] = viewer.settled()?.split(" ") ?? [];
+  if (!scene?.startsWith("builtin:")) return;
+  const asked = new URLSearchParams(location.search);
+  if (asked.get("technique")?.split(":")[0] !== technique) asked.set("technique", technique);
+  if (asked.get("scene")?.replace(/^builtin:/, "") !== scene.slice("builtin:".length)) asked.set("scene", scene);
+  const search = `?${asked}`;
+  if (search !== location.search) history.replaceState(null, "", search);
+}
+
 async function start() {
   const asked = new URLSearchParams(location.search);
   const lack = await lackOfWebGpu();
@@ -38,6 +50,7 @@ async function start() {
   const viewer = await program.Viewer.start(canvas, scene, technique, against, show);
   waiting.hidden = true;
   if (asked.has("test")) (await import("./check.js")).run(program, viewer, canvas);
+  else setInterval(updateAddress, 500, viewer);
 }
 
 start().catch((error) => {

@@ -44,7 +44,8 @@
 //!
 //! Families of techniques are features of the crate, all on by default: `single_map`, `filterable`, `summed`, `multi_layer`,
 //! `light_views`, `ray_traced`, `receiver_lists`.
-#![forbid(unsafe_code)]
+// wgpu's interface of a device declares some functions unsafe; those of `gpu/plan` do nothing.
+#![deny(unsafe_code)]
 // Modules that families share contain code and shaders that only one family uses.
 #![cfg_attr(
     not(all(
@@ -97,7 +98,9 @@ pub use contract::{
 pub use frame::split_receivers::SplitReceivers;
 #[doc(hidden)]
 pub use gpu::programs;
-pub use gpu::{Gpu, MemoryBytes, ObjectCounts, PassTime, PassTimer, Recorder, ShaderFunction};
+pub use gpu::{
+    Gpu, MemoryBytes, MemoryPlan, ObjectCounts, PassTime, PassTimer, PlannedResource, Recorder, ShaderFunction,
+};
 pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp};
 pub use technique_kind::{TechniqueFacts, TechniqueKind};
 pub use techniques::Technique;

@@ -231,12 +231,14 @@ impl<T: Technique> Shadow<T> {
         &self.technique
     }
 
-    /// GPU memory of the state, bytes, without the mask, pipelines and the host's resources.
+    /// GPU memory that the light retains, bytes: maps, lists, trees, buffers of its frames. What all lights share is in
+    /// [`Gpu::memory_bytes`]; masks, pipelines, the host's resources and uniforms of a few bytes are in neither. A
+    /// [`MemoryPlan`](crate::MemoryPlan) gives the number before anything is allocated.
     pub fn memory_bytes(&self) -> u64 {
-        self.technique.memory_bytes()
+        self.keep.memory_bytes()
+            + self.technique.memory_bytes()
             + self.parted.as_ref().map_or(0, Parted::memory_bytes)
             + self.denoiser.as_ref().map_or(0, Denoiser::memory_bytes)
-            + self.ends.memory_bytes()
     }
 
     /// Texels along a side of each map of the frame prepared last whose size is [`MapSize::Auto`](crate::contract::MapSize::Auto):
@@ -342,8 +344,11 @@ impl<T: Technique> Work for FrameWork<'_, T> {
     }
     fn record(self: Box<Self>, recorder: &mut Recorder<'_>) {
         let Some((uploads, passes)) = self.passes else { return };
+        self.shadow.is_recorded = true;
+        if self.shadow.gpu.device.is_planned() {
+            return;
+        }
         recorder.upload(uploads, self.shadow.commands.end());
         recorder.joining_compute_passes(|recorder| self.shadow.record_passes(recorder, &self.asked, passes));
-        self.shadow.is_recorded = true;
     }
 }

@@ -9,7 +9,7 @@ mod start;
 use antumbra::casters::{Caster, Indices, Instances, Mesh, PositionFormat, Positions};
 use antumbra::light::{Aabb, Cone, Light, LightShape};
 use antumbra::{
-    AnyShadow, CasterSet, Casters, Denoise, Error, Frame, Gpu, Mask, MaskChannels, PointBuffer, PointFrame,
+    AnyShadow, CasterSet, Casters, Denoise, Error, Frame, Gpu, Mask, MaskChannels, MemoryPlan, PointBuffer, PointFrame,
     PointReceivers, Receivers, Recorder, SplitReceivers, TechniqueKind,
 };
 use glam::{Mat4, UVec2, Vec2, Vec3};
@@ -97,6 +97,26 @@ fn many_lights(
         let work = shadow.prepare(&Frame { light, casters, receivers, mask })?;
         work.record(&mut recorder);
     }
+    Ok(())
+}
+
+/// docs/integrating.md, Known before anything is allocated.
+fn known_beforehand(
+    gpu: Gpu,
+    (size_px, format): (UVec2, wgpu::TextureFormat),
+    (lights, casters, receivers): (Vec<Light>, Casters<'_>, Receivers<'_>),
+) -> Result<(), Error> {
+    let plan = MemoryPlan::new(&gpu);
+    let mask = Mask::with_format(plan.gpu().device(), size_px, MaskChannels::One, format); // takes no memory
+    let mut shadows = Vec::new();
+    for light in &lights {
+        let mut shadow = TechniqueKind::Pcss.create(plan.gpu())?;
+        drop(shadow.prepare(&Frame { light, casters, receivers, mask: &mask })?);
+        shadows.push(shadow);
+    }
+    let retained: u64 = shadows.iter().map(AnyShadow::memory_bytes).sum();
+    let shared = plan.gpu().memory_bytes().shared;
+    let of_each_kind = plan.resources(); // by label, most bytes first
     Ok(())
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
 use antumbra::TechniqueKind;
+use antumbra_scene::builtin;
 use antumbra_testing::book::{Page, blocks, book_pages, page, prose, root};
 
 use crate::generated::renewed;
@@ -161,6 +162,71 @@ fn every_picture_is_used() {
     }
 }
 
+/// Values of an attribute in HTML.
+fn values<'a>(html: &'a str, attribute: &str) -> Vec<&'a str> {
+    let begin = format!(" {attribute}=\"");
+    html.split(begin.as_str()).skip(1).filter_map(|rest| Some(rest.split_once('"')?.0)).collect()
+}
+
+/// Asserts that an address of the site's own pages leads to a page or figure of the book, to the viewer with a scene and a technique that
+/// there are, to another own page, or to an image that a command makes.
+fn assert_leads_somewhere(address: &str, own: &str, commands: &str) {
+    let (path, anchor) = address.split_once('#').unwrap_or((address, ""));
+    if let Some(figure) = path.strip_prefix("book/figures/") {
+        assert!(root().join("docs/figures").join(figure).is_file(), "{address}");
+    } else if let Some(name) = path.strip_prefix("book/").and_then(|name| name.strip_suffix(".html")) {
+        let page = page(&format!("docs/{name}.md"));
+        assert!(anchor.is_empty() || anchors(&page.text).contains(anchor), "{address}");
+    } else if let Some(asked) = path.strip_prefix("viewer/index.html?scene=") {
+        let (scene, technique) = asked.split_once("&amp;technique=").unwrap();
+        assert!(builtin::NAMES.iter().any(|known| known.name == scene), "{address}");
+        assert!(TechniqueKind::from_name(technique).is_some(), "{address}");
+    } else if let Some(image) = path.strip_prefix("images/") {
+        assert!(commands.lines().any(|command| command.starts_with(&format!("{image}: "))), "{address}");
+    } else if path.is_empty() {
+        assert!(own.contains(&format!(" id=\"{anchor}\"")), "{address}");
+    } else {
+        let files = ["viewer/index.html", "index.html", "gallery.html", "report.css", "site.css", "copy.js"];
+        assert!(files.contains(&path) && anchor.is_empty(), "{address}");
+    }
+}
+
+#[test]
+fn the_sites_own_pages_hold_together() {
+    let folder = std::env::temp_dir().join(format!("antumbra-site-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let commands = crate::site::write(&folder, &folder, Some("https://example.org/?a&b")).unwrap();
+    assert!(commands.lines().count() > builtin::NAMES.len());
+    for (output, command) in commands.lines().map(|line| line.split_once(": ").unwrap()) {
+        assert!(command.starts_with("antumbra") && command.split(' ').any(|word| word == output), "{command}");
+        let setup = command.split(' ').skip_while(|word| *word != "--setup").nth(1);
+        assert!(setup.is_none_or(|file| folder.join(file).is_file()), "{command}");
+    }
+    let pages = ["index.html", "gallery.html"].map(|name| std::fs::read_to_string(folder.join(name)).unwrap());
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(pages[0].contains("href=\"https://example.org/?a&amp;b\""));
+    let mut viewer = BTreeSet::new();
+    for page in &pages {
+        assert!(!page.contains("{{"), "a placeholder without a value");
+        assert_eq!(page.matches("<img ").count(), values(page, "alt").len(), "an image without a text");
+        for address in ["src", "srcset", "href"].into_iter().flat_map(|attribute| values(page, attribute)) {
+            if address.starts_with("data:") {
+                continue;
+            }
+            if address.contains("://") {
+                // Nothing is loaded from elsewhere.
+                assert!(page.contains(&format!("<a href=\"{address}\"")), "{address}");
+                continue;
+            }
+            assert_leads_somewhere(address, page, &commands);
+            if address.starts_with("viewer/index.html?") {
+                viewer.insert(address);
+            }
+        }
+    }
+    assert_eq!(viewer.len(), builtin::NAMES.len() * TechniqueKind::ALL.len(), "every scene with every technique");
+}
+
 /// Code without comments and blanks at both ends of a line.
 fn code_lines<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     lines
@@ -208,9 +274,10 @@ fn rust_snippets_stand_in_what_is_compiled() {
     assert!(snippets >= 8, "{snippets}");
 }
 
-/// Shaders of the examples, which stand in files of their own or in strings.
+/// Shaders of the examples, which are in files of their own or in strings. The book's highlighter does not know WGSL and says so on the
+/// console, so that the blocks are plain text to it.
 #[test]
 fn wgsl_snippets_stand_in_a_shader_that_runs() {
-    let snippets = compiled_snippets("wgsl", &["examples"], &["wgsl", "rs"]);
+    let snippets = compiled_snippets("text,wgsl", &["examples"], &["wgsl", "rs"]);
     assert!(snippets >= 2, "{snippets}");
 }

@@ -93,7 +93,20 @@ pub type Posts = Receiver<(String, Vec<u8>)>;
 /// # Errors
 /// Where there is no port to be had.
 pub fn serve_aside(folder: &Path) -> Result<(String, Posts), String> {
-    let server = Server::new(folder, 0)?;
+    run_aside(Server::new(folder, 0)?)
+}
+
+/// As [`serve_aside`], with another folder below a path such as `a/b/`.
+///
+/// # Errors
+/// Where there is no port to be had.
+pub fn serve_both_aside(folder: &Path, path: &str, below: &Path) -> Result<(String, Posts), String> {
+    let mut server = Server::new(folder, 0)?;
+    server.mount(path, below);
+    run_aside(server)
+}
+
+fn run_aside(server: Server) -> Result<(String, Posts), String> {
     let address = server.address()?;
     let (sender, posts) = channel();
     thread::spawn(move || {

@@ -15,25 +15,18 @@ const PAGE: [&str; 4] = ["index.html", "style.css", "page.js", "check.js"];
 /// Pictures for those without WebGPU, from `docs/figures`.
 const FIGURES: [&str; 3] = ["hero_smrt.png", "viewer_compare.png", "viewer_error.png"];
 
-/// What was built.
-pub struct Built {
-    /// The folder that any host of files can serve.
-    pub folder: PathBuf,
-}
-
-/// Builds the folder `target/web`, and says how long that took and how large it is.
+/// Builds the page in a folder that any host of files can serve, and says how long that took and how large it is.
 ///
 /// # Errors
 /// What is missing, does not compile, or is too large.
-pub fn build() -> Result<Built, String> {
+pub fn build(folder: &Path) -> Result<(), String> {
     let began = Instant::now();
     let mut compile = wasm::compiler(&["build", "--profile", "web", "--package", "antumbra-web"])?;
     shell::run(&mut compile)?;
     let program = wasm::target_folder(&compile).join(wasm::TARGET).join("web/antumbra-web.wasm");
-    let folder = crate::root().join("target/web");
     // Of an older build nothing may stay.
     if folder.exists() {
-        std::fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        std::fs::remove_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
     let figures = folder.join("figures");
     std::fs::create_dir_all(&figures).map_err(|error| format!("{}: {error}", figures.display()))?;
@@ -43,12 +36,12 @@ pub fn build() -> Result<Built, String> {
             // worth (nothing, compressed), and the release that Debian has breaks tables of references.
             .args(["--remove-name-section", "--remove-producers-section"])
             .args(["--target", "web", "--no-typescript", "--out-name", "antumbra", "--out-dir"])
-            .args([&folder, &program]),
+            .args([folder, program.as_path()]),
     )?;
     let program = folder.join("antumbra_bg.wasm");
     let root = crate::root();
     for (from, names, to) in
-        [("crates/antumbra-web/page", &PAGE[..], &folder), ("docs/figures", &FIGURES[..], &figures)]
+        [("crates/antumbra-web/page", &PAGE[..], folder), ("docs/figures", &FIGURES[..], figures.as_path())]
     {
         for name in names {
             let from = root.join(from).join(name);
@@ -67,7 +60,7 @@ pub fn build() -> Result<Built, String> {
     if bytes > MOST_WASM_BYTES {
         return Err(format!("the page's program has {bytes} bytes, and may have {MOST_WASM_BYTES}"));
     }
-    Ok(Built { folder })
+    Ok(())
 }
 
 /// `5.1 MB, 1.9 MB compressed`.

@@ -6,7 +6,6 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use super::browser::{self, Patience, Posts};
-use super::build::Built;
 use super::compare;
 use crate::shell::{self, cargo};
 
@@ -26,7 +25,7 @@ const PATIENCE: Patience = Patience { silence: Duration::from_secs(600), all: Du
 ///
 /// # Errors
 /// The first thing that the page could not do, the first word on its console, or a mask that differs.
-pub fn check(built: &Built, program: &Path, extent: Extent) -> Result<(), String> {
+pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> {
     let began = Instant::now();
     let test = if extent == Extent::Variants { "all" } else { "" };
     let folder = crate::root().join("target/web-check");
@@ -35,7 +34,7 @@ pub fn check(built: &Built, program: &Path, extent: Extent) -> Result<(), String
         browser::make_anew(old)?;
     }
     let log = folder.join("browser.log");
-    let (address, posts) = browser::serve_aside(&built.folder)?;
+    let (address, posts) = browser::serve_aside(page)?;
     let mut told = Told::default();
     loop {
         let from = told.begun.map_or(0, |index| index + 1);

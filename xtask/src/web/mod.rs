@@ -1,15 +1,16 @@
 //! `cargo xtask web`: the viewer as a page.
 
-mod browser;
+pub mod browser;
 mod build;
 mod check;
 mod compare;
 mod programs;
 mod server;
 
+pub use build::build;
 pub use programs::{Extent as Programs, check as check_programs};
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use check::Extent;
@@ -27,8 +28,11 @@ const PORT: u16 = 8080;
 pub fn run(arguments: &[String]) -> Result<(), String> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words[..] {
-        [] => build::build().map(drop),
-        ["--serve"] => serve(&build::build()?.folder, PORT, "a browser with WebGPU"),
+        [] => build(&folder()),
+        ["--serve"] => {
+            build(&folder())?;
+            serve(&folder(), PORT, "a browser with WebGPU")
+        }
         ["--shaders"] => check_programs(Programs::ModulesAndLayouts),
         ["--pipelines"] => check_programs(Programs::Pipelines),
         ["--check"] => check(Extent::Techniques),
@@ -38,6 +42,11 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
                 .into())
         }
     }
+}
+
+/// The folder that the page is built in.
+fn folder() -> PathBuf {
+    crate::root().join("target/web")
 }
 
 /// Serves a folder on this machine until the program ends, on the port or another one.
@@ -57,7 +66,10 @@ pub fn serve(folder: &Path, port: u16, by: &str) -> Result<(), String> {
 /// Builds the page and tries it in a browser, where there is one or it can be installed.
 fn check(extent: Extent) -> Result<(), String> {
     match wasm::compiler(&[]).and_then(|_| browser::get()) {
-        Ok(browser) => check::check(&build::build()?, &browser, extent),
+        Ok(browser) => {
+            build(&folder())?;
+            check::check(&folder(), &browser, extent)
+        }
         Err(lack) => {
             eprintln!("xtask: SKIPPED the page in a browser: {lack}");
             Ok(())

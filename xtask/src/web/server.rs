@@ -15,7 +15,14 @@ pub type OnPost = Arc<dyn Fn(&str, Vec<u8>) + Send + Sync>;
 /// A server that has a port.
 pub struct Server {
     listener: TcpListener,
-    folder: PathBuf,
+    folders: Folders,
+}
+
+/// The folder of the root, and another one with the path below which it is served.
+#[derive(Clone)]
+struct Folders {
+    root: PathBuf,
+    mounted: Option<(String, PathBuf)>,
 }
 
 impl Server {
@@ -26,7 +33,12 @@ impl Server {
     pub fn new(folder: &Path, port: u16) -> Result<Self, String> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
             .map_err(|error| format!("cannot serve on 127.0.0.1:{port}: {error}"))?;
-        Ok(Self { listener, folder: folder.to_owned() })
+        Ok(Self { listener, folders: Folders { root: folder.to_owned(), mounted: None } })
+    }
+
+    /// Serves another folder, too, below a path such as `a/b/`.
+    pub fn mount(&mut self, path: &str, folder: &Path) {
+        self.folders.mounted = Some((path.to_owned(), folder.to_owned()));
     }
 
     /// Where it is.
@@ -41,16 +53,16 @@ impl Server {
     /// Answers, each connection on a thread of its own, until the program ends.
     pub fn run(self, on_post: OnPost) {
         for connection in self.listener.incoming().flatten() {
-            let (folder, on_post) = (self.folder.clone(), on_post.clone());
+            let (folders, on_post) = (self.folders.clone(), on_post.clone());
             thread::spawn(move || {
                 // Whoever hangs up needs no answer.
-                let _ = answer(connection, &folder, &on_post);
+                let _ = answer(connection, &folders, &on_post);
             });
         }
     }
 }
 
-fn answer(mut connection: TcpStream, folder: &Path, on_post: &OnPost) -> std::io::Result<()> {
+fn answer(mut connection: TcpStream, folders: &Folders, on_post: &OnPost) -> std::io::Result<()> {
     let mut reader = BufReader::new(connection.try_clone()?);
     let mut line = String::new();
     reader.read_line(&mut line)?;
@@ -77,15 +89,19 @@ fn answer(mut connection: TcpStream, folder: &Path, on_post: &OnPost) -> std::io
         return respond(&mut connection, "204 No Content", "text/plain", b"");
     }
     let path = target.split(['?', '#']).next().unwrap_or_default();
-    match file(folder, path).and_then(|file| Some((kind_of(&file), std::fs::read(&file).ok()?))) {
+    match file(folders, path).and_then(|file| Some((kind_of(&file), std::fs::read(&file).ok()?))) {
         Some((kind, bytes)) => respond(&mut connection, "200 OK", kind, &bytes),
         None => respond(&mut connection, "404 Not Found", "text/plain", b"there is no such file"),
     }
 }
 
-/// The file of a path; none outside the folder.
-fn file(folder: &Path, path: &str) -> Option<PathBuf> {
-    let path = Path::new(path.trim_start_matches('/'));
+/// The file of a path; none outside the folders.
+fn file(folders: &Folders, path: &str) -> Option<PathBuf> {
+    let path = path.trim_start_matches('/');
+    let mounted =
+        folders.mounted.as_ref().and_then(|(below, folder)| Some((folder, path.strip_prefix(below.as_str())?)));
+    let (folder, path) = mounted.unwrap_or((&folders.root, path));
+    let path = Path::new(path);
     let is_inside = path.components().all(|part| matches!(part, Component::Normal(_)));
     let file = folder.join(if path.as_os_str().is_empty() { Path::new("index.html") } else { path });
     (is_inside && file.is_file()).then_some(file)
@@ -136,7 +152,9 @@ mod tests {
         std::fs::create_dir_all(folder.join("page")).unwrap();
         std::fs::write(folder.join("page/index.html"), "the page").unwrap();
         std::fs::write(folder.join("secret"), "not the page").unwrap();
-        let server = Server::new(&folder.join("page"), 0).unwrap();
+        std::fs::write(folder.join("other"), "another folder's file").unwrap();
+        let mut server = Server::new(&folder.join("page"), 0).unwrap();
+        server.mount("a/b/", &folder);
         let address = server.address().unwrap();
         let posted = Arc::new(Mutex::new(Vec::new()));
         let kept = posted.clone();
@@ -145,7 +163,9 @@ mod tests {
         });
         let page = ask(&address, "GET /?test HTTP/1.1\r\nHost: x\r\n\r\n");
         assert!(page.starts_with("HTTP/1.1 200") && page.contains("text/html") && page.ends_with("the page"), "{page}");
-        for path in ["/../secret", "/nothing", "//etc/passwd", "/page/../../secret"] {
+        let other = ask(&address, "GET /a/b/other HTTP/1.1\r\n\r\n");
+        assert!(other.starts_with("HTTP/1.1 200") && other.ends_with("another folder's file"), "{other}");
+        for path in ["/../secret", "/nothing", "//etc/passwd", "/page/../../secret", "/a/b/../secret", "/a/other"] {
             let answer = ask(&address, &format!("GET {path} HTTP/1.1\r\n\r\n"));
             assert!(answer.starts_with("HTTP/1.1 404"), "{path}: {answer}");
         }

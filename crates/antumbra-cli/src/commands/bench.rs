@@ -3,69 +3,189 @@
 use std::path::Path;
 use std::time::Duration;
 
-use antumbra_lab::bench::{BenchOutcome, BenchRow, BenchScene, Frames, bench as measure};
-use antumbra_lab::device::AdapterReport;
+use antumbra_lab::baseline::{Against, Baseline, Source, of_bench};
+use antumbra_lab::bench::{
+    BenchOutcome, BenchRequest, BenchRow, BenchRows, BenchScene, Frames, bench as measure, file_json, rows_to_resume,
+};
+use antumbra_lab::device::{AdapterReport, LabDevice};
+use antumbra_lab::error::LabError;
+use antumbra_lab::identity::Identity;
+use antumbra_lab::limits::Limits;
 use antumbra_lab::output_files::check_json_path;
 use antumbra_lab::progress::Progress;
+use antumbra_lab::share::{SharedFile, check_scenes, markdown as cards_page, read_folder};
 use antumbra_lab::suite::{Done, Plan, Results, markdown, run_slice};
-use antumbra_lab::technique_run::Clock;
+use antumbra_lab::technique_run::{Clock, TechniqueChoice};
 use glam::UVec2;
 use serde_json::{Value, json};
 
 use crate::args::BenchArgs;
-use crate::commands::{COMMIT, LoadedScene, choices, light_index, load_scene, narrowest, open_device, write_json};
-use crate::failure::Failure;
+use crate::commands::{COMMIT, LoadedScene, choices, light_index, load_scene, narrowest, open_device, put_json};
+use crate::failure::{Failure, Kept};
+use crate::keep;
 use crate::progress::Bars;
 use crate::stdout::say;
 use crate::table;
 
 /// What is measured unless scenes are given: few triangles, one dense closed mesh, many triangles in many layers.
 const DEFAULT_SCENES: [&str; 3] = ["builtin:overlap", "builtin:knot", "builtin:street"];
+/// The same for a file that is shared: those of which there are results of other cards.
+const SHARED_SCENES: [&str; 2] = ["builtin:columns", "builtin:street"];
 
 /// The size where none is given: a size of window, or on a software adapter one that all techniques draw in minutes.
 const DEFAULT_SIZE: UVec2 = UVec2::new(1280, 720);
+const SHARED_SIZE: UVec2 = UVec2::new(1920, 1080);
 const SOFTWARE_SIZE: UVec2 = UVec2::new(480, 270);
+
+/// Minutes where neither they nor a deadline are given.
+const DEFAULT_MINUTES: u32 = 10;
 
 /// Measures and prints; writes JSON where asked to.
 pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
+    let limits = args.run.limits();
     if let Some(path) = &args.tables {
         say!("{}", markdown(&Results::read(path)?).trim_end());
+        return Ok(());
+    }
+    if let Some(dir) = &args.cards {
+        say!("{}", cards_page(&read_folder(dir)?).trim_end());
         return Ok(());
     }
     if let Some(path) = &args.suite {
         return suite(args, path, bars);
     }
     let choices = choices(&args.techniques.0, &args.settings)?;
-    if let Some(path) = &args.json {
+    let baseline = check(args)?;
+    let scenes = load(args, bars)?;
+    let lab = open_device(&args.adapter)?;
+    let run = Run { args, lab: &lab, scenes: &scenes, choices: &choices, sizes: sizes(args, &lab), baseline };
+    let (rows, against) = run.measure(limits, bars)?;
+    print(&lab.adapter, &rows.all());
+    if let Some(against) = against {
+        say!("\n{}\n", against.summary());
+        table::print(&against.table());
+    }
+    match limits.deadline {
+        Some(_) if !rows.missing.is_empty() => {
+            let shared = args.share.as_deref().map_or(Kept::Nothing, Kept::Alone);
+            let kept = args.json.as_deref().map_or(shared, Kept::ToResume);
+            Err(Failure::incomplete(&rows.missing_names(), rows.all().len(), &kept))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What can be known to be wrong before anything is loaded; the baseline, where there is one.
+fn check(args: &BenchArgs) -> Result<Option<Baseline>, Failure> {
+    if args.run.resume && args.json.is_none() {
+        return Err(Failure::Input("--resume: bench resumes the file of --json; add --json times.json".into()));
+    }
+    for path in args.json.iter().chain(&args.share) {
         check_json_path(path)?;
     }
-    let specs: Vec<String> =
-        if args.scenes.is_empty() { DEFAULT_SCENES.map(str::to_owned).to_vec() } else { args.scenes.clone() };
+    if args.share.is_some() {
+        check_scenes(&args.scenes)?;
+    }
+    Ok(args.run.baseline.as_deref().map(|path| Baseline::read(path, Source::Bench)).transpose()?)
+}
+
+fn load(args: &BenchArgs, bars: &Bars) -> Result<Vec<BenchScene>, Failure> {
+    let default: &[&str] = if args.share.is_some() { &SHARED_SCENES } else { &DEFAULT_SCENES };
+    let specs: Vec<String> = if args.scenes.is_empty() {
+        default.iter().map(|scene| (*scene).to_owned()).collect()
+    } else {
+        args.scenes.clone()
+    };
     let mut scenes = Vec::new();
     for spec in specs {
         let LoadedScene { scene, setup, .. } = load_scene(&spec, &args.scene, narrowest(&args.sizes), bars)?;
         let light = light_index(&setup.lights, args.light.as_deref())?;
         scenes.push(BenchScene { spec, scene, setup, light });
     }
-    let lab = open_device(&args.adapter)?;
-    let default_size = if lab.adapter.is_software() { SOFTWARE_SIZE } else { DEFAULT_SIZE };
-    let sizes = if args.sizes.is_empty() { vec![default_size] } else { args.sizes.clone() };
-    bars.note(&plan(&scenes, choices.len(), &sizes, args.minutes, &lab.adapter.name));
-    let frames = Frames { warm_up: args.warm_up, timed: args.frames };
-    let at_most = Duration::from_secs(60 * u64::from(args.minutes));
-    let rows = measure(&lab, &scenes, &choices, &sizes, frames, at_most, bars)?;
-    if let Some(path) = &args.json {
-        write_json(path, &as_json(&lab.adapter, frames, &rows))?;
+    Ok(scenes)
+}
+
+fn sizes(args: &BenchArgs, lab: &LabDevice) -> Vec<UVec2> {
+    match args.sizes.as_slice() {
+        [] if lab.adapter.is_software() => vec![SOFTWARE_SIZE],
+        [] if args.share.is_some() => vec![SHARED_SIZE],
+        [] => vec![DEFAULT_SIZE],
+        sizes => sizes.to_vec(),
     }
-    print(&lab.adapter, &rows);
-    Ok(())
+}
+
+/// A run of measurements, and where it is written.
+struct Run<'a> {
+    args: &'a BenchArgs,
+    lab: &'a LabDevice,
+    scenes: &'a [BenchScene],
+    choices: &'a [TechniqueChoice],
+    sizes: Vec<UVec2>,
+    baseline: Option<Baseline>,
+}
+
+impl Run<'_> {
+    fn measure(&self, limits: Limits, bars: &Bars) -> Result<(BenchRows, Option<Against>), Failure> {
+        let Self { args, lab, scenes, choices, ref sizes, ref baseline } = *self;
+        let minutes = args.minutes.map(|minutes| Duration::from_secs(60 * u64::from(minutes)));
+        let until = args.run.deadline;
+        let default = until.unwrap_or(Duration::from_secs(60 * u64::from(DEFAULT_MINUTES)));
+        let at_most = minutes.unwrap_or(default).min(until.unwrap_or(Duration::MAX));
+        bars.note(&plan(scenes, choices.len(), sizes, at_most, &lab.adapter.name));
+        let frames = Frames { warm_up: args.warm_up, timed: args.frames };
+        let identity = Identity::new(lab, COMMIT, &self.settings());
+        let earlier = match &args.json {
+            Some(path) if args.run.resume => rows_to_resume(path, &identity)?,
+            _ => Vec::new(),
+        };
+        let request = BenchRequest { scenes, choices, sizes_px: sizes, frames, at_most, limits };
+        let write = |json: &Value, rows: &BenchRows| -> Result<(), LabError> {
+            if let Some(path) = &args.json {
+                put_json(path, json)?;
+                keep(path);
+            }
+            if let Some(path) = &args.share {
+                put_json(path, &json!(SharedFile::new(lab, COMMIT, frames, rows)))?;
+            }
+            Ok(())
+        };
+        let file = |rows: &BenchRows, is_over| file_json(&identity, &lab.adapter, frames, rows, is_over);
+        let rows = measure(lab, &request, earlier, &mut |rows| write(&file(rows, false), rows), bars)?;
+        let mut json = file(&rows, true);
+        let against = baseline.as_ref().map(|baseline| baseline.against(&of_bench(&rows.rows)));
+        if let Some(against) = &against {
+            json["baseline"] = json!(against);
+        }
+        write(&json, &rows)?;
+        Ok((rows, against))
+    }
+
+    /// What the file depends on beside program and adapter.
+    fn settings(&self) -> Value {
+        let scene = |scene: &BenchScene| {
+            json!({
+                "scene": scene.spec,
+                "triangles": scene.scene.triangle_count(),
+                "setup": scene.setup.to_toml(),
+                "light": scene.setup.lights[scene.light].name,
+            })
+        };
+        json!({
+            "scenes": self.scenes.iter().map(scene).collect::<Vec<_>>(),
+            "time": self.args.scene.time.to_string(),
+            "sizes": self.sizes.iter().map(|size| size.to_array()).collect::<Vec<_>>(),
+            "techniques": self.choices.iter().map(|one| format!("{}{}", one.name(), one.as_arguments())).collect::<Vec<_>>(),
+            "warm_up": self.args.warm_up,
+            "frames": self.args.frames,
+        })
+    }
 }
 
 /// A slice of the suite.
 fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
     check_json_path(path)?;
     let lab = open_device(&args.adapter)?;
-    let at_most = Duration::from_secs(60 * u64::from(args.minutes));
+    let at_most = Duration::from_secs(60 * u64::from(args.minutes.unwrap_or(DEFAULT_MINUTES)));
     let plan = if args.parts.is_empty() { Plan::whole() } else { Plan::whole().only(&args.parts) };
     let Done { jobs, of } = run_slice(&lab, &plan, path, COMMIT, at_most, bars)?;
     let again = if jobs < of { "the same line again goes on" } else { "`antumbra bench --tables` makes the page" };
@@ -74,59 +194,67 @@ fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
 }
 
 /// What will be measured and how long that takes, in a line.
-fn plan(scenes: &[BenchScene], techniques: usize, sizes: &[UVec2], minutes: u32, adapter: &str) -> String {
+fn plan(scenes: &[BenchScene], techniques: usize, sizes: &[UVec2], at_most: Duration, adapter: &str) -> String {
     let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let sizes_text: Vec<_> = sizes.iter().map(|size| format!("{}x{}", size.x, size.y)).collect();
-    let each_s = 60.0 * f64::from(minutes) / (scenes.len() * techniques * sizes.len()) as f64;
+    let seconds = at_most.as_secs_f64();
+    let each_s = seconds / (scenes.len() * techniques * sizes.len()) as f64;
+    let within = if seconds % 60.0 == 0.0 { counted(seconds as usize / 60, "minute") } else { format!("{seconds} s") };
     format!(
-        "{} of {} at {} on {adapter}: done within {}, up to {each_s:.0} s for each and more where others take less",
+        "{} of {} at {} on {adapter}: done within {within}, up to {each_s:.0} s for each and more where others take less",
         counted(techniques, "technique"),
         counted(scenes.len(), "scene"),
         sizes_text.join(", "),
-        counted(minutes as usize, "minute"),
     )
 }
 
-fn as_json(adapter: &AdapterReport, frames: Frames, rows: &[BenchRow]) -> Value {
-    json!({
-        "antumbra": env!("CARGO_PKG_VERSION"),
-        "commit": COMMIT,
-        "adapter": adapter.name,
-        "driver": adapter.driver_and_version(),
-        "backend": adapter.backend.to_string(),
-        "software": adapter.is_software(),
-        "warm_up": frames.warm_up,
-        "frames": frames.timed,
-        "rows": rows,
-    })
-}
+const HEADING: [&str; 11] = [
+    "SCENE",
+    "SIZE",
+    "TECHNIQUE",
+    "MEDIAN MS",
+    "MEDIAN CPU MS",
+    "TIMED FRAMES",
+    "WARM-UP FRAMES",
+    "COMPILE MS",
+    "FIRST FRAME MS",
+    "MIB",
+    "PASSES",
+];
 
 fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
     say!("Adapter: {} ({})\n", adapter.name, adapter.backend);
-    let heading =
-        ["SCENE", "SIZE", "TECHNIQUE", "MEDIAN MS", "MEDIAN CPU MS", "TIMED FRAMES", "WARM-UP FRAMES", "MIB", "PASSES"];
-    let mut cells = vec![heading.map(str::to_owned).to_vec()];
+    let mut cells = vec![HEADING.map(str::to_owned).to_vec()];
     cells.extend(rows.iter().map(|row| {
         let size = format!("{}x{}", row.size[0], row.size[1]);
         let begin = vec![row.scene.clone(), size, row.technique.to_owned()];
-        let rest = match &row.outcome {
-            BenchOutcome::Ran { timings, memory_bytes, .. } => {
-                let passes: Vec<_> =
-                    timings.passes.iter().map(|pass| format!("{} {:.3}", pass.label, pass.ms)).collect();
-                let passes = match timings.clock {
-                    Clock::GpuTimestamps | Clock::SoftwareTimestamps => passes.join(", "),
-                    Clock::SubmitToDone => "no timestamps here: from submission to completion".to_owned(),
-                };
-                let mib = *memory_bytes as f64 / f64::from(1 << 20);
-                let [gpu, processor] = [timings.total_ms, timings.processor_ms].map(|ms| format!("{ms:.3}"));
-                let [frames, warm_up] = [timings.frames, timings.warm_up].map(|count| count.to_string());
-                vec![gpu, processor, frames, warm_up, format!("{mib:.1}"), passes]
-            }
-            BenchOutcome::Skipped(reason) => {
-                std::iter::repeat_n("–".to_owned(), 5).chain([format!("skipped: {reason}")]).collect()
-            }
-        };
-        begin.into_iter().chain(rest).collect()
+        begin.into_iter().chain(figures(row)).collect()
     }));
     table::print(&cells);
+}
+
+/// A row's cells behind the technique's name.
+fn figures(row: &BenchRow) -> Vec<String> {
+    let none = || "–".to_owned();
+    let (timings, memory_bytes, start_up) = match &row.outcome {
+        BenchOutcome::Ran { timings, memory_bytes, start_up, .. } => (timings, *memory_bytes, *start_up),
+        BenchOutcome::Skipped(reason) => {
+            let last = format!("skipped: {reason}");
+            return std::iter::repeat_with(none).take(HEADING.len() - 4).chain([last]).collect();
+        }
+    };
+    let passes: Vec<_> = timings.passes.iter().map(|pass| format!("{} {:.3}", pass.label, pass.ms)).collect();
+    let mut passes = match timings.clock {
+        Clock::GpuTimestamps | Clock::SoftwareTimestamps => passes.join(", "),
+        Clock::SubmitToDone => "no timestamps here: from submission to completion".to_owned(),
+    };
+    if let Some(limit_s) = row.cut_short_s {
+        passes += &format!(" (cut short by the limit of {limit_s} s for a technique)");
+    }
+    let [compile, first] = [start_up.map(|start| start.compile_ms), start_up.map(|start| start.first_frame_ms)]
+        .map(|ms| ms.map_or_else(none, |ms| format!("{ms:.1}")));
+    let mib = memory_bytes as f64 / f64::from(1 << 20);
+    let [gpu, processor] = [timings.total_ms, timings.processor_ms].map(|ms| format!("{ms:.3}"));
+    let [frames, warm_up] = [timings.frames, timings.warm_up].map(|count| count.to_string());
+    vec![gpu, processor, frames, warm_up, compile, first, format!("{mib:.1}"), passes]
 }

@@ -1,13 +1,20 @@
 //! `antumbra compare`.
 
+mod baseline;
+
 use std::path::Path;
 use std::time::Duration;
 
 use antumbra_lab::compare::{CompareRequest, compare as compare_scene};
 use antumbra_lab::device::LabDevice;
+use antumbra_lab::error::LabError;
+use antumbra_lab::limits::Pace;
 use antumbra_lab::motion::{Motion, MotionOptions};
-use antumbra_lab::output_files::OutputDir;
-use antumbra_lab::report::{IndexEntry, MotionInfo, Outcome, Report, write_index, write_report};
+use antumbra_lab::output_files::{FileError, OutputDir};
+use antumbra_lab::progress::Progress;
+use antumbra_lab::report::{
+    IndexEntry, MotionInfo, Outcome, Report, ReportWriter, report_paths, report_to_resume, write_index,
+};
 use antumbra_lab::technique_run::{FrameCount, TechniqueChoice, Timing};
 use antumbra_scene::{Setup, builtin};
 
@@ -16,11 +23,13 @@ use crate::commands::{
     COMMIT, LoadedScene, choices, command_line, end_shadows, light_index, load_scene, narrowest, open_device,
     scene_arguments,
 };
-use crate::failure::Failure;
+use crate::failure::{Failure, Kept};
+use crate::keep;
 use crate::progress::Bars;
 use crate::stdout::say;
 use crate::table;
 use crate::values::{Motions, techniques_of};
+use baseline::{BaselineFile, baselines, check_view};
 
 /// However many frames are asked for, no technique is timed for longer than this: on a software adapter a frame of
 /// many views takes seconds.
@@ -30,71 +39,175 @@ const AT_LEAST: Duration = Duration::from_millis(250);
 
 /// Compares, writes the report or the reports, and prints the figures.
 pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
+    let mut pace = Pace::new(args.run.limits());
     let techniques = args.preset.map_or_else(|| args.techniques.0.clone(), |preset| techniques_of(&preset));
     let choices = choices(&techniques, &args.settings)?;
     let motion = motion_options(&args.motion, args.shadow_distance)?;
+    let folders = folders_for(&args.scenes);
+    let baselines = baselines(args, &folders)?;
     // Before the long work, not after it.
-    let out = OutputDir::create(&args.output)?;
+    let out = if args.run.resume { OutputDir::resume(&args.output) } else { OutputDir::create(&args.output) }?;
     let lab = open_device(&args.adapter)?;
-    match args.scenes.as_slice() {
-        [scene] => {
-            let report = report_on(args, scene, &choices, motion.as_ref(), &lab, bars)?;
-            write_report(out.path(), &report)?;
-            print(&report);
-        }
-        scenes => {
-            let mut entries: Vec<IndexEntry> = Vec::new();
-            for scene in scenes {
-                let report = report_on(args, scene, &choices, motion.as_ref(), &lab, bars)?;
-                let folder = folder_for(scene, &entries);
-                let dir = out.path().join(&folder);
-                std::fs::create_dir(&dir).map_err(|e| Failure::Other(format!("cannot make {}: {e}", dir.display())))?;
-                write_report(&dir, &report)?;
-                entries.push(IndexEntry::of(&folder, &report));
-                print(&report);
+    let mut expected = expected_files(&choices, motion.as_ref(), &folders);
+    let mut site = Site { args, choices: &choices, motion: motion.as_ref(), lab: &lab, out, pace: &mut pace };
+    let (mut entries, mut missing): (Vec<IndexEntry>, Vec<String>) = Default::default();
+    for ((scene, folder), baseline) in args.scenes.iter().zip(&folders).zip(&baselines) {
+        let report = match site.report_on(scene, folder, baseline.as_ref(), &mut expected, bars) {
+            Ok(report) => report,
+            Err(Unfinished::Deadline) => {
+                bars.end();
+                missing.extend(choices.iter().map(|choice| named(folder, &choice.name())));
+                continue;
             }
-            write_index(out.path(), &entries)?;
-        }
+            Err(Unfinished::Failed(failure)) => return Err(failure),
+        };
+        missing.extend(report.missing.iter().map(|name| named(folder, name)));
+        entries.push(IndexEntry::of(folder, &report));
+        print(&report);
+    }
+    let Site { out, .. } = site;
+    if entries.is_empty() {
+        return Err(Failure::incomplete(&missing, missing.len(), &Kept::Nothing));
+    }
+    if args.scenes.len() > 1 {
+        write_index(out.path(), &entries)?;
     }
     let dir = out.finish()?;
     say!("{}", dir.join("index.html").display());
-    Ok(())
+    let motions = motion.as_ref().map_or(0, |options| options.motions.len());
+    let planned = args.scenes.len() * choices.len() * (1 + motions);
+    if missing.is_empty() { Ok(()) } else { Err(Failure::incomplete(&missing, planned, &Kept::ToResume(&args.output))) }
 }
 
-fn report_on(
-    args: &CompareArgs,
-    scene: &str,
-    choices: &[TechniqueChoice],
-    motion: Option<&MotionOptions>,
-    lab: &LabDevice,
-    bars: &Bars,
-) -> Result<Report, Failure> {
-    let LoadedScene { scene: loaded, mut setup, anchor, .. } =
-        load_scene(scene, &args.view.scene, narrowest(&[args.view.size]), bars)?;
-    end_shadows(&mut setup.camera, args.shadow_distance);
-    let light = light_index(&setup.lights, args.light.as_deref())?;
-    let motion = motion.cloned().map(|options| MotionOptions {
-        path: options.path.iter().map(|camera| camera.counted_from(anchor)).collect(),
-        ..options
-    });
-    let request = CompareRequest {
-        spec: scene,
-        scene: &loaded,
-        setup: &setup,
-        anchor,
-        light,
-        size_px: args.view.size,
-        choices,
-        truth: args.truth,
-        samples: args.samples,
-        timing: Timing { warm_up: 1, frames: args.frames, at_least: AT_LEAST, at_most: AT_MOST },
-        motion: motion.as_ref(),
-        command: command_line(),
-        scene_arguments: arguments_of(args, scene),
-        coherent: args.coherent,
-        commit: COMMIT,
+/// What is missing in a folder of several, or in the only one.
+fn named(folder: &str, name: &str) -> String {
+    if folder.is_empty() { name.to_owned() } else { format!("{folder}, {name}") }
+}
+
+/// A folder for each scene in the report's own; for one scene that itself.
+fn folders_for(scenes: &[String]) -> Vec<String> {
+    if scenes.len() == 1 {
+        return vec![String::new()];
+    }
+    let mut folders = Vec::new();
+    for scene in scenes {
+        folders.push(folder_for(scene, &folders));
+    }
+    folders
+}
+
+/// Every file that there will be, relative to the report's folder.
+fn expected_files(choices: &[TechniqueChoice], motion: Option<&MotionOptions>, folders: &[String]) -> Vec<String> {
+    let techniques: Vec<String> = choices.iter().map(TechniqueChoice::name).collect();
+    let motions = motion.map_or(&[][..], |options| &options.motions);
+    let of_report = report_paths(&techniques, motions);
+    let below = |folder: &String| -> Vec<String> {
+        let path = |path: &String| if folder.is_empty() { path.clone() } else { format!("{folder}/{path}") };
+        of_report.iter().map(path).collect()
     };
-    Ok(compare_scene(lab, &request, bars)?)
+    let index = ["index.html", "summary.md"].map(str::to_owned);
+    folders.iter().flat_map(below).chain(index).collect()
+}
+
+/// Why there is no report of a scene.
+enum Unfinished {
+    /// The deadline came before its truth was traced.
+    Deadline,
+    Failed(Failure),
+}
+
+impl From<LabError> for Unfinished {
+    fn from(error: LabError) -> Self {
+        if error.is_deadline() { Self::Deadline } else { Self::Failed(error.into()) }
+    }
+}
+
+impl From<Failure> for Unfinished {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
+impl From<FileError> for Unfinished {
+    fn from(error: FileError) -> Self {
+        Self::Failed(error.into())
+    }
+}
+
+/// What the scenes share.
+struct Site<'a> {
+    args: &'a CompareArgs,
+    choices: &'a [TechniqueChoice],
+    motion: Option<&'a MotionOptions>,
+    lab: &'a LabDevice,
+    out: OutputDir,
+    pace: &'a mut Pace,
+}
+
+impl Site<'_> {
+    /// Compares on one scene and writes its report, which grows with every technique.
+    fn report_on(
+        &mut self,
+        scene: &str,
+        folder: &str,
+        baseline: Option<&BaselineFile>,
+        expected: &mut Vec<String>,
+        bars: &Bars,
+    ) -> Result<Report, Unfinished> {
+        let Self { args, choices, lab, .. } = *self;
+        let LoadedScene { scene: loaded, mut setup, anchor, .. } =
+            load_scene(scene, &args.view.scene, narrowest(&[args.view.size]), bars)?;
+        end_shadows(&mut setup.camera, args.shadow_distance);
+        let light = light_index(&setup.lights, args.light.as_deref())?;
+        let motion = self.motion.cloned().map(|options| MotionOptions {
+            path: options.path.iter().map(|camera| camera.counted_from(anchor)).collect(),
+            ..options
+        });
+        let request = CompareRequest {
+            spec: scene,
+            scene: &loaded,
+            setup: &setup,
+            anchor,
+            light,
+            size_px: args.view.size,
+            choices,
+            truth: args.truth,
+            samples: args.samples,
+            timing: Timing { warm_up: 1, frames: args.frames, at_least: AT_LEAST, at_most: AT_MOST, end: None },
+            motion: motion.as_ref(),
+            command: command_line(),
+            scene_arguments: arguments_of(args, scene),
+            coherent: args.coherent,
+            commit: COMMIT,
+        };
+        if let Some(BaselineFile { path, baseline }) = baseline {
+            check_view(path, baseline, &request)?;
+        }
+        let identity = request.identity(lab);
+        let dir = self.out.path().join(folder);
+        let earlier = if args.run.resume { report_to_resume(&dir, &identity)? } else { None };
+        let mut writer = earlier.as_ref().map(|earlier| ReportWriter::resuming(&dir, earlier));
+        let Self { out, pace, .. } = self;
+        let mut each = |report: &Report| -> Result<(), LabError> {
+            let dir = out.path().join(folder);
+            std::fs::create_dir_all(&dir).map_err(|error| FileError::from_write(&dir, &error))?;
+            let writer = writer.get_or_insert_with(|| ReportWriter::new(&dir));
+            writer.write(report)?;
+            // An earlier report stays until there is something in its place.
+            if !expected.is_empty() {
+                out.place_now(std::mem::take(expected))?;
+                writer.moved_to(&out.path().join(folder));
+            }
+            keep(&args.output);
+            Ok(())
+        };
+        let mut report = compare_scene(lab, &request, earlier, pace, &mut each, bars)?;
+        report.baseline = baseline.map(|file| file.baseline.against(&report.figures()));
+        if let Some(mut writer) = writer {
+            writer.finish(&report)?;
+        }
+        Ok(report)
+    }
 }
 
 /// What says what is seen, and how it is shaded and shadowed.
@@ -129,13 +242,13 @@ fn motion_options(args: &MotionArgs, shadow_distance_m: Option<f32>) -> Result<O
 }
 
 /// A folder's name for a scene: its own name, with a number where that is taken.
-fn folder_for(scene: &str, taken: &[IndexEntry]) -> String {
+fn folder_for(scene: &str, taken: &[String]) -> String {
     let bare = builtin::spec_of(scene).unwrap_or(scene);
     let stem = Path::new(bare).file_stem().unwrap_or_default().to_string_lossy();
     let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
     let name: String = stem.chars().map(plain).collect();
     // File systems may not tell cases apart.
-    let is_taken = |name: &str| taken.iter().any(|entry| entry.folder.eq_ignore_ascii_case(name));
+    let is_taken = |name: &str| taken.iter().any(|folder| folder.eq_ignore_ascii_case(name));
     let is_free = |name: &str| !name.is_empty() && !is_taken(name);
     if is_free(&name) {
         return name;
@@ -174,10 +287,8 @@ fn print(report: &Report) {
         "MIB",
     ];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
-    rows.extend(report.rows.iter().enumerate().map(|(i, row)| {
-        // Numbered as in the report, where a preset's technique is there as it comes too.
-        let before = report.rows[..i].iter().filter(|other| other.technique == row.technique).count();
-        let name = if before == 0 { row.technique.clone() } else { format!("{}-{}", row.technique, before + 1) };
+    // Numbered as in the report, where a preset has a technique at its defaults, too.
+    rows.extend(report.rows.iter().zip(report.names()).map(|(row, name)| {
         let figures = match &row.outcome {
             Outcome::Measured(measured) => {
                 let m = &measured.metrics;
@@ -199,6 +310,10 @@ fn print(report: &Report) {
     table::print(&rows);
     if let Some(info) = &report.motion {
         print_motion(report, info);
+    }
+    if let Some(against) = &report.baseline {
+        say!("\n{}\n", against.summary());
+        table::print(&against.table());
     }
 }
 
@@ -250,7 +365,7 @@ mod tests {
         ] {
             let folder = folder_for(scene, &taken);
             assert_eq!(folder, expected);
-            taken.push(IndexEntry { folder, ..IndexEntry::default() });
+            taken.push(folder);
         }
     }
 }

@@ -32,6 +32,7 @@ use std::path::{Path, PathBuf};
 
 use antumbra::{Gpu, Quality, TechniqueKind};
 use antumbra_lab::device::{DeviceOptions, LabDevice};
+use antumbra_lab::error::LabError;
 use antumbra_lab::image_io::write_visibility_exr;
 use antumbra_lab::output_files::{check_named, write_atomically};
 use antumbra_lab::picture::Visibility;
@@ -288,9 +289,12 @@ const COMMIT: &str = env!("ANTUMBRA_COMMIT");
 
 /// Writes JSON that people can read, whole or not at all.
 fn write_json(path: &Path, value: &Value) -> Result<(), Failure> {
-    // Serialising a value that already is JSON cannot fail.
-    let text = serde_json::to_string_pretty(value).map_err(|error| Failure::Other(error.to_string()))?;
-    Ok(write_atomically(path, format!("{text}\n").as_bytes())?)
+    Ok(put_json(path, value)?)
+}
+
+/// The same for those who fail as the laboratory does.
+fn put_json(path: &Path, value: &Value) -> Result<(), LabError> {
+    Ok(write_atomically(path, format!("{value:#}\n").as_bytes())?)
 }
 
 #[cfg(test)]

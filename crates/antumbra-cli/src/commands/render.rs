@@ -20,7 +20,8 @@ use crate::failure::Failure;
 use crate::progress::Bars;
 
 /// Times are medians of these, as far as there is time.
-const TIMED: Timing = Timing { warm_up: 2, frames: 11, at_least: Duration::ZERO, at_most: Duration::from_secs(30) };
+const TIMED: Timing =
+    Timing { warm_up: 2, frames: 11, at_least: Duration::ZERO, at_most: Duration::from_secs(30), end: None };
 
 /// Renders and writes the picture, and what else is asked for.
 pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use antumbra_lab::baseline::{Baseline, Source, of_reproduced};
+use antumbra_lab::error::LabError;
 use antumbra_lab::progress::Progress;
 use antumbra_lab::report::{AdapterInfo, ReproductionInfo, utc_now, write_reproduction};
 use antumbra_lab::reproduce::{
@@ -11,8 +13,9 @@ use antumbra_lab::reproduce::{
 use serde_json::{Value, json};
 
 use crate::args::ReproduceArgs;
-use crate::commands::{COMMIT, check_folder, open_device, quoted, write_json};
-use crate::failure::Failure;
+use crate::commands::{COMMIT, check_folder, open_device, put_json, quoted};
+use crate::failure::{Failure, Kept};
+use crate::keep;
 use crate::progress::Bars;
 use crate::stdout::say;
 use crate::suggest::did_you_mean;
@@ -32,21 +35,16 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
         list();
         return Ok(());
     }
+    let limits = args.run.limits();
     let chosen = choose(args)?;
-    if let Some(path) = &args.json {
-        antumbra_lab::output_files::check_json_path(path)?;
-    }
     let dir = args.output.clone().or_else(|| args.all.then(|| PathBuf::from("reproduced")));
-    // Before the long work, not after it.
-    if let Some(dir) = &dir {
-        check_folder(dir, REPRODUCED_NAME, "nothing that was reproduced")?;
-    }
+    let baseline = check(args, dir.as_deref())?;
     let lab = open_device(&args.adapter)?;
     say!("Adapter: {}", lab.adapter.name);
     let mut options = RunOptions { size_px: args.size, ..RunOptions::for_device(&lab, args.frames) };
     options.samples = args.samples.unwrap_or(options.samples);
     options.dear |= args.dear;
-    let mut session = Session::open(&lab, options, dir.as_deref(), COMMIT)?;
+    let mut session = Session::open(&lab, options, limits, dir.as_deref(), COMMIT)?;
     let info = ReproductionInfo {
         adapter: AdapterInfo::of(&lab.adapter),
         bandwidth_gb_s: args.bandwidth,
@@ -56,9 +54,21 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     };
     let all: usize = chosen.iter().map(|(_, paper, exhibit)| exhibit.run_count(paper)).sum();
     let mut begun = 0;
-    let mut results = Vec::new();
+    let mut results: Vec<ExhibitResult> = Vec::new();
+    let json_of = |results: &[&ExhibitResult]| -> Value {
+        let exhibits: Vec<Value> = results.iter().map(|result| as_json(result)).collect();
+        json!({ "adapter": lab.adapter.name, "commit": COMMIT, "exhibits": exhibits })
+    };
     for (_, paper, exhibit) in chosen {
-        let result = session.run(paper, exhibit, bars, (begun, all))?;
+        let mut each = |session: &Session<'_>| -> Result<(), LabError> {
+            if let Some(path) = &args.json {
+                let current = session.result(paper, exhibit);
+                put_json(path, &json_of(&results.iter().chain([&current]).collect::<Vec<_>>()))?;
+            }
+            dir.iter().for_each(|dir| keep(dir));
+            Ok(())
+        };
+        let result = session.run(paper, exhibit, bars, (begun, all), &mut each)?;
         begun += exhibit.run_count(paper);
         print(&result);
         if let Some(dir) = &dir {
@@ -68,11 +78,36 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     }
     bars.end();
     sum_up(&results, session.ran(), all, dir.as_deref());
-    if let Some(path) = &args.json {
-        let exhibits: Vec<Value> = results.iter().map(as_json).collect();
-        write_json(path, &json!({ "adapter": lab.adapter.name, "commit": COMMIT, "exhibits": exhibits }))?;
+    let mut json = json_of(&results.iter().collect::<Vec<_>>());
+    if let Some(baseline) = baseline {
+        let against = baseline.against(&of_reproduced(&results));
+        say!("\n{}\n", against.summary());
+        table::print(&against.table());
+        json["baseline"] = json!(against);
     }
-    Ok(())
+    json["missing"] = json!(session.missing());
+    if let Some(path) = &args.json {
+        put_json(path, &json)?;
+    }
+    if session.missing().is_empty() {
+        return Ok(());
+    }
+    let alone = args.json.as_deref().map_or(Kept::Nothing, Kept::Alone);
+    Err(Failure::incomplete(session.missing(), all, &dir.as_deref().map_or(alone, Kept::ToResume)))
+}
+
+/// What can be known to be wrong before the long work; the baseline, where there is one.
+fn check(args: &ReproduceArgs, dir: Option<&Path>) -> Result<Option<Baseline>, Failure> {
+    if args.run.resume && dir.is_none() {
+        return Err(Failure::Input("--resume: reproduce resumes a folder; name it by -o DIR".into()));
+    }
+    if let Some(path) = &args.json {
+        antumbra_lab::output_files::check_json_path(path)?;
+    }
+    if let Some(dir) = dir {
+        check_folder(dir, REPRODUCED_NAME, "nothing that was reproduced")?;
+    }
+    Ok(args.run.baseline.as_deref().map(|path| Baseline::read(path, Source::Reproduce)).transpose()?)
 }
 
 /// What stands after an exhibit's name to run it in the same way.
@@ -185,7 +220,7 @@ fn as_json(result: &ExhibitResult) -> Value {
             "what": row.what, "scene": row.scene, "view": row.view, "technique": row.technique, "form": one.form.name(),
             "settings": row.settings_of(one.form).collect::<Vec<_>>(), "size": [row.size_px.0, row.size_px.1],
             "light_scale": row.light_scale, "frames_added_up": row.frames,
-            "paper": reported(&row.measure), "here": one.outcome,
+            "paper": reported(&row.measure), "here": one.outcome, "cut_short_s": one.cut_short_s,
         })
     });
     let claims = result.judged.iter().map(|one| {

@@ -4,4 +4,5 @@ mod bounds;
 mod formats;
 mod invalid;
 mod many;
+mod memory;
 mod places;

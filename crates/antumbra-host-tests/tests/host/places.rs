@@ -142,6 +142,34 @@ fn walls_beside_bulbs_are_lit() {
     place.holds("a bulb before a wall", &[("hard", 0.1), ("pcss", 0.1), ("sample_based", 0.02), ("multi_view", 0.02)]);
 }
 
+/// A wall that a bulb touches hides none of it from what is before the wall.
+#[test]
+fn walls_that_bulbs_touch_hide_nothing_of_them() {
+    let scene = base_with([Mesh::cuboid(Vec3::new(-6.0, 0.0, -2.2), Vec3::new(6.0, 4.0, -2.0))]);
+    let Some(place) = Place::new(&scene, &Camera::base(), sphere(0.05, Vec3::new(0.0, 2.4, -1.95))) else { return };
+    place.holds(
+        "a bulb that touches a wall",
+        &[("pcss", 0.06), ("multi_layer", 0.1), ("essm", 0.1), ("sample_based", 0.02), ("multi_view", 0.02)],
+    );
+}
+
+/// A bulb in a box that is open below: from everywhere it is a disc, however far to the side the ground lies that it lights.
+#[test]
+fn bulbs_are_discs_from_all_sides() {
+    let (center, half, wall) = (Vec3::new(0.3, 3.0, 0.6), 0.07, 0.004);
+    let (low, high) = (center - half, center + half);
+    let housing = [
+        (low, Vec3::new(low.x + wall, high.y, high.z)),
+        (Vec3::new(high.x - wall, low.y, low.z), high),
+        (low, Vec3::new(high.x, high.y, low.z + wall)),
+        (Vec3::new(low.x, high.y - wall, low.z), high),
+        (Vec3::new(low.x, low.y, high.z - wall), high),
+    ];
+    let scene = base_with(housing.map(|(min, max)| Mesh::cuboid(min, max)));
+    let Some(place) = Place::new(&scene, &Camera::base(), sphere(0.05, center)) else { return };
+    place.holds("a bulb in a housing", &[("multi_view", 0.02), ("reprojection_layered", 0.02), ("sample_based", 0.02)]);
+}
+
 /// A tall wall in the light: from the light's middle its feet lie before its top, where segments to the light's near side pass.
 #[test]
 fn tall_walls_do_not_darken_what_they_face() {

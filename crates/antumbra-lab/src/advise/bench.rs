@@ -136,7 +136,8 @@ impl<'a> Bench<'a> {
         let began = Instant::now();
         let mut measured = Measured::default();
         let patience = Duration::from_secs_f64((PATIENCE * 1e-3 * self.most_ms.get()).clamp(0.02, 3.0));
-        let timing = Timing { warm_up: 1, frames, at_least: Duration::ZERO, at_most: LONG_ENOUGH.min(patience) };
+        let at_most = LONG_ENOUGH.min(patience);
+        let timing = Timing { warm_up: 1, frames, at_least: Duration::ZERO, at_most, end: None };
         let mut counts = Vec::new();
         for (scene, asked) in scenes.iter().zip(&self.request.views) {
             let run = create(&self.lab.gpu(), &config.choice())

@@ -109,7 +109,8 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
     let preset = crate::report::write_advice(page_dir.path(), &advice).unwrap();
     assert_eq!(crate::preset::read_preset(&preset).unwrap().kind, advice.best.config.kind);
     let html = std::fs::read_to_string(page_dir.path().join("index.html")).unwrap();
-    for part in ["class=\"scatter\"", "images/advice.png", "penumbra: "] {
+    let program = format!("let mut shadow = TechniqueKind::{:?}.create(&amp;gpu)?;", advice.best.config.kind);
+    for part in ["class=\"scatter\"", "images/advice.png", "penumbra: ", "technique = &quot;", &program] {
         assert!(html.contains(part), "{part}");
     }
 }

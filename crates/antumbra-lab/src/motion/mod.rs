@@ -25,6 +25,8 @@ mod tests;
 pub use caster::{MovingCaster, largest_caster, named_caster};
 pub use strip::{STRIP_FLICKER_RANGE, STRIP_FRAMES};
 
+use std::time::Instant;
+
 use antumbra::{AnyShadow, Casters, Frame, Mask};
 use antumbra_reference::{Receivers, Tracer, VisibilityOptions};
 use antumbra_scene::{Camera, Scene, Setup};
@@ -34,10 +36,11 @@ use image::RgbImage;
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
+use crate::limits::End;
 use crate::picture::{Visibility, pixel_count};
 use crate::progress::Progress;
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
-use crate::technique_run::{draw_as_host, mask_for};
+use crate::technique_run::{cut_short, draw_as_host, mask_for};
 use crate::truth::trace_light;
 use flicker::{FlickerSums, TrueFrame, distances_to_settled, lag_frames, touched_pixels};
 use strip::Strip;
@@ -217,6 +220,20 @@ impl<'a> MovingScene<'a> {
     /// # Errors
     /// Where the scene cannot be traced, or the device fails.
     pub fn trace(&mut self, motion: Motion, samples: u32, progress: &dyn Progress) -> Result<MotionTruth, LabError> {
+        self.trace_until(motion, samples, None, progress)
+    }
+
+    /// The same, given up at a deadline.
+    ///
+    /// # Errors
+    /// As [`Self::trace`], and where the deadline comes first.
+    pub fn trace_until(
+        &mut self,
+        motion: Motion,
+        samples: u32,
+        deadline: Option<Instant>,
+        progress: &dyn Progress,
+    ) -> Result<MotionTruth, LabError> {
         let caster = self.caster.clone().filter(|_| motion == Motion::Caster);
         let trajectory = self.trajectory(motion);
         let last = self.options.frames;
@@ -232,12 +249,13 @@ impl<'a> MovingScene<'a> {
             let receivers = tracing.receivers(&pose, self.size_px)?;
             let done = u64::from(i) * STEPS + other_points.len() as u64 * STEPS;
             let report = |fraction: f32| progress.reach(done + (f64::from(fraction) * STEPS as f64) as u64);
-            let mut truth = trace_light(&tracing.tracer, &receivers, &pose.light, &tracing.options(0), &report)?;
+            let (tracer, light) = (&tracing.tracer, &pose.light);
+            let mut truth = trace_light(tracer, &receivers, light, &tracing.options(0), deadline, &report)?;
             let seen = self.look(&pose)?.read_surface_points(self.lab)?;
             truth.judge_what_is_seen(&seen, pose.camera.eye);
             if i + 1 >= last {
                 let report = |fraction: f32| report(1.0 + fraction);
-                let other = trace_light(&tracing.tracer, &receivers, &pose.light, &tracing.options(1), &report)?;
+                let other = trace_light(tracer, &receivers, light, &tracing.options(1), deadline, &report)?;
                 other_points.push(other.visibility);
             }
             let frame = TrueFrame { visibility: truth.visibility, judged: truth.judged };
@@ -268,6 +286,24 @@ impl<'a> MovingScene<'a> {
     /// # Errors
     /// Where the technique cannot be prepared, or the device fails.
     pub fn run(&mut self, truth: &MotionTruth, technique: &mut AnyShadow) -> Result<MotionFigures, LabError> {
+        self.run_until(truth, technique, None)
+    }
+
+    /// The same, given up at an end.
+    ///
+    /// # Errors
+    /// As [`Self::run`], and where the end comes first.
+    pub fn run_until(
+        &mut self,
+        truth: &MotionTruth,
+        technique: &mut AnyShadow,
+        end: Option<End>,
+    ) -> Result<MotionFigures, LabError> {
+        let began = Instant::now();
+        let in_time = |frames: u32, technique: &AnyShadow| match end {
+            Some(end) if end.is_past() => Err(cut_short(technique, Some(end), began, frames)),
+            _ => Ok(()),
+        };
         let trajectory = self.trajectory(truth.summary.motion);
         let last = self.options.frames;
         let casters = self.gpu_scene.casters();
@@ -283,6 +319,7 @@ impl<'a> MovingScene<'a> {
             before = self.draw(technique, &start, &images, &mask)?.0;
         }
         for i in 1..=last {
+            in_time(STILL_BEFORE + i - 1, technique)?;
             let pose = trajectory.at(i);
             let images = self.look(&pose)?;
             let (now, lacked) = self.draw(technique, &pose, &images, &mask)?;
@@ -296,6 +333,7 @@ impl<'a> MovingScene<'a> {
         let images = self.look(&rest)?;
         let mut masks = vec![before];
         for i in 0..STILL_AFTER {
+            in_time(STILL_BEFORE + last + i, technique)?;
             let (now, lacked) = self.draw(technique, &rest, &images, &mask)?;
             // What the first of them learns is of the last frame that moved.
             lacking_room += u32::from(lacked && i == 0);

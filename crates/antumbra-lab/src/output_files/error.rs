@@ -32,7 +32,7 @@ impl FileError {
     }
 
     /// What the operating system said while `path` was written.
-    pub(crate) fn from_write(path: &Path, error: &io::Error) -> Self {
+    pub fn from_write(path: &Path, error: &io::Error) -> Self {
         let folder = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.display().to_string(),
             _ => "the current folder".into(),

@@ -5,6 +5,7 @@
 
 mod atomic_file;
 mod error;
+mod json;
 mod named;
 mod output_dir;
 mod unfinished;
@@ -12,6 +13,7 @@ mod unfinished;
 pub use atomic_file::{AtomicFile, check_writable, write_atomically};
 pub use error::FileError;
 pub(crate) use error::one_line;
+pub(crate) use json::read_json;
 pub use named::{check_ending, check_json_path, check_named};
 pub use output_dir::OutputDir;
 pub use unfinished::remove_unfinished;

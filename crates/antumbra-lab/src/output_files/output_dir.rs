@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::unfinished::REGISTRY;
+use super::unfinished::{REGISTRY, UNFINISHED};
 use super::{FileError, check_named, write_atomically};
 
 /// A hidden list, in every folder that we make, of the files that we put there. What is not on it is not ours.
@@ -30,6 +30,8 @@ pub struct OutputDir {
     named: PathBuf,
     target: PathBuf,
     unfinished: PathBuf,
+    /// Whether it is at its target already, and grows there.
+    is_placed: bool,
 }
 
 impl OutputDir {
@@ -57,28 +59,70 @@ impl OutputDir {
         let above = target.ancestors().skip(1).find(|folder| folder.exists()).unwrap_or(Path::new("/"));
         let (unfinished, ()) =
             REGISTRY.begin(above, &name.to_string_lossy(), |path| fs::create_dir(path)).map_err(fail)?;
-        Ok(Self { named: path.to_path_buf(), target, unfinished })
+        Ok(Self { named: path.to_path_buf(), target, unfinished, is_placed: false })
     }
 
-    /// The temporary folder to fill.
+    /// Goes on with a folder that an earlier run left unfinished; begins one where there is none. Files that the earlier run was writing
+    /// when it was killed are removed.
+    ///
+    /// # Errors
+    /// As [`create`](OutputDir::create).
+    pub fn resume(path: &Path) -> Result<Self, FileError> {
+        let new = Self::create(path)?;
+        if !new.target.join(MANIFEST_NAME).is_file() {
+            return Ok(new);
+        }
+        for file in files_below(&new.target).map_err(|error| FileError::from_write(path, &error))? {
+            if is_unfinished(&file) {
+                fs::remove_file(new.target.join(file)).map_err(|error| FileError::from_write(path, &error))?;
+            }
+        }
+        let (named, target) = (new.named.clone(), new.target.clone());
+        Ok(Self { unfinished: target.clone(), named, target, is_placed: true })
+    }
+
+    /// Moves the folder into place before it is complete, for results that are to be kept whatever happens. `expected` are the files that
+    /// it will have, relative to it: a later run knows them for ours.
+    ///
+    /// # Errors
+    /// Where it cannot be moved.
+    pub fn place_now(&mut self, expected: impl IntoIterator<Item = String>) -> Result<(), FileError> {
+        let fail = |error: io::Error| FileError::from_write(&self.named, &error);
+        let there = files_below(self.path()).map_err(fail)?;
+        self.write_manifest(there.into_iter().chain(expected).collect())?;
+        if !self.is_placed {
+            self.move_into_place()?;
+            self.is_placed = true;
+        }
+        Ok(())
+    }
+
+    /// The folder to fill: a temporary one, until it is placed.
     pub fn path(&self) -> &Path {
-        &self.unfinished
+        if self.is_placed { &self.target } else { &self.unfinished }
     }
 
     /// Moves the folder into place, instead of an earlier one of ours. Returns where it stands now.
     pub fn finish(self) -> Result<PathBuf, FileError> {
-        let fail = |error: io::Error| FileError::from_write(&self.named, &error);
-        let manifest = Manifest {
-            format: MANIFEST_FORMAT.into(),
-            version: 1,
-            files: files_below(&self.unfinished).map_err(fail)?,
-        };
-        let manifest = serde_json::to_vec_pretty(&manifest).map_err(|error| fail(error.into()))?;
-        write_atomically(&self.unfinished.join(MANIFEST_NAME), &manifest)?;
+        let files = files_below(self.path()).map_err(|error| FileError::from_write(&self.named, &error))?;
+        self.write_manifest(files)?;
+        if !self.is_placed {
+            self.move_into_place()?;
+        }
+        Ok(self.target.clone())
+    }
+
+    fn write_manifest(&self, files: BTreeSet<String>) -> Result<(), FileError> {
+        let manifest = Manifest { format: MANIFEST_FORMAT.into(), version: 1, files };
+        let manifest =
+            serde_json::to_vec_pretty(&manifest).map_err(|error| FileError::from_write(&self.named, &error.into()))?;
+        write_atomically(&self.path().join(MANIFEST_NAME), &manifest)
+    }
+
+    fn move_into_place(&self) -> Result<(), FileError> {
         // Asked again: the user may have put something there since.
         check_replaceable(&self.named, &self.target)?;
-        REGISTRY.finish(&self.unfinished, || self.place()).map_err(fail)?;
-        Ok(self.target.clone())
+        REGISTRY.finish(&self.unfinished, || self.place()).map_err(|error| FileError::from_write(&self.named, &error))
     }
 
     /// Two renames; where the second fails, the first is taken back.
@@ -101,7 +145,9 @@ impl OutputDir {
 
 impl Drop for OutputDir {
     fn drop(&mut self) {
-        REGISTRY.discard(&self.unfinished);
+        if !self.is_placed {
+            REGISTRY.discard(&self.unfinished);
+        }
     }
 }
 
@@ -126,11 +172,19 @@ fn check_replaceable(named: &Path, target: &Path) -> Result<(), FileError> {
     match manifest {
         None if files.is_empty() => Ok(()),
         None => refuse("it is not empty and not a report of ours".into()),
-        Some(manifest) => match files.difference(&manifest.files).find(|&file| file != MANIFEST_NAME) {
-            None => Ok(()),
-            Some(foreign) => refuse(format!("it holds {foreign}, which is not ours")),
-        },
+        Some(manifest) => {
+            match files.difference(&manifest.files).find(|&file| file != MANIFEST_NAME && !is_unfinished(file)) {
+                None => Ok(()),
+                Some(foreign) => refuse(format!("it holds {foreign}, which is not ours")),
+            }
+        }
     }
+}
+
+/// Whether a file is one of ours that was being written when a run was killed.
+fn is_unfinished(file: &str) -> bool {
+    let name = file.rsplit('/').next().unwrap_or(file);
+    name.starts_with('.') && name.ends_with(UNFINISHED)
 }
 
 /// Everything below `folder` that is not a folder, relative to it, and the empty folders (their names end in `/`).
@@ -181,6 +235,41 @@ mod tests {
         assert!(!target.join("images/one.png").exists() && target.join("images/two.png").exists());
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
         assert_eq!(fs::read_dir(target.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    /// A folder that grows in place is ours from its first file on, and a killed run's leftovers are no reason to refuse it.
+    #[test]
+    fn a_folder_grows_in_place_and_is_resumed() {
+        let root = tempfile::tempdir().unwrap();
+        let target = root.path().join("report");
+        make(&target, "old.png").unwrap();
+        let mut out = OutputDir::create(&target).unwrap();
+        fs::write(out.path().join("first.json"), "1").unwrap();
+        assert!(target.join("images/old.png").exists(), "nothing changes before it is placed");
+        out.place_now(["second.json".to_owned()]).unwrap();
+        assert!(out.path() == target && target.join("first.json").exists() && !target.join("images").exists());
+        fs::write(out.path().join("second.json"), "2").unwrap();
+        drop(out);
+        fs::write(target.join(".second.json.1-0.unfinished"), "half").unwrap();
+        let mut out = OutputDir::resume(&target).unwrap();
+        assert_eq!(names(&target), [MANIFEST_NAME, "first.json", "second.json"]);
+        out.place_now(["third.json".to_owned()]).unwrap();
+        fs::write(out.path().join("third.json"), "3").unwrap();
+        out.finish().unwrap();
+        assert_eq!(names(root.path()), ["report"]);
+        make(&target, "new.png").unwrap();
+        assert!(!target.join("first.json").exists(), "all of it was ours");
+        fs::write(target.join("images/mine.txt"), "mine").unwrap();
+        assert!(OutputDir::resume(&target).unwrap_err().to_string().contains("not ours"));
+        let fresh = OutputDir::resume(&root.path().join("fresh")).unwrap();
+        assert!(fresh.path() != root.path().join("fresh"));
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
     }
 
     #[test]

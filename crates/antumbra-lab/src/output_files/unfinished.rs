@@ -15,6 +15,9 @@ pub fn remove_unfinished() {
     REGISTRY.close();
 }
 
+/// Ending of the names of what is being built.
+pub(super) const UNFINISHED: &str = ".unfinished";
+
 pub(super) static REGISTRY: Registry = Registry::new();
 
 /// Temporary files and folders in the making. Its lock is held whenever one of them is created, renamed or removed, so
@@ -42,7 +45,7 @@ impl Registry {
         loop {
             static COUNTER: AtomicU64 = AtomicU64::new(0);
             let count = COUNTER.fetch_add(1, Ordering::Relaxed);
-            let path = folder.join(format!(".{target_name}.{}-{count}.unfinished", std::process::id()));
+            let path = folder.join(format!(".{target_name}.{}-{count}{UNFINISHED}", std::process::id()));
             match create(&path) {
                 // Left there by an earlier process of the same id that was killed.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,

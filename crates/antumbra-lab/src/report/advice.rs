@@ -4,13 +4,15 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use super::html::{bytes, escape, three_figures};
-use super::page::{ICON, STYLE, metric_text, software_notice};
+use super::html::{bytes, escape, fill, list, three_figures};
+use super::page::{ICON, STYLE, copyable, metric_text, software_notice};
 use super::scatter::{Axes, Point, scatter_svg};
 use crate::advise::{Advice, Candidate, Prefer};
 use crate::image_io::write_png;
 use crate::output_files::{FileError, write_atomically};
 use crate::preset::preset_toml;
+
+const TEMPLATE: &str = include_str!("advice.html");
 
 /// Writes an advice into a folder, each file whole or not at all: `index.html`, `advice.json`, `advice.toml` (the preset) and
 /// `images/`. Gives the preset's path.
@@ -43,58 +45,97 @@ fn preset_text(advice: &Advice) -> String {
 }
 
 fn page(advice: &Advice) -> String {
-    let title = format!("Advice for {}", escape(&advice.scene));
-    let mut html = format!(
-        "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\"><title>{title}</title><link rel=\"icon\" \
-         href=\"{ICON}\"><style>{STYLE}</style></head><body><main><h1>{title}</h1>"
-    );
-    if advice.adapter.is_software {
-        html += &software_notice(&advice.adapter.name);
-    }
-    let _ = write!(
-        html,
-        "<p class=\"lede\"><b>{}</b>: rmse {}, roughness {}, {} ms of {}, {:.0} % of the budget, {}.</p><p class=\"note\">{}</p>",
-        escape(&advice.best.name),
-        metric_text(advice.best.rmse),
-        metric_text(advice.best.roughness),
-        three_figures(advice.best.worst_ms()),
-        three_figures(advice.budget_ms.get(advice.best.heaviest_view).copied().unwrap_or(0.0)),
-        100.0 * advice.best.load,
-        bytes(advice.best.memory_bytes),
-        escape(&times_note(advice)),
-    );
-    html += &items("Why", &advice.reasons.iter().map(ToString::to_string).collect::<Vec<_>>());
-    for (view, facts) in advice.views.iter().zip(&advice.facts) {
-        html += &items(&format!("What {view} is like"), &facts.lines());
-    }
-    html += "<h2>Pictures</h2>";
-    for (file, what) in [
-        ("advice", "shaded with the recommendation"),
-        ("reference", "shaded with the truth"),
-        ("error", "error: blue too dark, red too bright"),
-    ] {
-        let _ = write!(
-            html,
-            "<figure><img src=\"images/{file}.png\" alt=\"{what}\" style=\"max-width:100%\"><figcaption>{what}</figcaption></figure>"
-        );
-    }
-    html += "<h2>Error against time</h2>";
+    let best = &advice.best;
+    let name = format!("<b>{}</b>", escape(&best.name));
+    let answer = match (advice.keeps_budget, advice.is_too_noisy_to_tell) {
+        (false, _) => format!("Nothing keeps the budget. {name} comes nearest."),
+        (true, true) => format!("Take {name}. Its times vary across the budget: repeat this on an idle machine."),
+        (true, false) => format!("Take {name}."),
+    };
+    let scene_facts = advice
+        .views
+        .iter()
+        .zip(&advice.facts)
+        .map(|(view, facts)| format!("<h3>What {} is like</h3>{}", escape(view), list("notes", &facts.lines())));
     let axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
-    html += &scatter_svg(&points(advice), axes).unwrap_or_default();
-    html += "<h2>Candidates</h2>";
-    html += &table(advice);
-    let _ = write!(
-        html,
-        "<h2>Again</h2><pre>{}</pre><p class=\"note\"><code>advice.toml</code> beside this page is the preset.</p></main><footer>Antumbra {} · {} \
-         · {} measurements, {} s</footer></body></html>",
-        escape(&advice.command),
-        escape(&advice.commit),
-        escape(&advice.date),
-        advice.spent.measurements,
-        three_figures(advice.spent.seconds)
-    );
-    html
+    let notices = if advice.adapter.is_software { software_notice(&advice.adapter.name) } else { String::new() };
+    let [commit, date] = [&advice.commit, &advice.date].map(|text| escape(text));
+    fill(
+        TEMPLATE,
+        &[
+            ("title", &format!("Advice for {}", escape(&advice.scene))),
+            ("icon", ICON),
+            ("style", STYLE),
+            ("answer", &answer),
+            ("facts", &facts(advice)),
+            ("notices", &notices),
+            ("images", &images()),
+            ("preset", &copyable(&preset_toml(&best.config.choice()))),
+            ("program", &copyable(&program(advice))),
+            ("reasons", &list("", &advice.reasons.iter().map(ToString::to_string).collect::<Vec<_>>())),
+            ("times", &escape(&times_note(advice))),
+            ("scenes", &scene_facts.collect::<String>()),
+            ("front", &scatter_svg(&points(advice), axes).unwrap_or_default()),
+            ("table", &table(advice)),
+            ("command", &copyable(&advice.command)),
+            (
+                "footer",
+                &format!(
+                    "Antumbra {commit} · {date} · {} measurements, {} s · <code>advice.json</code> beside this page holds the numbers.",
+                    advice.spent.measurements,
+                    three_figures(advice.spent.seconds)
+                ),
+            ),
+        ],
+    )
+}
+
+/// What the recommendation costs and errs.
+fn facts(advice: &Advice) -> String {
+    let best = &advice.best;
+    let budget_ms = advice.budget_ms.get(best.heaviest_view).copied().unwrap_or(0.0);
+    let facts = [
+        ("Error", format!("{} <small>rmse</small>", metric_text(best.rmse))),
+        ("Roughness", metric_text(best.roughness)),
+        (
+            "Time",
+            format!(
+                "{} ms <small>{:.0} % of {} ms</small>",
+                three_figures(best.worst_ms()),
+                100.0 * best.load,
+                three_figures(budget_ms)
+            ),
+        ),
+        ("Memory", bytes(best.memory_bytes)),
+        ("Adapter", escape(&advice.adapter.name)),
+        ("Image", format!("{} × {}", advice.size[0], advice.size[1])),
+    ];
+    let facts = facts.map(|(name, value)| format!("<div><dt>{name}</dt><dd>{value}</dd></div>"));
+    format!("<dl class=\"facts\">{}</dl>", facts.concat())
+}
+
+fn images() -> String {
+    let images = [
+        ("advice", "Shaded with the recommendation"),
+        ("reference", "Shaded with the truth"),
+        ("error", "Error: blue is too dark, red is too bright"),
+    ];
+    let shot = |(file, what)| {
+        format!(
+            "<a class=\"shot\" href=\"images/{file}.png\"><img src=\"images/{file}.png\" alt=\"\"><span>{what}</span></a>"
+        )
+    };
+    images.map(shot).concat()
+}
+
+/// Lines that create the technique with its settings.
+fn program(advice: &Advice) -> String {
+    let config = &advice.best.config;
+    let mut lines = format!("let mut shadow = TechniqueKind::{:?}.create(&gpu)?;", config.kind);
+    for (key, value) in &config.settings {
+        let _ = write!(lines, "\nshadow.set({key:?}, {value:?})?;");
+    }
+    lines
 }
 
 /// What the times are of: the budget of each view, what `pcf` takes, and of how many frames they are medians.
@@ -107,11 +148,6 @@ fn times_note(advice: &Advice) -> String {
         _ => format!(" The time is that of {}.", advice.views[advice.best.heaviest_view]),
     };
     format!("The budget is {} ms{pcf}. The time is a {}.{view}", times(&advice.budget_ms), advice.best.counted())
-}
-
-fn items(title: &str, lines: &[String]) -> String {
-    let lines: String = lines.iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
-    format!("<h2>{}</h2><ul>{lines}</ul>", escape(title))
 }
 
 /// The recommendation, the runners-up, the step up and the front, each once.
@@ -141,7 +177,7 @@ fn points(advice: &Advice) -> Vec<Point> {
 }
 
 fn table(advice: &Advice) -> String {
-    let mut html = "<div class=\"scroll\"><table class=\"numbers\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>roughness</th><th>ms</th>\
+    let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"candidates\"><table class=\"numbers candidates\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>roughness</th><th>ms</th>\
                     <th>median of</th><th>of the budget</th><th>memory</th>"
         .to_owned();
     if advice.prefer == Prefer::Motion {

@@ -101,6 +101,8 @@ fn index_html(entries: &[IndexEntry]) -> String {
             ("style", STYLE),
             ("lede", &lede),
             ("notices", &if adapter.is_software { software_notice(&adapter.name) } else { String::new() }),
+            ("hard_against_soft", &hard_against_soft(entries)),
+            ("columns", columns(entries.len())),
             ("cards", &entries.iter().map(card).collect::<String>()),
             ("errors", &errors_table(entries, &techniques)),
             ("front", &front_of_all(entries, &techniques)),
@@ -124,6 +126,31 @@ fn technique_names(entries: &[IndexEntry]) -> Vec<&str> {
 
 fn report_link(entry: &IndexEntry) -> String {
     format!("{}/index.html", escape(&entry.folder))
+}
+
+/// Slider between hard shadows and the truth on the first scene; between the largest error and the truth where nothing is called `hard`.
+fn hard_against_soft(entries: &[IndexEntry]) -> String {
+    let Some(entry) = entries.first() else { return String::new() };
+    let error = |technique: &&IndexTechnique| technique.metrics.rmse.unwrap_or(0.0);
+    let hard = entry.techniques.iter().find(|technique| technique.technique == "hard");
+    let worst = || entry.techniques.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
+    let Some(left) = hard.or_else(worst) else { return String::new() };
+    let (scene, name) = (escape(&entry.scene), escape(&left.technique));
+    let path = |stem: &str| format!("{}/{}", escape(&entry.folder), shaded_path(stem));
+    format!(
+        "<section aria-label=\"Image against truth\"><figure class=\"against\"><div class=\"frame\"><img src=\"{}\" \
+         alt=\"{scene}, shaded with {name}\"><img class=\"over\" src=\"{}\" alt=\"{scene}, shaded with ray-traced soft shadows\">\
+         <input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"Share of {name}, percent\" \
+         oninput=\"this.parentElement.style.setProperty('--split', this.value + '%')\"></div>\
+         <figcaption><span><code>{name}</code></span><span>ray-traced truth</span></figcaption></figure></section>",
+        path(&left.stem),
+        path(REFERENCE_STEM)
+    )
+}
+
+/// Class of a grid of cards: narrower ones where the wide ones would leave one alone in the last row.
+fn columns(cards: usize) -> &'static str {
+    if cards % 3 == 1 && cards % 4 != 1 { "cards narrow" } else { "cards" }
 }
 
 fn card(entry: &IndexEntry) -> String {

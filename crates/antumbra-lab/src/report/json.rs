@@ -1,14 +1,14 @@
 //! `metrics.json`: everything that a report measured, for other programs.
 //!
 //! The keys are a contract; [`VERSION`] rises when one changes its meaning or goes. Times are milliseconds but for the
-//! reference's `seconds`; what was not measured is null. Each row names the adapter beside its times, of how many frames they are the
+//! `seconds` of the reference and of rows, and for limits; what was not measured is null. Each row names the adapter beside its times, of how many frames they are the
 //! medians, and after how many of warm-up.
 
 use serde_json::{Map, Number, Value, json};
 
 use super::model::{MotionInfo, Outcome, Report};
 use super::paths::{
-    JUDGED_PATH, REFERENCE_STEM, error_path, motion_path, row_stems, shaded_path, visibility_exr_path, visibility_path,
+    JUDGED_PATH, REFERENCE_STEM, error_path, motion_path, shaded_path, visibility_exr_path, visibility_path,
 };
 use crate::motion::MotionFigures;
 
@@ -19,7 +19,7 @@ pub(super) const VERSION: u32 = 1;
 pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
     let reference = &report.reference;
     let size_px = reference.visibility.size_px;
-    let rows = report.rows.iter().zip(row_stems(report)).map(|(row, stem)| row_json(report, row, &stem));
+    let rows = report.rows.iter().zip(report.stems()).map(|(row, stem)| row_json(report, row, &stem));
     let json = json!({
         "format": "antumbra-metrics",
         "version": VERSION,
@@ -31,6 +31,7 @@ pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
         "scene_facts": report.facts,
         "size": [size_px.x, size_px.y],
         "adapter": report.adapter,
+        "antumbra": env!("CARGO_PKG_VERSION"),
         "commit": report.commit,
         "date": report.date,
         "command": report.command,
@@ -47,8 +48,11 @@ pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
                 "judged": JUDGED_PATH,
             },
         },
+        "settings": report.settings,
+        "missing": report.missing,
         "motion": report.motion.as_ref().map(motion_json),
         "rows": rows.collect::<Vec<_>>(),
+        "baseline": report.baseline,
         "warnings": report.warnings,
     });
     let mut bytes = serde_json::to_vec_pretty(&json).expect("a JSON value has text");
@@ -91,8 +95,10 @@ fn row_json(report: &Report, row: &super::Row, stem: &str) -> Value {
     let mut json = json!({
         "technique": row.technique,
         "title": row.title,
-        "status": "skipped",
+        "status": if row.is_missing { "missing" } else { "skipped" },
         "skipped": null,
+        "cut_short_s": row.cut_short_s,
+        "seconds": row.seconds,
         "parameters": row.parameters,
         "command": row.command,
         "metrics": null,

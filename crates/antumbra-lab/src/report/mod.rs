@@ -1,10 +1,11 @@
 //! A comparison as a folder: a page that opens from disk, the numbers as JSON, the pictures.
 //!
 //! [`Report`] is what there is to say; [`write_report`] says it. The page is one file with its style and script inside
-//! (`page.html`, `style.css` and `page.js` here), the pictures stand beside it, and nothing is fetched from a network.
+//! (`page.html`, `style.css`, `page.js` and `copy.js` here), the pictures stand beside it, and nothing is fetched from a network.
 //! [`write_index`] is the page above several of them.
 
 mod advice;
+mod baseline;
 mod files;
 mod glossary;
 mod html;
@@ -15,18 +16,22 @@ mod motion;
 mod page;
 mod paths;
 mod reproduced;
+mod resume;
 mod scatter;
 #[cfg(test)]
 mod tests;
 
 pub use advice::write_advice;
-pub use files::write_report;
+pub use files::{ReportWriter, write_report};
 pub use index::write_index;
 pub use model::{
     IndexEntry, IndexTechnique, Measurement, MotionInfo, Outcome, PassTime, Reference, ReferenceInfo, Report, Row,
     SceneInfo,
 };
+pub use paths::{METRICS_PATH, report_paths};
 pub use reproduced::{ReproductionInfo, write_reproduction};
+
+pub use resume::report_to_resume;
 
 pub use crate::adapter_info::AdapterInfo;
 pub use crate::date::utc_now;

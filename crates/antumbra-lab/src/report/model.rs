@@ -4,9 +4,12 @@ use image::RgbImage;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::paths::stems_of;
 use crate::adapter_info::AdapterInfo;
+use crate::baseline::{Against, Figures, numbers};
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
+use crate::names::numbered;
 use crate::picture::Visibility;
 use crate::scene_facts::SceneFacts;
 use crate::stopwatch::FrameCount;
@@ -32,8 +35,40 @@ pub struct Report {
     pub rows: Vec<Row>,
     /// How things moved, where they did.
     pub motion: Option<MotionInfo>,
+    /// What it depends on beside program and adapter: a report is resumed only with the same.
+    pub settings: Value,
+    /// Names of what there was no time for, as `pcss` or `pcss, camera in motion`.
+    pub missing: Vec<String>,
+    /// The same rows of another run, where one was given.
+    pub baseline: Option<Against>,
     /// What the reader should know of the whole comparison, one line each: repairs of the loader, limits of this run.
     pub warnings: Vec<String>,
+}
+
+impl Report {
+    /// A name for each row's files and anchor: the technique's, numbered where it comes more than once.
+    pub(super) fn stems(&self) -> Vec<String> {
+        stems_of(self.rows.iter().map(|row| row.technique.as_str()))
+    }
+
+    /// Figures of its measured rows, to hold beside another run's.
+    pub fn figures(&self) -> Vec<Figures> {
+        let rows = self.rows.iter().zip(self.names());
+        let figures = rows.filter_map(|(row, name)| match &row.outcome {
+            Outcome::Measured(measured) => {
+                let errors = serde_json::to_value(&measured.metrics).ok();
+                let errors = errors.and_then(|errors| errors.as_object().cloned()).unwrap_or_default();
+                Some(Figures { name, ms: measured.total_ms, errors: numbers(errors) })
+            }
+            Outcome::Skipped(_) => None,
+        });
+        figures.collect()
+    }
+
+    /// A name for each row: the technique's, numbered where it comes more than once: `pcss`, `pcss-2`.
+    pub fn names(&self) -> Vec<String> {
+        numbered(self.rows.iter().map(|row| row.technique.clone()), "-")
+    }
 }
 
 /// A scene, as far as a report names it.
@@ -110,6 +145,12 @@ pub struct Row {
     pub warnings: Vec<String>,
     /// Remarks, one line each.
     pub notes: Vec<String>,
+    /// It was not measured yet.
+    pub is_missing: bool,
+    /// The limit of a technique, seconds, where it cut this short.
+    pub cut_short_s: Option<f64>,
+    /// Time that it took in all, seconds.
+    pub seconds: f64,
 }
 
 /// What became of a row.
@@ -187,6 +228,8 @@ pub struct IndexEntry {
 pub struct IndexTechnique {
     /// Its name on the command line.
     pub technique: String,
+    /// Begin of its images' names.
+    pub stem: String,
     /// How far from the truth.
     pub metrics: Metrics,
     /// Time of the whole frame's shadows, milliseconds.
@@ -198,10 +241,12 @@ pub struct IndexTechnique {
 impl IndexEntry {
     /// The entry of a report that was written into `folder`, relative to the index.
     pub fn of(folder: &str, report: &Report) -> Self {
-        let techniques = report.rows.iter().filter_map(|row| match &row.outcome {
+        let rows = report.rows.iter().zip(report.stems());
+        let techniques = rows.filter_map(|(row, stem)| match &row.outcome {
             Outcome::Skipped(_) => None,
             Outcome::Measured(measured) => Some(IndexTechnique {
                 technique: row.technique.clone(),
+                stem,
                 metrics: measured.metrics.clone(),
                 total_ms: measured.total_ms,
                 count: measured.count,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::html::{escape, three_figures};
 use super::model::{MotionInfo, Outcome, Report};
-use super::paths::{REFERENCE_STEM, motion_path, row_stems};
+use super::paths::{REFERENCE_STEM, motion_path};
 use crate::motion::flicker::SETTLED;
 use crate::motion::{Motion, MotionFigures, STRIP_FLICKER_RANGE, TrueMotion};
 
@@ -62,7 +62,7 @@ fn lag_text(figures: &MotionFigures) -> String {
 
 /// Measured rows: name, stem, what they did.
 fn measured(report: &Report) -> impl Iterator<Item = (String, String, &[MotionFigures])> {
-    report.rows.iter().zip(row_stems(report)).filter_map(|(row, stem)| match &row.outcome {
+    report.rows.iter().zip(report.stems()).filter_map(|(row, stem)| match &row.outcome {
         Outcome::Measured(measured) => Some((row.technique.clone(), stem, measured.motions.as_slice())),
         Outcome::Skipped(_) => None,
     })

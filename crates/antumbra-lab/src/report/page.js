@@ -458,19 +458,4 @@
       for (const other of bars.querySelectorAll("[data-lengths]")) other.setAttribute("aria-pressed", String(other === button));
     });
   }
-
-  // Copy buttons. A page opened from disk may lack the clipboard interface; then the text is selected instead.
-  for (const button of document.querySelectorAll(".copy button")) {
-    button.addEventListener("click", async () => {
-      const code = button.parentElement.querySelector("code");
-      try {
-        await navigator.clipboard.writeText(code.textContent);
-        button.textContent = "Copied";
-      } catch {
-        getSelection().selectAllChildren(code);
-        button.textContent = "Selected";
-      }
-      setTimeout(() => { button.textContent = "Copy"; }, 1600);
-    });
-  }
 })();

@@ -5,18 +5,19 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
+use super::baseline::baseline_section;
 use super::glossary::{METRICS, MetricInfo};
 use super::html::{bytes, css_color, escape, fill, grouped, json_for_script, list, rounded_count, three_figures};
 use super::model::{Measurement, Outcome, ReferenceInfo, Report, Row};
 use super::motion::motion_section;
-use super::paths::{REFERENCE_STEM, error_path, row_stems, shaded_path, visibility_exr_path, visibility_path};
+use super::paths::{REFERENCE_STEM, error_path, shaded_path, visibility_exr_path, visibility_path};
 use super::scatter::{Axes, Point, front, scatter_svg};
 use crate::color_maps::{NON_FINITE_COLOR, NOT_JUDGED_COLOR, SIGNED_ERROR_RANGE, signed_error_color};
 use crate::metrics::TILE_PX;
 use crate::scene_facts::SceneFacts;
 
 const TEMPLATE: &str = include_str!("page.html");
-const SCRIPT: &str = include_str!("page.js");
+const SCRIPT: &str = concat!(include_str!("page.js"), include_str!("copy.js"));
 pub(super) const STYLE: &str = include_str!("style.css");
 
 /// An annular eclipse: the ring of light that stands around an occluder seen from the antumbra.
@@ -53,6 +54,7 @@ pub(super) fn page_html(report: &Report) -> String {
             ("scene", &escape(&report.scene.name)),
             ("summary", &paragraph("lede", &report.scene.summary)),
             ("facts", &facts(report)),
+            ("scene_facts", &report.facts.as_ref().map_or_else(String::new, scene_facts)),
             ("notices", &notices(report)),
             ("width", &size_px.x.to_string()),
             ("height", &size_px.y.to_string()),
@@ -66,6 +68,7 @@ pub(super) fn page_html(report: &Report) -> String {
             ("findings", &findings(&rows)),
             ("bars", &bars(&rows)),
             ("motion_link", if report.motion.is_some() { "<a href=\"#motion\">Motion</a>" } else { "" }),
+            ("baseline", &report.baseline.as_ref().map_or_else(String::new, baseline_section)),
             ("motion", &motion_section(report)),
             ("gallery", &gallery(report, &rows)),
             ("command", &copyable(&report.command)),
@@ -100,7 +103,7 @@ pub(super) fn metric_text(v: f64) -> String {
 }
 
 fn measured_rows(report: &Report) -> Vec<Measured<'_>> {
-    let rows = report.rows.iter().zip(row_stems(report)).enumerate();
+    let rows = report.rows.iter().zip(report.stems()).enumerate();
     rows.filter_map(|(row_number, (row, stem))| match &row.outcome {
         Outcome::Measured(measured) => Some(Measured { row_number, row, stem, measured }),
         Outcome::Skipped(_) => None,
@@ -130,8 +133,7 @@ fn facts(report: &Report) -> String {
     for (name, value) in facts {
         let _ = write!(html, "<div><dt>{name}</dt><dd>{value}</dd></div>");
     }
-    html += "</dl>";
-    html + &report.facts.as_ref().map_or_else(String::new, scene_facts)
+    html + "</dl>"
 }
 
 /// What the scene is like, in the words of the command line.
@@ -153,7 +155,15 @@ fn tracing_text(info: ReferenceInfo) -> String {
 
 fn notices(report: &Report) -> String {
     let software = if report.adapter.is_software { software_notice(&report.adapter.name) } else { String::new() };
-    software + &list("warnings", &report.warnings)
+    let missing = if report.missing.is_empty() {
+        String::new()
+    } else {
+        let names = escape(&report.missing.join(", "));
+        format!(
+            "<p class=\"notice\"><b>No time was left for {names}.</b> The same command with --resume continues.</p>"
+        )
+    };
+    software + &missing + &list("warnings", &report.warnings)
 }
 
 fn legend() -> String {
@@ -606,7 +616,7 @@ fn passes(measured: &Measurement, colors: &BTreeMap<String, String>) -> String {
 }
 
 /// Text in a box with a button that copies it.
-fn copyable(text: &str) -> String {
+pub(super) fn copyable(text: &str) -> String {
     format!(
         "<div class=\"copy\"><pre><code>{}</code></pre><button type=\"button\" class=\"only-js\">Copy</button></div>",
         escape(text.trim_end())

@@ -2,11 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use super::model::Report;
 use crate::motion::Motion;
 
 pub(super) const REFERENCE_STEM: &str = "reference";
 pub(super) const JUDGED_PATH: &str = "images/judged.png";
+/// The numbers.
+pub const METRICS_PATH: &str = "metrics.json";
+pub(super) const VALUES_PATH: &str = "values.js";
+pub(super) const PAGE_PATH: &str = "index.html";
 
 pub(super) fn shaded_path(stem: &str) -> String {
     format!("images/{stem}_shaded.png")
@@ -29,13 +32,24 @@ pub(super) fn motion_path(stem: &str, motion: Motion) -> String {
     format!("images/{stem}_motion_{}.png", motion.name())
 }
 
-/// A name for each row's files and anchor: the technique's, numbered where it comes more than once.
-pub(super) fn row_stems(report: &Report) -> Vec<String> {
+/// Every file that a report of these techniques and motions may have, relative to its folder.
+pub fn report_paths(techniques: &[String], motions: &[Motion]) -> Vec<String> {
+    let mut paths = [METRICS_PATH, VALUES_PATH, PAGE_PATH, JUDGED_PATH].map(str::to_owned).to_vec();
+    let stems = stems_of(techniques.iter().map(String::as_str));
+    for stem in std::iter::once(REFERENCE_STEM.to_owned()).chain(stems) {
+        paths.extend([shaded_path(&stem), visibility_path(&stem), visibility_exr_path(&stem), error_path(&stem)]);
+        paths.extend(motions.iter().map(|motion| motion_path(&stem, *motion)));
+    }
+    paths
+}
+
+/// A name for each technique's files and anchor: its own, numbered where it comes more than once.
+pub(super) fn stems_of<'a>(techniques: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut used = BTreeSet::from([REFERENCE_STEM.to_owned()]);
     let mut stems = Vec::new();
-    for row in &report.rows {
+    for technique in techniques {
         let plain = |c: char| if c.is_ascii_alphanumeric() || c == '_' || c == '-' { c } else { '_' };
-        let name: String = row.technique.chars().map(plain).collect();
+        let name: String = technique.chars().map(plain).collect();
         let numbered = (2..).map(|number| format!("{name}-{number}"));
         let stem = std::iter::once(name.clone()).chain(numbered).find(|stem| !used.contains(stem));
         let stem = stem.expect("there are more numbers than rows");

@@ -394,8 +394,20 @@ mod tests {
         let ours = [Some(second), None];
         let pictures = PictureFiles { picture: "images/\"x\".png".into(), reference: None, error: None };
         let rows = vec![
-            RowResult { row: &ROWS[0], form: Form::Published, outcome: outcomes[0].clone(), pictures: Some(pictures) },
-            RowResult { row: &ROWS[1], form: Form::Published, outcome: outcomes[1].clone(), pictures: None },
+            RowResult {
+                row: &ROWS[0],
+                form: Form::Published,
+                outcome: outcomes[0].clone(),
+                pictures: Some(pictures),
+                cut_short_s: None,
+            },
+            RowResult {
+                row: &ROWS[1],
+                form: Form::Published,
+                outcome: outcomes[1].clone(),
+                pictures: None,
+                cut_short_s: None,
+            },
         ];
         let judged = judge(&EXHIBIT, Outcomes { published: &outcomes, ours: &ours }, is_software);
         let result =

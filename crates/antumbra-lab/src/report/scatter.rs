@@ -32,40 +32,47 @@ const LEFT: f64 = 58.0;
 const RIGHT: f64 = 24.0;
 const TOP: f64 = 18.0;
 const BOTTOM: f64 = 46.0;
-/// Baselines of neighbouring labels are at least this far apart.
+/// Radius of a point.
+const RADIUS: f64 = 5.5;
+/// Least distance between the baselines of labels.
 const LABEL_STEP: f64 = 14.0;
-/// About the advance of a character of a label.
+/// Height of a label above its baseline, and below it.
+const LABEL_RISE: f64 = 10.5;
+const LABEL_DROP: f64 = 3.5;
+/// Approximate advance of a character of a label.
 const LABEL_ADVANCE: f64 = 7.2;
+/// Margin on either side of the points, as a factor: it leaves room for labels, and always contains a tick.
+const MARGIN: f64 = 1.6;
 
-/// Where costs and errors lie in the picture: cost runs to the right on a logarithmic scale, error upwards on a linear one
-/// from zero.
+/// Logarithmic scales: cost to the right, error upwards. An error of zero lies on the lower edge.
 struct Scale {
-    /// The logarithms of the costs at the left edge and at the right.
-    x_min: f64,
-    x_max: f64,
-    error_step: f64,
-    error_max: f64,
+    costs: (f64, f64),
+    errors: (f64, f64),
 }
 
 impl Scale {
-    /// That shows every point, of which there is one at least.
+    /// Scale that shows every point.
     fn of(points: &[&Point]) -> Self {
-        let fold = |f: fn(f64, f64) -> f64, start: f64| points.iter().map(|p| p.cost).fold(start, f);
-        let (cost_min, cost_max) = (fold(f64::min, f64::INFINITY), fold(f64::max, 0.0));
-        let worst = points.iter().map(|p| p.error).fold(0.0, f64::max);
-        let error_step = nice_step(worst / 4.0);
-        let error_max = error_step * (worst / error_step * 1.02).ceil().max(1.0);
-        // A margin of a factor of 1.6 either side leaves labels room and gives a lone point a scale.
-        Self { x_min: (cost_min / 1.6).ln(), x_max: (cost_max * 1.6).ln(), error_step, error_max }
+        let range = |values: &dyn Fn(&Point) -> f64| {
+            let positive = points.iter().map(|point| values(point)).filter(|value| *value > 0.0);
+            let (least, most) = positive.fold((f64::INFINITY, 0.0_f64), |(a, b), value| (a.min(value), b.max(value)));
+            if most > 0.0 { (least / MARGIN, most * MARGIN) } else { (1.0 / MARGIN, MARGIN) }
+        };
+        Self { costs: range(&|point| point.cost), errors: range(&|point| point.error) }
     }
 
     fn x_of(&self, cost: f64) -> f64 {
-        LEFT + (cost.ln() - self.x_min) / (self.x_max - self.x_min) * (WIDTH - LEFT - RIGHT)
+        LEFT + share(self.costs, cost) * (WIDTH - LEFT - RIGHT)
     }
 
     fn y_of(&self, error: f64) -> f64 {
-        HEIGHT - BOTTOM - error / self.error_max * (HEIGHT - TOP - BOTTOM)
+        HEIGHT - BOTTOM - share(self.errors, error) * (HEIGHT - TOP - BOTTOM)
     }
+}
+
+/// Position of a value in a range on a logarithmic scale, 0 to 1.
+fn share((min, max): (f64, f64), value: f64) -> f64 {
+    ((value.max(min) / min).ln() / (max / min).ln()).min(1.0)
 }
 
 /// The points over a grid, each a link to its row, with the front of the best. `None` without a point.
@@ -77,8 +84,8 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
     }
     let scale = Scale::of(&points);
     let mut svg = format!(
-        "<svg class=\"scatter\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{} against {}, one point for each \
-         technique; lower left is better</title>",
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0} against {1}\"><svg class=\"scatter\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{0} against {1}, both \
+         logarithmic, one point for each technique; lower left is better</title>",
         axes.error, axes.cost
     );
     draw_grid(&mut svg, &scale);
@@ -90,26 +97,25 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
         let _ = write!(svg, "<polyline class=\"front\" points=\"{}\"/>", steps.join(" "));
     }
     draw_points(&mut svg, &scale, &axes, &points, &front);
-    Some(svg + "</svg>")
+    Some(svg + "</svg></div>")
 }
 
 /// Lines at round errors and costs, with their numbers.
 fn draw_grid(svg: &mut String, scale: &Scale) {
-    let (floor, ceiling) = (scale.y_of(0.0), scale.y_of(scale.error_max));
-    for i in 0..=(scale.error_max / scale.error_step).round() as u32 {
-        let error = f64::from(i) * scale.error_step;
+    let (floor, ceiling) = (HEIGHT - BOTTOM, TOP);
+    for error in log_ticks(scale.errors) {
         let y = scale.y_of(error);
-        let text = if i == 0 { "0".into() } else { short(error) };
         let _ = write!(
             svg,
             "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" \
-             x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>",
+             x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
             WIDTH - RIGHT,
             LEFT - 8.0,
-            y + 4.0
+            y + 4.0,
+            short(error)
         );
     }
-    for cost in log_ticks(scale.x_min.exp(), scale.x_max.exp()) {
+    for cost in log_ticks(scale.costs) {
         let x = scale.x_of(cost);
         let _ = write!(
             svg,
@@ -139,13 +145,26 @@ fn draw_axes(svg: &mut String, axes: &Axes) {
 
 /// A circle and a name for each point.
 fn draw_points(svg: &mut String, scale: &Scale, axes: &Axes, points: &[&Point], front: &[&Point]) {
-    let places = label_positions(points, |cost| scale.x_of(cost), |error| scale.y_of(error));
-    for (point, (label_x, label_y, anchor)) in points.iter().zip(places) {
+    let centers: Vec<(f64, f64)> =
+        points.iter().map(|point| (scale.x_of(point.cost), scale.y_of(point.error))).collect();
+    let widths = points.iter().map(|point| point.name.chars().count() as f64 * LABEL_ADVANCE);
+    let labels = place_labels(&centers, &widths.collect::<Vec<_>>());
+    for ((point, (x, y)), label) in points.iter().zip(centers).zip(labels) {
+        let (label_x, anchor) = if label.left > x { (label.left, "start") } else { (label.right, "end") };
+        let label_y = label.baseline;
+        let leader = if (label_y - LABEL_DROP - y).abs() > LABEL_STEP / 2.0 {
+            format!(
+                "<line class=\"leader\" x1=\"{x:.1}\" y1=\"{y:.1}\" x2=\"{label_x:.1}\" y2=\"{:.1}\"/>",
+                label_y - 4.0
+            )
+        } else {
+            String::new()
+        };
         let is_front = front.iter().any(|p| std::ptr::eq(*p, *point));
         let _ = write!(
             svg,
-            "<a href=\"#{}\"><title>{}: {} {}, {} {}</title><circle class=\"{}\" cx=\"{:.1}\" cy=\"{:.1}\" \
-             r=\"5.5\"/>\
+            "<a href=\"#{}\"><title>{}: {} {}, {} {}</title>{leader}<circle class=\"{}\" cx=\"{x:.1}\" cy=\"{y:.1}\" \
+             r=\"{RADIUS}\"/>\
              <text class=\"label\" x=\"{label_x:.1}\" y=\"{label_y:.1}\" text-anchor=\"{anchor}\">{}</text></a>",
             escape(&point.anchor),
             escape(&point.name),
@@ -154,8 +173,6 @@ fn draw_points(svg: &mut String, scale: &Scale, axes: &Axes, points: &[&Point], 
             three_figures(point.cost),
             axes.cost_unit,
             if is_front { "point best" } else { "point" },
-            scale.x_of(point.cost),
-            scale.y_of(point.error),
             escape(&point.name),
         );
     }
@@ -178,43 +195,54 @@ fn front_of<'a>(points: &[&'a Point]) -> Vec<&'a Point> {
     sorted
 }
 
-/// Beside each point, on the side that has room, moved up or down until it hides no other label.
-fn label_positions(
-    points: &[&Point],
-    x_of: impl Fn(f64) -> f64,
-    y_of: impl Fn(f64) -> f64,
-) -> Vec<(f64, f64, &'static str)> {
-    const GAP: f64 = 10.0;
-    let mut taken: Vec<(f64, f64, f64)> = Vec::new();
-    let mut positions = Vec::new();
-    for point in points {
-        let width = point.name.chars().count() as f64 * LABEL_ADVANCE;
-        let (x, y) = (x_of(point.cost), y_of(point.error));
-        let to_right = x + GAP + width < WIDTH;
-        let (left, anchor) = if to_right { (x + GAP, "start") } else { (x - GAP - width, "end") };
-        let is_free =
-            |y: f64| taken.iter().all(|&(l, r, other)| r < left || left + width < l || (other - y).abs() >= LABEL_STEP);
-        // 0, +1, −1, +2, … half steps away.
-        let offsets = (0..40).map(|i| f64::from((i + 1) / 2) * if i % 2 == 0 { -0.5 } else { 0.5 } * LABEL_STEP);
-        let in_frame = |y: &f64| (TOP..HEIGHT - BOTTOM).contains(y);
-        let label_y = offsets.map(|d| y + 4.0 + d).filter(in_frame).find(|&y| is_free(y)).unwrap_or(y + 4.0);
-        taken.push((left, left + width, label_y));
-        positions.push((if to_right { left } else { x - GAP }, label_y, anchor));
-    }
-    positions
+/// Box of a label.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Label {
+    left: f64,
+    right: f64,
+    baseline: f64,
 }
 
-/// 1, 2 or 5 times a power of ten, at least `v`.
-fn nice_step(v: f64) -> f64 {
-    if v <= 0.0 {
-        return 0.01;
+impl Label {
+    fn meets(&self, other: &Self) -> bool {
+        let is_apart = self.right < other.left || other.right < self.left;
+        !is_apart && (self.baseline - other.baseline).abs() < LABEL_STEP
     }
-    let power = 10_f64.powf(v.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|&step| step >= v * 0.999_999).unwrap_or(10.0 * power)
+
+    fn covers(&self, (x, y): (f64, f64)) -> bool {
+        let is_beside = x + RADIUS < self.left || self.right < x - RADIUS;
+        let is_above_or_below = y + RADIUS < self.baseline - LABEL_RISE || self.baseline + LABEL_DROP < y - RADIUS;
+        !is_beside && !is_above_or_below
+    }
+}
+
+/// Labels beside their points, moved up or down until they cover no other label and no point. Where no place is free, a label lies to the
+/// right of its point.
+fn place_labels(centers: &[(f64, f64)], widths: &[f64]) -> Vec<Label> {
+    const GAP: f64 = 10.0;
+    let mut placed: Vec<Label> = Vec::new();
+    for (&(x, y), &width) in centers.iter().zip(widths) {
+        let at = |step: i32, is_right: bool| {
+            let left = if is_right { x + GAP } else { x - GAP - width };
+            Label { left, right: left + width, baseline: y + 4.0 + f64::from(step) * 0.5 * LABEL_STEP }
+        };
+        let is_free = |label: &Label| {
+            let is_inside = label.left >= LEFT && label.right <= WIDTH;
+            is_inside
+                && (TOP..HEIGHT - BOTTOM).contains(&label.baseline)
+                && placed.iter().all(|other| !label.meets(other))
+                && centers.iter().all(|center| !label.covers(*center))
+        };
+        // 0, −1, 1, −2, … half steps away, on the right side first.
+        let steps = (0..40).map(|i| if i % 2 == 0 { i / 2 } else { -(i + 1) / 2 });
+        let label = steps.flat_map(|step| [at(step, true), at(step, false)]).find(is_free);
+        placed.push(label.unwrap_or(at(0, true)));
+    }
+    placed
 }
 
 /// 1, 2 and 5 times powers of ten in a range; the powers alone where that would be many.
-fn log_ticks(min: f64, max: f64) -> Vec<f64> {
+fn log_ticks((min, max): (f64, f64)) -> Vec<f64> {
     let powers = (min.log10().floor() as i32)..=(max.log10().ceil() as i32);
     let factors: &[f64] = if max / min > 300.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
     let all = powers.flat_map(|power| factors.iter().map(move |factor| factor * 10_f64.powi(power)));
@@ -245,12 +273,24 @@ mod tests {
     }
 
     #[test]
-    fn labels_do_not_hide_each_other() {
-        let all: Vec<Point> = (0..6).map(|i| point("technique", 1.0 + 0.01 * f64::from(i), 0.1)).collect();
-        let refs: Vec<&Point> = all.iter().collect();
-        let mut rows: Vec<f64> = label_positions(&refs, |_| 100.0, |_| 200.0).iter().map(|p| p.1).collect();
-        rows.sort_by(f64::total_cmp);
-        assert!(rows.windows(2).all(|pair| pair[1] - pair[0] >= LABEL_STEP));
+    fn labels_cover_no_label_and_no_point() {
+        let crowd = [(100.0, 200.0), (103.0, 201.0), (104.0, 196.0), (140.0, 200.0), (630.0, 30.0), (620.0, 25.0)];
+        let labels = place_labels(&crowd, &[70.0; 6]);
+        for (i, label) in labels.iter().enumerate() {
+            assert!(labels[..i].iter().all(|other| !label.meets(other)), "{i}: {labels:?}");
+            assert!(crowd.iter().all(|center| !label.covers(*center)), "{i}: {labels:?}");
+            assert!(label.left >= LEFT && label.right <= WIDTH, "{i}: {labels:?}");
+        }
+        assert!(labels[0].meets(&labels[0]) && labels[0].covers((labels[0].left, labels[0].baseline)));
+    }
+
+    #[test]
+    fn errors_are_on_a_logarithmic_scale() {
+        let all = [point("a", 1.0, 0.1), point("b", 2.0, 0.01), point("c", 3.0, 0.001), point("d", 4.0, 0.0)];
+        let scale = Scale::of(&all.iter().collect::<Vec<_>>());
+        let [a, b, c, d] = all.each_ref().map(|point| scale.y_of(point.error));
+        assert!(((b - a) - (c - b)).abs() < 1e-9 && c > b && b > a, "{a} {b} {c}");
+        assert!(d > c && d == HEIGHT - BOTTOM, "{d}");
     }
 
     #[test]
@@ -259,14 +299,18 @@ mod tests {
         assert!(scatter_svg(&[point("a", 0.0, 0.1), point("b", f64::NAN, 0.1)], AXES).is_none());
         for lone in [point("a", 1.0, 0.0), point("<b>", 1e-4, 1e-9), point("c", 1e5, 0.7)] {
             let svg = scatter_svg(&[lone], AXES).unwrap();
+            assert!(svg.contains("class=\"tick\""), "{svg}");
             assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("<b>"), "{svg}");
         }
     }
 
     #[test]
     fn ticks_are_round() {
-        assert_eq!(log_ticks(0.7, 30.0), [1.0, 2.0, 5.0, 10.0, 20.0]);
-        assert_eq!(log_ticks(0.1, 1000.0), [0.1, 1.0, 10.0, 100.0, 1000.0]);
-        assert_eq!([0.03, 0.011, 0.0].map(nice_step), [0.05, 0.02, 0.01]);
+        assert_eq!(log_ticks((0.7, 30.0)), [1.0, 2.0, 5.0, 10.0, 20.0]);
+        assert_eq!(log_ticks((0.1, 1000.0)), [0.1, 1.0, 10.0, 100.0, 1000.0]);
+        // A lone point has a tick.
+        for value in [1.0, 2.1, 3.2, 4.9, 7.9] {
+            assert!(!log_ticks((value / MARGIN, value * MARGIN)).is_empty(), "{value}");
+        }
     }
 }

@@ -43,6 +43,9 @@ fn row(technique: &str, outcome: Outcome) -> Row {
         outcome,
         warnings: Vec::new(),
         notes: Vec::new(),
+        is_missing: false,
+        cut_short_s: None,
+        seconds: 0.25,
     }
 }
 
@@ -117,6 +120,9 @@ fn synthetic_report() -> Report {
                 strip: shade(&disc_shadow(8.0)),
             }],
         }),
+        settings: json!({ "samples": 1024 }),
+        missing: Vec::new(),
+        baseline: None,
         warnings: vec!["one <b>warning</b>".into()],
     }
 }
@@ -246,6 +252,7 @@ fn an_index_links_its_reports() {
     let html = fs::read_to_string(dir.path().join("index.html")).unwrap();
     assert!(html.contains("href=\"disc/index.html\"") && html.contains("src=\"other/images/reference_shaded.png\""));
     assert!(html.contains("Error against time") && html.contains("class=\"scatter\""), "a front over all scenes");
+    assert!(html.contains("type=\"range\"") && html.contains("src=\"disc/images/hard_shaded.png\""), "{html}");
     let summary = fs::read_to_string(dir.path().join("summary.md")).unwrap();
     assert!(
         summary.contains("| technique | rmse | median ms | timed frames | warm-up frames |") && summary.contains("**`"),
@@ -256,5 +263,10 @@ fn an_index_links_its_reports() {
         "{summary}"
     );
     assert!(html.contains("2 scenes, 2 techniques, on llvmpipe") && !html.contains("<script>"));
+    let mut without_hard = IndexEntry::of("disc", &report);
+    without_hard.techniques.retain(|technique| technique.technique != "hard");
+    write_index(dir.path(), &[without_hard]).unwrap();
+    let html = fs::read_to_string(dir.path().join("index.html")).unwrap();
+    assert!(html.contains("src=\"disc/images/pcss_shaded.png\""), "the largest error against the truth: {html}");
     write_index(dir.path(), &[]).unwrap();
 }

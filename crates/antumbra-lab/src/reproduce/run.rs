@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use antumbra::TechniqueKind;
 use antumbra_reference::{Tracer, VisibilityOptions};
@@ -22,11 +22,12 @@ use crate::color_maps::signed_error_map;
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
+use crate::limits::End;
 use crate::metrics::compare_visibility;
 use crate::picture::Visibility;
 use crate::progress::Silent;
 use crate::technique_run::{Drawn, TechniqueChoice, TechniqueRun, Timing, Timings};
-use crate::truth::{LightTruth, trace_lights};
+use crate::truth::{LightTruth, trace_lights_until};
 use crate::view::View;
 
 /// How rows are run.
@@ -65,9 +66,9 @@ impl RunOptions {
         }
     }
 
-    /// How times are taken.
-    pub fn timing(&self) -> Timing {
-        Timing { warm_up: 1, frames: self.frames, at_least: Duration::ZERO, at_most: self.at_most }
+    /// How times are taken, without a limit for the technique.
+    fn timing(&self) -> Timing {
+        Timing { warm_up: 1, frames: self.frames, at_least: Duration::ZERO, at_most: self.at_most, end: None }
     }
 
     /// The size at which a row is drawn: the paper's shape, and its size where it may.
@@ -99,11 +100,13 @@ pub struct Ran {
     pub outcome: Outcome,
     /// Where pictures were asked for, and came out.
     pub pictures: Option<Pictures>,
+    /// The limit of a technique, seconds, where it cut this short.
+    pub cut_short_s: Option<f64>,
 }
 
 impl Ran {
     fn without(outcome: Outcome) -> Self {
-        Self { outcome, pictures: None }
+        Self { outcome, pictures: None, cut_short_s: None }
     }
 }
 
@@ -118,6 +121,10 @@ pub struct Bench<'a> {
     /// By what was loaded, the latest used last.
     scenes: Vec<(String, Rc<Loaded>)>,
     truths: HashMap<String, Rc<LightTruth>>,
+    /// Of the row that runs.
+    end: Option<End>,
+    /// Of all rows.
+    deadline: Option<Instant>,
 }
 
 #[derive(Debug)]
@@ -142,14 +149,21 @@ impl Loaded {
 impl<'a> Bench<'a> {
     /// Rows will be run on this device.
     pub fn new(lab: &'a LabDevice, options: RunOptions) -> Self {
-        Self { lab, options, scenes: Vec::new(), truths: HashMap::new() }
+        Self { lab, options, scenes: Vec::new(), truths: HashMap::new(), end: None, deadline: None }
     }
 
-    /// Runs a row in one form.
+    /// The same, whose truths are given up at a deadline.
+    pub(super) fn until(self, deadline: Option<Instant>) -> Self {
+        Self { deadline, ..self }
+    }
+
+    /// Runs a row in one form, until `end` at the most.
     ///
     /// # Errors
-    /// Where the scene cannot be loaded or traced, or the device fails. What is not there or not possible is an outcome.
-    pub fn run(&mut self, row: &Row, form: Form, with_pictures: bool) -> Result<Ran, LabError> {
+    /// Where the scene cannot be loaded or traced, the device fails, or the run's deadline comes first. What is not there or not possible
+    /// is an outcome.
+    pub fn run(&mut self, row: &Row, form: Form, with_pictures: bool, end: Option<End>) -> Result<Ran, LabError> {
+        self.end = end;
         if let Some(outcome) = self.why_not(row) {
             return Ok(Ran::without(outcome));
         }
@@ -163,18 +177,23 @@ impl<'a> Bench<'a> {
         };
         let view = View::of_uploaded(self.lab, &loaded.uploaded, &setup, size_px)?;
         if let Measure::SceneMs { .. } = row.measure {
-            let (ms, count) = view.scene_ms(&self.options.timing())?;
+            let (ms, count) = view.scene_ms(&self.timing())?;
             let (ms, count) = (Some(ms), Some(count));
             return Ok(Ran::without(Outcome::Measured(Measured { ms, count, ..about })));
         }
         let site = Site { bench: self, row, form, loaded: &loaded, setup: &setup, view: &view };
         match site.run(about, with_pictures) {
-            Err(LabError::Technique(error @ antumbra::Error::Unsupported { .. })) => {
-                Ok(Ran::without(Outcome::Skipped(error.to_string())))
-            }
-            Err(error @ LabError::NoRoom { .. }) => Ok(Ran::without(Outcome::Skipped(error.to_string()))),
+            Err(error) if !error.is_deadline() => match error.why_skipped() {
+                Some(why) => Ok(Ran { cut_short_s: error.limit_s(), ..Ran::without(Outcome::Skipped(why)) }),
+                None => Err(error),
+            },
             ran => ran,
         }
+    }
+
+    /// How times of the row that runs are taken.
+    fn timing(&self) -> Timing {
+        Timing { end: self.end, ..self.options.timing() }
     }
 
     /// Why a row is not run at all.
@@ -209,11 +228,17 @@ impl<'a> Bench<'a> {
 }
 
 impl Loaded {
-    fn trace(&self, setup: &Setup, size_px: UVec2, samples: u32) -> Result<LightTruth, LabError> {
+    fn trace(
+        &self,
+        setup: &Setup,
+        size_px: UVec2,
+        samples: u32,
+        deadline: Option<Instant>,
+    ) -> Result<LightTruth, LabError> {
         let tracer = self.tracer()?;
         let receivers = tracer.primary(&setup.camera, size_px);
         let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
-        Ok(trace_lights(tracer, &receivers, &setup.lights, &options, &Silent)?.swap_remove(0))
+        Ok(trace_lights_until(tracer, &receivers, &setup.lights, &options, deadline, &Silent)?.swap_remove(0))
     }
 }
 
@@ -231,8 +256,11 @@ impl Site<'_, '_> {
     fn run(mut self, about: Measured, with_pictures: bool) -> Result<Ran, LabError> {
         let (row, view) = (self.row, self.view);
         let choice = row.choice(self.form)?;
+        let mut cut_short_s = None;
         let (drawn, mut measured) = if row.measure.is_timed() {
-            let TechniqueRun { visibility, timings, memory_bytes, auto_map_sizes } = self.time(&choice)?;
+            let run = self.time(&choice)?;
+            cut_short_s = run.cut_short_s;
+            let TechniqueRun { visibility, timings, memory_bytes, auto_map_sizes, .. } = run;
             let Some(ms) = time_of(&timings, row.measure)? else {
                 return Ok(Ran::without(Outcome::Skipped("it does not time single passes".to_owned())));
             };
@@ -246,7 +274,7 @@ impl Site<'_, '_> {
         let Drawn { visibility, memory_bytes, .. } = drawn;
         measured.memory_bytes = Some(memory_bytes);
         if let Measure::Fps { .. } = row.measure {
-            let (ms, count) = view.scene_ms(&self.bench.options.timing())?;
+            let (ms, count) = view.scene_ms(&self.bench.timing())?;
             (measured.scene_ms, measured.scene_count) = (Some(ms), Some(count));
         }
         let picture = match row.measure {
@@ -256,7 +284,7 @@ impl Site<'_, '_> {
         };
         if !row.measure.is_error() {
             let pictures = picture.map(|picture| Pictures { picture, beside: None });
-            return Ok(Ran { outcome: Outcome::Measured(measured), pictures });
+            return Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s });
         }
         let (reference, judged) = self.reference(&choice)?;
         let metrics = compare_visibility(&reference, &visibility, &judged)?;
@@ -271,16 +299,16 @@ impl Site<'_, '_> {
                 Some(Pictures { picture, beside: Some([view.shade(&[&reference])?.to_srgb8(), error]) })
             }
         };
-        Ok(Ran { outcome: Outcome::Measured(measured), pictures })
+        Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s })
     }
 
     /// The mask, after as many frames as the row adds up.
     fn draw(&self, choice: &TechniqueChoice) -> Result<Drawn, LabError> {
-        self.view.draw(&mut self.view.create(choice)?, 0, self.row.frames)
+        self.view.draw_until(&mut self.view.create(choice)?, 0, self.row.frames, self.bench.end)
     }
 
     fn time(&self, choice: &TechniqueChoice) -> Result<TechniqueRun, LabError> {
-        self.view.run(&mut self.view.create(choice)?, 0, &self.bench.options.timing())
+        self.view.run(&mut self.view.create(choice)?, 0, &self.bench.timing())
     }
 
     /// What the row's picture is held against, and where.
@@ -310,7 +338,9 @@ impl Site<'_, '_> {
         if let Some(truth) = self.bench.truths.get(&key) {
             return Ok(Rc::clone(truth));
         }
-        let mut truth = self.loaded.trace(self.setup, size_px, samples)?;
+        // A truth is of all techniques, and takes nothing of one's time.
+        let deadline = self.bench.deadline;
+        let mut truth = self.loaded.trace(self.setup, size_px, samples, deadline)?;
         truth.judge_what_is_seen(&self.view.surface_points()?, self.setup.camera.eye);
         truth.first_hits = [].into();
         let truth = Rc::new(truth);

@@ -3,7 +3,9 @@
 use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
+use glam::UVec2;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -16,6 +18,7 @@ use super::{PAPERS, exhibit_name, views};
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::image_io::write_png;
+use crate::limits::{Limits, Pace, Planned};
 use crate::output_files::{FileError, write_atomically};
 use crate::progress::Progress;
 use crate::store::{Kind, Store};
@@ -43,6 +46,12 @@ struct Kept {
     row: Value,
     outcome: Outcome,
     pictures: Option<PictureFiles>,
+    /// The limit of a technique, seconds, where it cut this short.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cut_short_s: Option<f64>,
+    /// Time that it took, seconds.
+    #[serde(default)]
+    seconds: f64,
 }
 
 /// A row in one form, and what came of it.
@@ -56,6 +65,8 @@ pub struct RowResult {
     pub outcome: Outcome,
     /// Its pictures, where there are.
     pub pictures: Option<PictureFiles>,
+    /// The limit of a technique, seconds, where it cut this short.
+    pub cut_short_s: Option<f64>,
 }
 
 /// An exhibit, and what came of it.
@@ -122,6 +133,8 @@ pub struct Session<'a> {
     is_software: bool,
     dir: Option<PathBuf>,
     store: Store<Kept>,
+    pace: Pace,
+    missing: Vec<String>,
 }
 
 impl<'a> Session<'a> {
@@ -129,8 +142,15 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// Where the folder's measurements are of another commit, adapter or way of running, or cannot be read or written.
-    pub fn open(lab: &'a LabDevice, options: RunOptions, dir: Option<&Path>, commit: &str) -> Result<Self, LabError> {
+    pub fn open(
+        lab: &'a LabDevice,
+        options: RunOptions,
+        limits: Limits,
+        dir: Option<&Path>,
+        commit: &str,
+    ) -> Result<Self, LabError> {
         let about = json!({
+            "version": env!("CARGO_PKG_VERSION"),
             "commit": commit,
             "adapter": lab.adapter.name,
             "driver": lab.adapter.driver_and_version(),
@@ -139,7 +159,7 @@ impl<'a> Session<'a> {
             "samples": options.samples,
         });
         dir.map(make).transpose()?;
-        let store = Store::open(dir.map(|dir| dir.join(REPRODUCED_NAME)), KIND, about)?;
+        let store: Store<Kept> = Store::open(dir.map(|dir| dir.join(REPRODUCED_NAME)), KIND, about)?;
         if let Some(dir) = dir {
             make(&dir.join("images"))?;
             make(&dir.join("views"))?;
@@ -148,10 +168,20 @@ impl<'a> Session<'a> {
             }
         }
         let is_software = lab.adapter.is_software();
-        Ok(Self { bench: Bench::new(lab, options), options, is_software, dir: dir.map(Path::to_path_buf), store })
+        let bench = Bench::new(lab, options).until(limits.deadline);
+        let (dir, mut pace) = (dir.map(Path::to_path_buf), Pace::new(limits));
+        for kept in store.rows() {
+            if let (Some(technique), Ok(size)) =
+                (kept.row["technique"].as_str(), serde_json::from_value(kept.row["size"].clone()))
+            {
+                pace.took(Planned::new(technique, UVec2::from_array(size)), kept.seconds);
+            }
+        }
+        Ok(Self { bench, options, is_software, dir, store, pace, missing: Vec::new() })
     }
 
-    /// Runs those of an exhibit's rows that have no result yet. `begun` of `all` rows come before it, for progress.
+    /// Runs those of an exhibit's rows that have no result yet, and calls `each` after every one. `begun` of `all` rows come before it, for
+    /// progress. A row that is not expected to end before the deadline is [missing](Self::missing).
     ///
     /// # Errors
     /// Where the device fails, or a file cannot be written. What goes wrong with one row is its outcome.
@@ -161,6 +191,7 @@ impl<'a> Session<'a> {
         exhibit: &'static Exhibit,
         progress: &dyn Progress,
         (begun, all): (usize, usize),
+        each: &mut dyn FnMut(&Self) -> Result<(), LabError>,
     ) -> Result<ExhibitResult, LabError> {
         let name = exhibit_name(paper, exhibit);
         progress.begin(&name, all as u64);
@@ -175,20 +206,31 @@ impl<'a> Session<'a> {
                 continue;
             }
             let with_pictures = self.dir.is_some() && shows_picture(exhibit, i);
-            let ran = match self.bench.run(row, form, with_pictures) {
+            let planned = Planned::new(row.technique, self.options.size_of(row));
+            let began = Instant::now();
+            let (pace, bench) = (&mut self.pace, &mut self.bench);
+            let ran = match pace.measure(planned, |end| bench.run(row, form, with_pictures, end)) {
+                Ok(None) => {
+                    self.missing.push(key(&name, row, form));
+                    continue;
+                }
                 // Nothing can be run any more.
                 Err(error @ LabError::Device(_)) => return Err(error),
-                Err(error) => Ran { outcome: Outcome::Failed(error.to_string()), pictures: None },
-                Ok(ran) => ran,
+                Err(error) => Ran { outcome: Outcome::Failed(error.to_string()), pictures: None, cut_short_s: None },
+                Ok(Some(ran)) => ran,
             };
             let pictures = match (&self.dir, ran.pictures) {
                 (Some(dir), Some(pictures)) => Some(write(dir, &pictures, &file_name(&name, i, form), row)?),
                 _ => None,
             };
-            let kept = Kept { row: described(row, form, &self.options), outcome: ran.outcome, pictures };
+            let seconds = began.elapsed().as_secs_f64();
+            let (row_json, cut_short_s) = (described(row, form, &self.options), ran.cut_short_s);
+            let kept = Kept { row: row_json, outcome: ran.outcome, pictures, cut_short_s, seconds };
             self.store.insert(key(&name, row, form), kept)?;
+            // Whatever ends this run leaves what was measured.
+            self.store.write()?;
+            each(self)?;
         }
-        self.store.write()?;
         progress.end();
         Ok(self.result(paper, exhibit))
     }
@@ -197,10 +239,14 @@ impl<'a> Session<'a> {
     pub fn result(&self, paper: &'static Paper, exhibit: &'static Exhibit) -> ExhibitResult {
         let name = exhibit_name(paper, exhibit);
         let result = |row: &'static Row, form: Form| match self.store.get(&key(&name, row, form)) {
-            Some(kept) if kept.row == described(row, form, &self.options) => {
-                RowResult { row, form, outcome: kept.outcome.clone(), pictures: kept.pictures.clone() }
-            }
-            _ => RowResult { row, form, outcome: Outcome::NotRun, pictures: None },
+            Some(kept) if kept.row == described(row, form, &self.options) => RowResult {
+                row,
+                form,
+                outcome: kept.outcome.clone(),
+                pictures: kept.pictures.clone(),
+                cut_short_s: kept.cut_short_s,
+            },
+            _ => RowResult { row, form, outcome: Outcome::NotRun, pictures: None, cut_short_s: None },
         };
         let rows: Vec<RowResult> = exhibit
             .rows
@@ -224,6 +270,11 @@ impl<'a> Session<'a> {
         PAPERS.iter().map(|paper| (paper, of(paper))).collect()
     }
 
+    /// Names of the rows that the deadline left out: `marrs-2014/figure1: row, as published`.
+    pub fn missing(&self) -> &[String] {
+        &self.missing
+    }
+
     /// How many rows this session has run itself.
     pub fn ran(&self) -> usize {
         self.store.fresh
@@ -233,7 +284,8 @@ impl<'a> Session<'a> {
     fn kept(&self, name: &str, row: &Row, form: Form) -> Option<&Kept> {
         let kept = self.store.get(&key(name, row, form))?;
         let is_final = matches!(kept.outcome, Outcome::Measured(_) | Outcome::Skipped(_));
-        (is_final && kept.row == described(row, form, &self.options)).then_some(kept)
+        let is_cut = self.pace.is_longer_than(kept.cut_short_s);
+        (is_final && !is_cut && kept.row == described(row, form, &self.options)).then_some(kept)
     }
 }
 
@@ -305,7 +357,6 @@ mod tests {
     use super::*;
     use crate::progress::Silent;
     use crate::test_support::lab_or_skip;
-    use glam::UVec2;
 
     const EXHIBIT: Exhibit = Exhibit {
         id: "figure1",
@@ -353,8 +404,9 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let options = RunOptions { size_px: Some(UVec2::new(32, 18)), samples: 4, ..RunOptions::for_device(lab, 1) };
         for dir in [None, Some(dir.path())] {
-            let mut session = Session::open(lab, options, dir, "abc").unwrap();
-            let result = session.run(&PAPER, &PAPER.exhibits[0], &Silent, (0, ROWS.len())).unwrap();
+            let mut session = Session::open(lab, options, Limits::default(), dir, "abc").unwrap();
+            let rows = (0, ROWS.len());
+            let result = session.run(&PAPER, &PAPER.exhibits[0], &Silent, rows, &mut |_| Ok(())).unwrap();
             for RowResult { row, outcome, pictures, .. } in &result.rows {
                 let Outcome::Measured(measured) = outcome else { panic!("{}: {outcome:?}", row.what) };
                 let is_timed = row.measure.is_timed() || matches!(row.measure, Measure::SceneMs { .. });
@@ -377,9 +429,10 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let options = RunOptions { size_px: Some(UVec2::new(32, 18)), samples: 4, ..RunOptions::for_device(lab, 1) };
         let exhibit = &PAPER.exhibits[0];
+        let open = |options, limits| Session::open(lab, options, limits, Some(dir.path()), "abc");
         let run = |options| {
-            let mut session = Session::open(lab, options, Some(dir.path()), "abc").unwrap();
-            let result = session.run(&PAPER, exhibit, &Silent, (0, 4)).unwrap();
+            let mut session = open(options, Limits::default()).unwrap();
+            let result = session.run(&PAPER, exhibit, &Silent, (0, 4), &mut |_| Ok(())).unwrap();
             (session.ran(), result)
         };
         let (ran, first) = run(options);
@@ -403,11 +456,42 @@ mod tests {
         };
         let (timed, read) = (timed(&first), timed(&again));
         assert_eq!((ran, read.size_px, read.count), (2, timed.size_px, timed.count));
-        // Text does not keep the last bit.
-        assert!((read.ms.unwrap() - timed.ms.unwrap()).abs() <= 1e-9 * timed.ms.unwrap());
-        let other = Session::open(lab, options, Some(dir.path()), "def").unwrap_err().to_string();
+        assert_eq!(read.ms, timed.ms);
+        let other = Session::open(lab, options, Limits::default(), Some(dir.path()), "def").unwrap_err().to_string();
         assert!(other.contains("its commit is"), "{other}");
         let other = RunOptions { samples: 16, ..options };
-        assert!(Session::open(lab, other, Some(dir.path()), "abc").is_err());
+        assert!(open(other, Limits::default()).is_err());
+    }
+
+    /// What the deadline leaves out is named, and measured by the next run.
+    #[test]
+    fn a_deadline_leaves_rows_out() {
+        let Some(lab) = lab_or_skip() else { return };
+        let dir = tempfile::tempdir().unwrap();
+        let options = RunOptions { size_px: Some(UVec2::new(32, 18)), samples: 4, ..RunOptions::for_device(lab, 1) };
+        let run = |limits| {
+            let mut session = Session::open(lab, options, limits, Some(dir.path()), "abc").unwrap();
+            let mut calls = 0;
+            let each: &mut dyn FnMut(&Session<'_>) -> Result<(), LabError> = &mut |_| {
+                calls += 1;
+                Ok(())
+            };
+            let result = session.run(&PAPER, &PAPER.exhibits[0], &Silent, (0, 4), each).unwrap();
+            (session.ran(), calls, session.missing().to_vec(), result)
+        };
+        let over = Limits { deadline: Some(Instant::now()), technique: None };
+        let (ran, calls, missing, result) = run(over);
+        assert_eq!((ran, calls, missing.len()), (0, 0, 4));
+        assert!(missing[0].starts_with("nobody-1999/figure1: hard, "), "{missing:?}");
+        assert!(result.rows.iter().all(|row| row.outcome == Outcome::NotRun));
+        let limit = |seconds| Limits { deadline: None, technique: Some(std::time::Duration::from_secs(seconds)) };
+        let (ran, calls, missing, result) = run(limit(0));
+        assert_eq!((ran, calls, missing.len()), (4, 4, 0));
+        let cut = |row: &RowResult| matches!(&row.outcome, Outcome::Skipped(why) if why.contains("cut short by the limit of 0 s"));
+        assert!(result.rows[..2].iter().all(|row| cut(row) && row.cut_short_s == Some(0.0)), "{result:?}");
+        // A longer limit measures again what was cut short, with the two that are never final.
+        let (ran, _, _, result) = run(limit(60));
+        assert_eq!(ran, 4);
+        assert!(result.rows[..2].iter().all(|row| matches!(row.outcome, Outcome::Measured(_))), "{result:?}");
     }
 }

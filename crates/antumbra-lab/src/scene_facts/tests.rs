@@ -13,7 +13,7 @@ fn facts_of(scene: &Scene, camera: &Camera, light: &Light, size_px: UVec2) -> Sc
     let tracer = Tracer::new(scene).unwrap();
     let receivers = tracer.primary(camera, size_px);
     let options = VisibilityOptions { samples: 256, ..VisibilityOptions::default() };
-    let truth = trace_light(&tracer, &receivers, light, &options, &|_| {}).unwrap();
+    let truth = trace_light(&tracer, &receivers, light, &options, None, &|_| {}).unwrap();
     SceneFacts::measure(scene, &tracer, &receivers, camera, light, &truth).unwrap()
 }
 

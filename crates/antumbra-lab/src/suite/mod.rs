@@ -26,7 +26,7 @@ use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::metrics::compare_visibility;
 use crate::motion::{MotionOptions, MotionTruth, MovingScene};
-use crate::output_files::{FileError, write_atomically};
+use crate::output_files::{FileError, read_json, write_atomically};
 use crate::progress::Progress;
 use crate::report::utc_now;
 use crate::reproduce::{Bench as Rows, Form, RunOptions};
@@ -41,7 +41,8 @@ const VERSION: u32 = 1;
 /// Light points of every truth.
 const TRUTH_SAMPLES: u32 = 1024;
 /// Times are medians of five frames after three at least, or of what a minute holds.
-const TIMING: Timing = Timing { warm_up: 3, frames: 5, at_least: Duration::ZERO, at_most: Duration::from_secs(60) };
+const TIMING: Timing =
+    Timing { warm_up: 3, frames: 5, at_least: Duration::ZERO, at_most: Duration::from_secs(60), end: None };
 /// Frames and metres a frame of the motions.
 const MOTION_FRAMES: u32 = 16;
 const MOTION_STEP_M: f32 = 0.15;
@@ -76,10 +77,7 @@ impl Results {
     /// Where it cannot be read or holds something else.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         const REMEDY: &str = "give a file that `antumbra bench --suite` wrote";
-        let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
-        let value: Value =
-            serde_json::from_str(&text).map_err(|error| FileError::bad_content(path, error.to_string(), REMEDY))?;
-        match value {
+        match read_json(path, REMEDY)? {
             Value::Object(map)
                 if map.get("format") == Some(&FORMAT.into()) && map.get("version") == Some(&VERSION.into()) =>
             {
@@ -207,7 +205,7 @@ pub fn run_slice(
             continue;
         }
         progress.begin(&paper.id(), 0);
-        let here = rows.run(paper.row, Form::Published, false)?.outcome;
+        let here = rows.run(paper.row, Form::Published, false, None)?.outcome;
         results.insert(paper.id(), paper.kept(&here.text(&paper.row.measure)));
         results.write(path)?;
         progress.end();

@@ -27,7 +27,7 @@ pub fn markdown(results: &Results) -> String {
          `antumbra bench --suite FILE` measures every figure, and `antumbra bench --tables FILE` prints this page. Techniques have their \
          default settings unless a table says otherwise. Errors are root mean squares over pixels that face the light's centre, against \
          {TRUTH_SAMPLES} stratified rays a pixel. Times are milliseconds, medians of {counts}; compare them within one table. An empty \
-         cell was not measured; a dash is what the adapter cannot run. `bench/measurements.md` has other measurements.\n",
+         cell was not measured; a dash is what the adapter cannot run. `bench/measurements.md` has other measurements, `bench/cards.md` times by graphics card.\n",
         adapter = results.about("adapter"),
         driver = results.about("driver"),
         commit = results.about("commit"),

@@ -25,7 +25,7 @@ pub use plan::{Job, Plan, PlannedScene, Shard};
 pub use run::{Done, run_shard};
 
 use crate::device::LabDevice;
-use crate::output_files::FileError;
+use crate::output_files::{FileError, read_json};
 
 /// The plan in a sweep's folder.
 pub const PLAN_NAME: &str = "plan.json";
@@ -94,9 +94,7 @@ const VERSION: u32 = 1;
 
 fn read_result(path: &Path) -> Result<JobResult, FileError> {
     const REMEDY: &str = "remove the file and run its shard again";
-    let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
-    let result: JobResult =
-        serde_json::from_str(&text).map_err(|error| FileError::bad_content(path, error.to_string(), REMEDY))?;
+    let result: JobResult = read_json(path, REMEDY)?;
     if result.format != RESULT_FORMAT || result.version != VERSION {
         return Err(FileError::bad_content(path, "it is no result of this version", REMEDY));
     }

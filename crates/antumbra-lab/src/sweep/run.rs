@@ -126,7 +126,7 @@ impl<'a> Bench<'a> {
         let mut truth = trace(&scene, &setup, size_px, &options, progress)?.swap_remove(light);
         let seen = View::new(lab, &scene, &setup, size_px)?.surface_points()?;
         truth.judge_what_is_seen(&seen, setup.camera.eye);
-        let timing = Timing { warm_up: 1, frames: plan.frames, at_least: AT_LEAST, at_most: AT_MOST };
+        let timing = Timing { warm_up: 1, frames: plan.frames, at_least: AT_LEAST, at_most: AT_MOST, end: None };
         Ok(Self { lab, scene, setup, light, size_px, truth, timing })
     }
 

@@ -104,10 +104,18 @@ fn grazing_light_is_not_taken_for_shadow() {
         "sconce_near",
         &[
             ("hard", 0.06),
+            ("pcf", 0.06),
             ("pcss", 0.03),
-            ("multi_layer", 0.16),
+            ("multi_layer", 0.03),
+            ("essm", 0.06),
             ("reprojection_layered", 0.03),
             ("sample_based", 0.005),
         ],
     );
+}
+
+/// A bulb that touches a wall: none of it is hidden from the ground before the wall, or from the wall itself.
+#[test]
+fn a_wall_beside_a_lamp_is_no_blocker() {
+    hold("sconce_touch", &[("pcf", 0.11), ("pcss", 0.06), ("multi_layer", 0.11), ("essm", 0.09), ("multi_view", 0.02)]);
 }

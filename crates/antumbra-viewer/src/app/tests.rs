@@ -147,6 +147,33 @@ fn the_keyboard_reaches_every_control() {
 }
 
 #[test]
+fn keys_undo_and_redo() {
+    let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
+    window.settle();
+    let press = |window: &mut Window, key, modifiers| {
+        let event = |pressed| egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+        window.frame(vec![event(true), event(false)]);
+    };
+    // An edit is a step when a second has gone by without another, of 1/60 of a second a frame.
+    let rest = |window: &mut Window| (0..90).for_each(|_| window.frame(Vec::new()));
+    rest(&mut window);
+    let first = window.app.state.sides[0].kind();
+    window.app.state.sides[0].set_kind(TechniqueKind::Hard);
+    rest(&mut window);
+    let (command, both) = (egui::Modifiers::COMMAND, egui::Modifiers::COMMAND | egui::Modifiers::SHIFT);
+    press(&mut window, egui::Key::Z, command);
+    assert_eq!(window.app.state.sides[0].kind(), first);
+    press(&mut window, egui::Key::Z, both);
+    assert_eq!(window.app.state.sides[0].kind(), TechniqueKind::Hard);
+    press(&mut window, egui::Key::Z, command);
+    press(&mut window, egui::Key::Y, command);
+    assert_eq!(window.app.state.sides[0].kind(), TechniqueKind::Hard);
+    press(&mut window, egui::Key::Z, command);
+    press(&mut window, egui::Key::Z, command);
+    assert_eq!(window.app.state.sides[0].kind(), first, "there is nothing before the first");
+}
+
+#[test]
 fn numbers_follow_the_pointer() {
     let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
     window.settle();
@@ -193,7 +220,7 @@ fn a_system_without_a_dialog_is_told_of() {
     let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
     window.settle();
     let before = window.app.state.scene.clone();
-    window.app.act(&window.ctx.clone(), Action::Choose);
+    window.app.act(&window.ctx.clone(), Action::Choose(Purpose::Open, String::new()));
     window.settle();
     assert!(window.app.message.0.contains("enter the path"), "{:?}", window.app.message);
     assert_eq!(window.app.state.scene, before);

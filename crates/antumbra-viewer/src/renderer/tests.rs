@@ -2,6 +2,7 @@
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
+use antumbra_host_tests::device::Device;
 use antumbra_light::LightShape;
 use antumbra_scene::{Instance, LoadOptions, Material, Mesh, Setup, load};
 
@@ -13,30 +14,12 @@ const SIZE: UVec2 = UVec2::new(64, 64);
 
 /// A device of its own, or `None` and a word where this machine has none and none is required.
 fn gpu_or_skip() -> Option<Gpu> {
-    let gpu = first_gpu(wgpu::InstanceDescriptor::new_without_display_handle(), wgpu::Features::all());
-    if gpu.is_none() {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let Ok(adapter) = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) else {
         antumbra_testing::skip_without_adapter();
-    }
-    gpu
-}
-
-/// A device on which all is validated and nothing is drawn.
-fn idle_gpu() -> Gpu {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::NOOP;
-    descriptor.backend_options.noop.enable = true;
-    // wgpu's shaders that look at indirect draws ask alignments of the driver that this one has not.
-    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
-    first_gpu(descriptor, wgpu::Features::empty()).expect("wgpu's own")
-}
-
-/// A device of the first adapter, with those of the wanted features that are among `features`.
-fn first_gpu(descriptor: wgpu::InstanceDescriptor, features: wgpu::Features) -> Option<Gpu> {
-    let instance = wgpu::Instance::new(descriptor);
-    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())).ok()?;
-    let mut descriptor = device_descriptor(&adapter);
-    descriptor.required_features &= features;
-    let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).unwrap();
+        return None;
+    };
+    let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter))).unwrap();
     Some(Gpu::new(&device, &queue))
 }
 
@@ -214,9 +197,10 @@ fn ends(spec: &ParamSpec) -> Vec<String> {
     }
 }
 
+/// On a device on which all is validated and nothing is drawn.
 #[test]
 fn every_parameter_goes_to_both_ends() {
-    set_parameters_to_both_ends(&idle_gpu());
+    set_parameters_to_both_ends(&Device::idle().gpu);
 }
 
 /// Each variant is compiled by the driver, too.

@@ -20,6 +20,7 @@ pub use picture::show as show_picture;
 pub use readings::{Readings, status_bar};
 pub use timeline::show as timeline;
 
+use crate::file_dialog::Purpose;
 use crate::renderer::MapChoices;
 use crate::state::State;
 
@@ -28,8 +29,8 @@ use crate::state::State;
 pub enum Action {
     /// Open a scene by its name.
     Open(String),
-    /// Choose what to open in the system's dialog.
-    Choose,
+    /// Choose in the system's dialog what to open, or where to save under this name.
+    Choose(Purpose, String),
     /// Take camera and lights from a file.
     OpenSetup(PathBuf),
     /// Save camera and lights to a file.
@@ -42,6 +43,10 @@ pub enum Action {
     FrameAll,
     /// Expose the lights to what is seen now.
     Expose,
+    /// Take back the newest edit.
+    Undo,
+    /// Do again what was taken back last.
+    Redo,
 }
 
 /// What panels keep between frames that is no part of the state.
@@ -84,9 +89,16 @@ fn decimals(most: usize) -> impl Fn(f64, std::ops::RangeInclusive<usize>) -> Str
     }
 }
 
-/// The bar at the top: what is open, what is shown, and how, where lists have so many levels. Returns what was asked for.
-pub fn top(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, choices: MapChoices) -> Vec<Action> {
-    toolbar::show(ui, state, panels, choices)
+/// The bar at the top: what is open, what is shown, and how, where lists have so many levels; and whether there is something to undo and to
+/// redo. Returns what was asked for.
+pub fn top(
+    ui: &mut egui::Ui,
+    state: &mut State,
+    panels: &mut Panels,
+    choices: MapChoices,
+    can_undo_and_redo: [bool; 2],
+) -> Vec<Action> {
+    toolbar::show(ui, state, panels, choices, can_undo_and_redo)
 }
 
 /// The panel at the side: techniques, lights, view, times.

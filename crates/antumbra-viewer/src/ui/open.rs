@@ -4,6 +4,7 @@ use antumbra_scene::builtin;
 
 use super::Action;
 use crate::aside::Wake;
+use crate::file_dialog::Purpose;
 use crate::loader::is_setup;
 use crate::thumbnails::{SIZE_PX, Thumbnails};
 
@@ -28,7 +29,7 @@ impl OpenWindow {
         egui::Window::new("Open a scene").open(&mut is_open).default_width(620.0).collapsible(false).show(ctx, |ui| {
             if cfg!(target_arch = "wasm32") {
                 if ui.button("Choose a file…").clicked() {
-                    chosen = Some(Action::Choose);
+                    chosen = Some(Action::Choose(Purpose::Open, String::new()));
                 }
                 ui.label(
                     "Or drop a .glb scene or a .toml setup on the picture: it is read here and sent nowhere. Or choose:",
@@ -83,7 +84,7 @@ impl OpenWindow {
                 *chosen = Some(action_for(path));
             }
             if ui.button("Choose…").on_hover_text("In the system's dialog").clicked() {
-                *chosen = Some(Action::Choose);
+                *chosen = Some(Action::Choose(Purpose::Open, String::new()));
             }
         });
         ui.label("Or drop a file on the window.");

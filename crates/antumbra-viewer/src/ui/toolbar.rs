@@ -4,23 +4,39 @@ use std::path::PathBuf;
 
 use super::lights::TURN_RAD_S;
 use super::{Action, Panels, decimals};
+use crate::file_dialog::Purpose;
 use crate::renderer::MapChoices;
 use crate::state::{Show, State};
 
 /// Room for the two last buttons of the bar, points.
-const LOOKS_WIDTH: f32 = 130.0;
+const LOOKS_WIDTH: f32 = 170.0;
 
 /// A slider between a few, points.
 const CHOICE_WIDTH: f32 = 60.0;
 
 /// What is open, what is shown, and how.
-pub fn show(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, choices: MapChoices) -> Vec<Action> {
+pub fn show(
+    ui: &mut egui::Ui,
+    state: &mut State,
+    panels: &mut Panels,
+    choices: MapChoices,
+    [can_undo, can_redo]: [bool; 2],
+) -> Vec<Action> {
     let mut actions = Vec::new();
     ui.horizontal_wrapped(|ui| {
         if ui.button("Open…").on_hover_text("A scene, or a setup (Ctrl+O)").clicked() {
             panels.open.is_open = true;
         }
         ui.strong(state.scene.as_ref().map_or("no scene", |open| open.spec.as_str()));
+        ui.separator();
+        for (name, tip, is_possible, action) in [
+            ("Undo", "Take back the newest change of lights or techniques (Ctrl+Z)", can_undo, Action::Undo),
+            ("Redo", "Do it again (Ctrl+Shift+Z or Ctrl+Y)", can_redo, Action::Redo),
+        ] {
+            if ui.add_enabled(is_possible, egui::Button::new(name)).on_hover_text(tip).clicked() {
+                actions.push(action);
+            }
+        }
         ui.separator();
         for show in Show::ALL {
             ui.selectable_value(&mut state.show, show, show.name()).on_hover_text(match show {
@@ -94,7 +110,8 @@ fn one_of(ui: &mut egui::Ui, name: &str, count: usize, chosen: &mut usize, tip: 
 fn looks(ui: &mut egui::Ui, panels: &mut Panels) {
     ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
     let is_dark = ui.visuals().dark_mode;
-    if ui.button(if is_dark { "Light" } else { "Dark" }).on_hover_text("The other look").clicked() {
+    let other = if is_dark { "Light theme" } else { "Dark theme" };
+    if ui.button(other).on_hover_text("Colours of the window around the picture").clicked() {
         ui.ctx().set_theme(if is_dark { egui::Theme::Light } else { egui::Theme::Dark });
     }
 }
@@ -129,16 +146,20 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
     if ui.button("Expose for this view").on_hover_text("Scale the lights to what is seen now").clicked() {
         actions.push(Action::Expose);
     }
-    let mut file = |ui: &mut egui::Ui, name, path: &mut String, action: fn(PathBuf) -> Action| {
+    let mut file = |ui: &mut egui::Ui, name, path: &mut String, purpose, action: fn(PathBuf) -> Action| {
         ui.horizontal(|ui| {
-            ui.add(egui::TextEdit::singleline(path).desired_width(180.0));
+            ui.add(egui::TextEdit::singleline(path).desired_width(150.0));
             if ui.button(name).clicked() && !path.trim().is_empty() {
                 actions.push(action(PathBuf::from(path.trim())));
             }
+            // A browser has a place for downloads, and opens by the window for scenes.
+            if !cfg!(target_arch = "wasm32") && ui.button("…").on_hover_text("In the system's dialog").clicked() {
+                actions.push(Action::Choose(purpose, path.trim().to_owned()));
+            }
         });
     };
-    file(ui, "Save setup", &mut panels.setup_path, Action::SaveSetup);
-    file(ui, "Open setup", &mut panels.setup_path, Action::OpenSetup);
-    file(ui, "Save picture", &mut panels.picture_path, Action::SavePicture);
+    file(ui, "Save setup", &mut panels.setup_path, Purpose::SaveSetup, Action::SaveSetup);
+    file(ui, "Open setup", &mut panels.setup_path, Purpose::Open, Action::OpenSetup);
+    file(ui, "Save picture", &mut panels.picture_path, Purpose::SavePicture, Action::SavePicture);
     actions
 }

@@ -12,9 +12,7 @@ use super::region::RegionGpu;
 use crate::contract::{Mask, MaskChannels, PreparedFrame, PreparedReceivers, Surfaces};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
-use crate::gpu::{
-    Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels, texture_bytes,
-};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
 use crate::shaders;
 
 bindings! {
@@ -123,14 +121,6 @@ impl PartPictures {
         }
         self.picture = Some(picture.clone());
         PreparedPictures { inputs, picture, groups, pick: self.pick.clone(), join: self.join.clone() }
-    }
-
-    /// Bytes of the picture.
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.picture.as_ref().map_or(0, |picture| {
-            let own = [&picture.depth, &picture.normals].into_iter().flatten();
-            own.map(|(texture, _)| texture_bytes(texture)).sum::<u64>() + texture_bytes(&picture.scratch)
-        })
     }
 }
 

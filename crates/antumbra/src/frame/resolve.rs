@@ -84,11 +84,6 @@ impl Resolve {
     pub(crate) fn compile_ahead(&mut self, gpu: &Gpu, inputs: &FrameInputs, shader: &ResolveShader<'_>) {
         self.compile(gpu, inputs, shader);
     }
-
-    /// Bytes of what the sparse pass holds.
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.upsample.as_ref().map_or(0, SparseUpsample::memory_bytes)
-    }
 }
 
 impl ResolveShader<'_> {

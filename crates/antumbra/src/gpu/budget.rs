@@ -11,11 +11,13 @@ const DEFAULT_BUDGET_BYTES: u64 = 256 << 20;
 pub(super) struct Budget {
     bytes: AtomicU64,
     owned_bytes: AtomicU64,
+    /// What lights own outside of this budget's count and within its bytes.
+    owned_elsewhere: u64,
 }
 
 impl Default for Budget {
     fn default() -> Self {
-        Self { bytes: DEFAULT_BUDGET_BYTES.into(), owned_bytes: 0.into() }
+        Self { bytes: DEFAULT_BUDGET_BYTES.into(), owned_bytes: 0.into(), owned_elsewhere: 0 }
     }
 }
 
@@ -32,9 +34,16 @@ impl Budget {
         self.owned_bytes.load(Ordering::Relaxed)
     }
 
+    /// A budget of as many bytes, of which what lights own of this one is taken.
+    pub(super) fn left(&self) -> Self {
+        let owned_elsewhere = self.owned_elsewhere + self.owned_bytes();
+        Self { bytes: self.bytes().into(), owned_bytes: 0.into(), owned_elsewhere }
+    }
+
     /// Reserves bytes; `None` where fewer are left.
     pub(super) fn take(self: &Arc<Self>, bytes: u64) -> Option<OwnedBytes> {
-        let add = |owned: u64| owned.checked_add(bytes).filter(|all| *all <= self.bytes());
+        let most = self.bytes().saturating_sub(self.owned_elsewhere);
+        let add = |owned: u64| owned.checked_add(bytes).filter(|all| *all <= most);
         self.owned_bytes.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add).ok()?;
         Some(OwnedBytes { budget: Arc::clone(self), bytes })
     }
@@ -74,7 +83,11 @@ mod tests {
         drop(first);
         assert_eq!(budget.owned_bytes(), 40);
         assert!(budget.take(u64::MAX).is_none());
-        drop(second);
-        assert_eq!(budget.owned_bytes(), 0);
+        let left = Arc::new(budget.left());
+        assert!(left.take(61).is_none(), "40 are taken");
+        let planned = left.take(60).expect("there is just room");
+        assert_eq!((left.owned_bytes(), budget.owned_bytes()), (60, 40));
+        drop((second, planned));
+        assert_eq!((left.owned_bytes(), budget.owned_bytes()), (0, 0));
     }
 }

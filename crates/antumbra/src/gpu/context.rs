@@ -100,10 +100,10 @@ impl Gpu {
         Some(last_line.unwrap_or("invalid").to_owned())
     }
 
-    /// Whether another handle is a clone of this one. Devices of two instances cannot be told apart: wgpu counts the objects of
-    /// each from one.
-    pub(crate) fn is_clone_of(&self, other: &Self) -> bool {
-        self.device.is_clone_of(&other.device)
+    /// Whether lights of this handle may read resources of another: a clone, or one that this one plans for. Devices of two
+    /// instances cannot be told apart: wgpu counts the objects of each from one.
+    pub(crate) fn reads_of(&self, other: &Self) -> bool {
+        self.device.reads_of(&other.device)
     }
 
     /// Whether the device has a feature.

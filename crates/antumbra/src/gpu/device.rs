@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 use super::budget::Budget;
+use super::scratch::{Scratch, ScratchTextureKey};
 use super::shared_values::SharedValues;
 use super::uniforms::{self, UniformAccess};
 use super::{programs, quirks};
@@ -44,63 +45,6 @@ impl ObjectCounts {
     }
 }
 
-/// Use of a [scratch texture](Device::scratch_texture).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scratch {
-    /// 32-bit mask that a host's mask of another format is drawn from.
-    WideMask,
-    /// Mask before it is denoised.
-    NoisyMask,
-    /// Visibility before it is made smooth over pixels.
-    NoisyVisibility,
-    /// Mask of one part of a light.
-    PartMask,
-    /// Depth of the receivers of one part.
-    PartDepth,
-    /// Normals of the receivers of one part.
-    PartNormals,
-    /// Positions of points.
-    PointPositions,
-    /// Normals of points.
-    PointNormals,
-    /// Mask of points.
-    PointMask,
-    /// Light map of depths.
-    LightMap,
-    /// Layers of casters behind a light map.
-    LayersBehind,
-    /// Pyramid of a light map.
-    DepthPyramid,
-    /// Rows of a map whose columns are blurred next.
-    BlurredRows,
-    /// Cursors of lists per texel.
-    ListCursors,
-    /// Fragments of lists per texel.
-    ListFragments,
-    /// Lists per texel.
-    Lists,
-    /// Counters of lists per texel.
-    ListCounters,
-    /// Linked fragments of lists per texel.
-    LinkedFragments,
-    /// Links of linked fragments.
-    Links,
-    /// Nearest depths of squares of lists.
-    NearestSquares,
-    /// Depth attachment without content.
-    NoDepth,
-}
-
-/// What lights that share a scratch texture have in common.
-#[derive(Debug, PartialEq)]
-struct ScratchTextureKey {
-    scratch: Scratch,
-    size: wgpu::Extent3d,
-    sample_count: u32,
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-}
-
 /// What the content of a table that lights share follows from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct TableKey {
@@ -114,6 +58,8 @@ type LayoutKey = [Vec<wgpu::BindGroupLayoutEntry>; 2];
 
 #[derive(Debug, Default)]
 struct Programs {
+    /// The device that this one plans for.
+    plan_of: Option<Device>,
     pipeline_cache: Option<wgpu::PipelineCache>,
     uniforms: UniformAccess,
     /// As [`quirks`] says.
@@ -127,6 +73,8 @@ struct Programs {
     /// By their description in words: it has floats.
     samplers: DescriptorCache<String, wgpu::Sampler>,
     scratch_textures: SharedPool<ScratchTextureKey, wgpu::Texture>,
+    /// With the view that passes draw to.
+    scratch_attachments: SharedPool<ScratchTextureKey, (wgpu::Texture, wgpu::TextureView)>,
     scratch_buffers: SharedPool<(Scratch, u64, wgpu::BufferUsages), wgpu::Buffer>,
     tables: SharedPool<TableKey, wgpu::Buffer>,
     /// Memory budget of maps that one light owns.
@@ -288,13 +236,32 @@ impl Device {
         Self { device: device.clone(), programs: Arc::new(programs) }
     }
 
+    /// A device that plans for `of`: what its lights own comes beside what lights own there.
+    pub(super) fn planned(of: &Self, device: &wgpu::Device) -> Self {
+        let programs = Programs {
+            plan_of: Some(of.clone()),
+            uniforms: of.programs.uniforms,
+            most_turns: of.programs.most_turns,
+            budget: Arc::new(of.budget().left()),
+            ..Programs::default()
+        };
+        Self { device: device.clone(), programs: Arc::new(programs) }
+    }
+
+    /// Whether nothing is created and no commands are run.
+    pub(crate) fn is_planned(&self) -> bool {
+        self.programs.plan_of.is_some()
+    }
+
     /// Turns of loops in an invocation after which a pass of unbounded work leaves the rest to the next.
     pub(crate) fn most_turns(&self) -> u32 {
         self.programs.most_turns
     }
 
-    pub(super) fn is_clone_of(&self, other: &Self) -> bool {
+    /// Whether lights of this device may read resources of another: a clone, or one that this one plans for.
+    pub(super) fn reads_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.programs, &other.programs)
+            || self.programs.plan_of.as_ref().is_some_and(|of| of.reads_of(other))
     }
 
     /// The device itself.
@@ -317,8 +284,9 @@ impl Device {
 
     /// Bytes of all resources that lights share.
     pub(super) fn scratch_bytes(&self) -> u64 {
-        let Programs { scratch_textures, scratch_buffers, .. } = &*self.programs;
-        scratch_textures.bytes(texture_bytes) + scratch_buffers.bytes(wgpu::Buffer::size)
+        let Programs { scratch_textures, scratch_attachments, scratch_buffers, tables, .. } = &*self.programs;
+        let textures = scratch_textures.bytes(texture_bytes) + scratch_attachments.bytes(|(it, _)| texture_bytes(it));
+        textures + scratch_buffers.bytes(wgpu::Buffer::size) + tables.bytes(wgpu::Buffer::size)
     }
 
     /// What has been made so far.
@@ -329,12 +297,12 @@ impl Device {
         ObjectCounts { programs, buffers, textures, views, bind_groups }
     }
 
-    /// A layout, shared by all that have the same entries.
     /// A shader's text as the device gets it, for a module of the host's.
     pub(crate) fn host_shader_text(&self, wgsl: String) -> String {
         self.programs.uniforms.shader_text(wgsl.into()).into_owned()
     }
 
+    /// A layout, shared by all that have the same entries.
     pub(crate) fn create_bind_group_layout(
         &self,
         descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,
@@ -454,14 +422,22 @@ impl Device {
         scratch: Scratch,
         descriptor: &wgpu::TextureDescriptor<'_>,
     ) -> Arc<wgpu::Texture> {
-        let key = ScratchTextureKey {
-            scratch,
-            size: descriptor.size,
-            sample_count: descriptor.sample_count,
-            format: descriptor.format,
-            usage: descriptor.usage,
-        };
+        let key = ScratchTextureKey::new(scratch, descriptor);
         self.programs.scratch_textures.get_or_make(key, || self.create_texture(descriptor))
+    }
+
+    /// The same of an attachment, with its view: a light that takes one that there is creates nothing.
+    pub(super) fn scratch_attachment(
+        &self,
+        scratch: Scratch,
+        descriptor: &wgpu::TextureDescriptor<'_>,
+    ) -> Arc<(wgpu::Texture, wgpu::TextureView)> {
+        let key = ScratchTextureKey::new(scratch, descriptor);
+        self.programs.scratch_attachments.get_or_make(key, || {
+            let texture = self.create_texture(descriptor);
+            let view = self.create_view(&texture, &wgpu::TextureViewDescriptor::default());
+            (texture, view)
+        })
     }
 
     /// The same of a buffer.
@@ -497,11 +473,25 @@ impl Device {
 
 /// Bytes of a texture's texels, all samples, levels and layers.
 pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
-    let texel = texture.format().block_copy_size(None).unwrap_or(4);
+    descriptor_bytes(&wgpu::TextureDescriptor {
+        label: None,
+        size: texture.size(),
+        mip_level_count: texture.mip_level_count(),
+        sample_count: texture.sample_count(),
+        dimension: texture.dimension(),
+        format: texture.format(),
+        usage: texture.usage(),
+        view_formats: &[],
+    })
+}
+
+/// The same of a texture that is described.
+pub(super) fn descriptor_bytes(texture: &wgpu::TextureDescriptor<'_>) -> u64 {
+    let texel = texture.format.block_copy_size(None).unwrap_or(4);
     let level = |level: u32| {
-        let size = texture.size().mip_level_size(level, texture.dimension());
+        let size = texture.size.mip_level_size(level, texture.dimension);
         u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
     };
-    let sample = u64::from(texel) * u64::from(texture.sample_count());
-    sample * (0..texture.mip_level_count()).map(level).sum::<u64>()
+    let sample = u64::from(texel) * u64::from(texture.sample_count);
+    sample * (0..texture.mip_level_count).map(level).sum::<u64>()
 }

@@ -6,7 +6,8 @@
 use std::sync::Arc;
 
 use super::budget::OwnedBytes;
-use super::device::{Device, Scratch};
+use super::device::Device;
+use super::scratch::Scratch;
 
 /// One light's right to textures and buffers: its own, or those that all lights share.
 #[derive(Debug)]
@@ -54,5 +55,39 @@ impl Lease {
             Some(_) => Arc::new(device.create_buffer(descriptor)),
             None => device.scratch_buffer(scratch, descriptor),
         }
+    }
+}
+
+/// A buffer of a light's own within the budget, and shared beyond it.
+#[derive(Debug, Default)]
+pub(crate) struct LeasedBuffer(Option<(Lease, Arc<wgpu::Buffer>)>);
+
+impl LeasedBuffer {
+    /// The buffer of exactly so many bytes: the one at hand, or a new one.
+    pub(crate) fn sized(
+        &mut self,
+        device: &Device,
+        scratch: Scratch,
+        descriptor: &wgpu::BufferDescriptor<'_>,
+    ) -> &wgpu::Buffer {
+        // What is there goes back to the budget before another is taken.
+        let made = self.0.take().filter(|(_, buffer)| buffer.size() == descriptor.size);
+        let (_, buffer) = self.0.insert(made.unwrap_or_else(|| {
+            let lease = Lease::new(device, descriptor.size);
+            let buffer = lease.buffer(device, scratch, descriptor);
+            (lease, buffer)
+        }));
+        buffer
+    }
+
+    /// The buffer; `None` before it was asked for.
+    #[cfg(test)]
+    pub(crate) fn buffer(&self) -> Option<&wgpu::Buffer> {
+        self.0.as_ref().map(|(_, buffer)| &**buffer)
+    }
+
+    /// Bytes of it where the light owns it.
+    pub(crate) fn own_bytes(&self) -> u64 {
+        self.0.as_ref().map_or(0, |(lease, _)| lease.own_bytes())
     }
 }

@@ -5,28 +5,27 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
-use super::{Gpu, Scratch, depth_state, texture_bytes};
+use super::{Gpu, Scratch, depth_state};
 
 /// Depth attachment without content.
 #[derive(Debug)]
 pub(crate) struct NoDepth {
-    texture: Arc<wgpu::Texture>,
-    pub(crate) view: wgpu::TextureView,
+    attachment: Arc<(wgpu::Texture, wgpu::TextureView)>,
 }
 
 impl NoDepth {
     /// Of the fewest bytes that every device can render to.
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
-    /// `size` texels along each side.
+    /// `size` texels along each side; all lights share it.
     pub(crate) fn new(gpu: &Gpu, size: UVec2, sample_count: u32) -> Self {
-        Self::of(gpu, Arc::new(gpu.device.create_texture(&Self::descriptor(size, sample_count))))
+        let descriptor = Self::descriptor(size, sample_count);
+        Self { attachment: gpu.device.scratch_attachment(Scratch::NoDepth, &descriptor) }
     }
 
-    /// At least of this size: one that some light has, or a new one whose sides are powers of two.
-    pub(crate) fn shared(gpu: &Gpu, size: UVec2, sample_count: u32) -> Self {
-        let size = UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two());
-        Self::of(gpu, gpu.device.scratch_texture(Scratch::NoDepth, &Self::descriptor(size, sample_count)))
+    /// At least of this size, with powers of two as sides.
+    pub(crate) fn at_least(gpu: &Gpu, size: UVec2, sample_count: u32) -> Self {
+        Self::new(gpu, UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two()), sample_count)
     }
 
     fn descriptor(size: UVec2, sample_count: u32) -> wgpu::TextureDescriptor<'static> {
@@ -42,9 +41,9 @@ impl NoDepth {
         }
     }
 
-    fn of(gpu: &Gpu, texture: Arc<wgpu::Texture>) -> Self {
-        let view = gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default());
-        Self { texture, view }
+    /// What passes draw to.
+    pub(crate) fn view(&self) -> &wgpu::TextureView {
+        &self.attachment.1
     }
 
     /// How a pipeline takes it: nothing is compared, nothing written.
@@ -54,15 +53,11 @@ impl NoDepth {
 
     /// Texels along each side.
     pub(crate) fn size(&self) -> UVec2 {
-        UVec2::new(self.texture.width(), self.texture.height())
+        UVec2::new(self.attachment.0.width(), self.attachment.0.height())
     }
 
     /// Samples a texel.
     pub(crate) fn sample_count(&self) -> u32 {
-        self.texture.sample_count()
-    }
-
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        texture_bytes(&self.texture)
+        self.attachment.0.sample_count()
     }
 }

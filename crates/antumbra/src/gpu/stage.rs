@@ -414,6 +414,12 @@ impl Uploads {
 }
 
 impl Keep {
+    /// Bytes of the frame's own buffers and of those that uploads pass through.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let of_frame = self.buffers.values().flat_map(|row| &row.buffers).map(|buffer| buffer.value.size());
+        of_frame.chain(self.staging.iter().map(|staging| staging.buffer.size())).sum()
+    }
+
     /// Texels along a side of the map of the frame prepared last, where its size was chosen for that frame.
     pub(crate) fn auto_texels(&self) -> Option<u32> {
         self.auto_texels

@@ -25,8 +25,8 @@ pub(super) enum KeptEnds {
     /// The host's own did.
     #[default]
     Nothing,
-    Narrow(NarrowMask),
-    Points(PointTextures),
+    Narrow(Box<NarrowMask>),
+    Points(Box<PointTextures>),
 }
 
 impl<'a> Ends<'a> {
@@ -34,12 +34,12 @@ impl<'a> Ends<'a> {
     pub(super) fn prepare(stage: &Stage<'_>, asked: &Asked<'a>, earlier: KeptEnds) -> Self {
         match asked {
             Asked::Mask(frame) => {
-                let earlier = if let KeptEnds::Narrow(earlier) = earlier { Some(earlier) } else { None };
+                let earlier = if let KeptEnds::Narrow(earlier) = earlier { Some(*earlier) } else { None };
                 let narrow = NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, earlier));
                 Self::Mask { frame: *frame, narrow }
             }
             Asked::Points(frame) => {
-                let earlier = if let KeptEnds::Points(earlier) = earlier { Some(earlier) } else { None };
+                let earlier = if let KeptEnds::Points(earlier) = earlier { Some(*earlier) } else { None };
                 let PointFrame { receivers, visibilities, channels, .. } = frame;
                 let textures = PointTextures::prepare(stage, receivers, visibilities, *channels, earlier);
                 Self::Points { frame: *frame, textures }
@@ -76,16 +76,9 @@ impl<'a> Ends<'a> {
     /// Handles of the resources, for the next frame.
     pub(super) fn kept(&self) -> KeptEnds {
         match self {
-            Self::Mask { narrow: Some(narrow), .. } => KeptEnds::Narrow(narrow.clone()),
+            Self::Mask { narrow: Some(narrow), .. } => KeptEnds::Narrow(Box::new(narrow.clone())),
             Self::Mask { narrow: None, .. } => KeptEnds::Nothing,
-            Self::Points { textures, .. } => KeptEnds::Points(textures.clone()),
+            Self::Points { textures, .. } => KeptEnds::Points(Box::new(textures.clone())),
         }
-    }
-}
-
-impl KeptEnds {
-    /// Bytes of points' textures; of masks the host knows.
-    pub(super) fn memory_bytes(&self) -> u64 {
-        if let Self::Points(textures) = self { textures.memory_bytes() } else { 0 }
     }
 }

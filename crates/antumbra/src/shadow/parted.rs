@@ -125,8 +125,7 @@ impl<T: Technique> Parted<T> {
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {
-        let of_states: u64 = self.states.iter().map(|state| state.technique.memory_bytes()).sum();
-        self.pictures.memory_bytes() + of_states
+        self.states.iter().map(|state| state.technique.memory_bytes() + state.keep.memory_bytes()).sum()
     }
 
     /// Texels along a side of the map of each part where that is chosen for each frame; of a part without casters none.

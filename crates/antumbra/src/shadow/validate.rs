@@ -116,7 +116,7 @@ impl<F> Check<'_, F> {
 
     fn casters(&self, casters: &Casters<'_>) -> Result<(), Error> {
         match casters {
-            Casters::Set { set, .. } if !set.gpu().is_clone_of(self.gpu) => self.bad(
+            Casters::Set { set, .. } if !self.gpu.reads_of(set.gpu()) => self.bad(
                 "the set of casters",
                 "of another device or another `Gpu`",
                 "made with a clone of the light's `Gpu`: one serves a device",

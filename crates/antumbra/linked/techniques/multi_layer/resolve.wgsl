@@ -1,7 +1,5 @@
 // Linked from src/techniques/multi_layer/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
-const LEAST_SINE = 0.006;
-
 const MOST_LOOKUPS = 128u;
 
 const OPAQUE = 0.998;
@@ -39,7 +37,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
     if above <= 0.0 {
         return vec3f(0.0);
     }
-    var plane = receiver_light_biased_plane_within(receiver, 0.0, LEAST_SINE);
+    var plane = receiver_light_biased_plane_within(receiver, 0.0, receiver_light_coarse_grazing_sine(receiver));
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
     let lookup = filter_size_Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), settings_multi_layer.filter_per_g, footprint * footprint);
@@ -360,6 +358,11 @@ fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
+fn horizon_rise_above_center(half_axis_heights: vec3f) -> f32 {
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
+    return select(length(half_axis_heights), half_axis_heights.x + half_axis_heights.y, is_rectangle);
+}
+
 fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
@@ -372,12 +375,11 @@ fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
 fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
     let height = horizon_center_height(receiver);
     let half = horizon_half_axis_heights(receiver);
-    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
-    let reach = select(length(half), half.x + half.y, is_rectangle);
+    let reach = horizon_rise_above_center(half);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
-    if is_rectangle {
+    if inputs_light_source.kind == light_KIND_RECTANGLE {
         return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
@@ -397,6 +399,17 @@ fn horizon_horizon_share_of_points(receiver: inputs_Receiver) -> f32 {
 
 @group(1) @binding(0)
 var<uniform> map_light_view: space_LightViewGpu;
+
+const receiver_light_MOST_COARSE_SINE = 0.0175;
+
+fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
+    let least = space_min_grazing_sine(map_light_view);
+    if map_light_view.perspective == 0u {
+        return least;
+    }
+    let rise = horizon_rise_above_center(horizon_half_axis_heights(receiver));
+    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MOST_COARSE_SINE);
+}
 
 fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
     let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
@@ -423,6 +436,14 @@ struct space_LightViewGpu {
     held_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
+}
+
+const space_MIN_GRAZING_SINE = 0.00390625;
+
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
 }
 
 struct space_ReceiverPlane {

@@ -105,18 +105,50 @@ fn piece_blockers(compared: compared_Compared, asked: sums_Piece) -> answer_Answ
     return answer;
 }
 
-fn piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
+fn kernel_answer(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
     let piece = compared_piece_in_map(compared, asked);
+    var answer = answer_Answer(1.0, 0.0, false);
     if is_summed(piece) {
-        let answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, IS_ONE_PIECE || uniform_CUTS_SQUARES));
-        if answer.is_good || uniform_soft.may_read_map == 0u {
-            return select(1.0, answer.lit, is_of_asked(compared, asked, piece, answer.blocker_g));
+        answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, IS_ONE_PIECE || uniform_CUTS_SQUARES));
+    }
+    if !answer.is_good && (uniform_soft.may_read_map != 0u || !is_summed(piece)) {
+        answer = answer_Answer(map_lit(compared, piece), 0.0, true);
+        if answer.lit < 1.0 && (holds_to_depth() || is_beyond(asked, piece)) {
+            answer.blocker_g = map_answer(compared, piece).blocker_g;
         }
     }
-    if is_beyond(asked, piece) && !is_of_asked(compared, asked, piece, map_answer(compared, piece).blocker_g) {
-        return 1.0;
+    if !is_of_asked(compared, asked, piece, answer.blocker_g) {
+        return answer_Answer(1.0, 0.0, true);
     }
-    return map_lit(compared, piece);
+    return answer;
+}
+
+fn holds_to_depth() -> bool {
+    return (uniform_BASIS == uniform_BASIS_TILES || uniform_BASIS == uniform_BASIS_EXPONENTIAL) && HAS_SECOND_LOOK && !IS_ONE_WINDOW;
+}
+
+fn piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32 {
+    let first = kernel_answer(compared, asked);
+    let is_of_light = holds_to_depth() && compared.kernel_g > 0.0;
+    if !is_of_light || first.lit >= 1.0 || hides(compared, asked, first.blocker_g) {
+        return first.lit;
+    }
+    let scale = first.blocker_g / compared.kernel_g;
+    let own = sums_Piece(mix(compared.place, asked.low, scale), mix(compared.place, asked.high, scale));
+    let piece = compared_piece_in_map(compared, own);
+    let blocker_g = map_answer(compared, piece).blocker_g;
+    if blocker_g > 0.0 && hides(compared, own, blocker_g) && is_of_asked(compared, own, piece, blocker_g) {
+        return map_lit(compared, piece);
+    }
+    return 1.0;
+}
+
+const FOOTPRINT_DEVIATIONS = 2.0;
+
+fn hides(compared: compared_Compared, piece: sums_Piece, blocker_g: f32) -> bool {
+    let offset_uv = (sums_middle(piece) - compared.place) / map_light_view.map_size;
+    let place = space_plane_step_of_uv(map_light_view, compared.plane.uv, offset_uv);
+    return blocker_range_gauge(place, max(blocker_range_RIM * blocker_g * compared.extent, vec2f(compared.finest))) <= 1.0;
 }
 
 fn pieces_of(length_texels: f32, most: u32) -> u32 {
@@ -131,21 +163,17 @@ fn search_side(k: u32) -> u32 {
     return max(u32(round(f32(uniform_soft.subdivisions) * (f32(k) + 0.5) / f32(uniform_soft.search_scales))), 1u);
 }
 
-const FINEST_TEXELS = 0.75;
-
 struct Search {
     g: f32,
     window_g: f32,
-    extent: vec2f,
     center: vec2f,
-    half_at_1: vec2f,
-    finest: f32
+    half_at_1: vec2f
 }
 
-fn search_of(compared: compared_Compared, extent: vec2f) -> Search {
-    let from_center = space_warped_plane(map_light_view, compared.plane.uv) / compared.inverse_divisor;
-    let g = blocker_range_largest_g(compared.plane, extent);
-    return Search(g, g, extent, compared.place, blocker_range_half_extent_uv_at_1(compared.plane.uv, extent) * map_light_view.map_size, FINEST_TEXELS * space_texel_in_plane_at(map_light_view, from_center));
+fn search_of(compared: compared_Compared) -> Search {
+    let g = blocker_range_largest_g(compared.plane, compared.extent);
+    let half_at_1 = blocker_range_half_extent_uv_at_1(compared.plane.uv, compared.extent) * map_light_view.map_size;
+    return Search(g, g, compared.place, half_at_1);
 }
 
 fn window_g(search: Search, k: u32) -> f32 {
@@ -165,9 +193,7 @@ fn counted(search: Search, compared: compared_Compared, piece: sums_Piece, answe
     if IS_ONE_WINDOW {
         return (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, averaged(compared, g));
     }
-    let offset_uv = (sums_middle(piece) - search.center) / map_light_view.map_size;
-    let place = space_plane_step_of_uv(map_light_view, compared.plane.uv, offset_uv);
-    let counts = g > 0.0 && blocker_range_gauge(place, max(blocker_range_RIM * g * search.extent, vec2f(search.finest))) <= 1.0;
+    let counts = g > 0.0 && hides(compared, piece, g);
     return select(vec2f(), (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, averaged(compared, g)), counts);
 }
 
@@ -244,8 +270,8 @@ const MUCH_NEARER = 0.5;
 
 const MOST_LOOKS = 2u;
 
-fn search_blockers(compared: compared_Compared, extent: vec2f) -> vec2f {
-    var search = search_of(compared, extent);
+fn search_blockers(compared: compared_Compared) -> vec2f {
+    var search = search_of(compared);
     var sum: vec2f;
     var mean_g: f32;
     for (var look = 0u; look < MOST_LOOKS; look++) {
@@ -515,23 +541,25 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
         sums_tile_shift = sums_chosen_tile_log2();
     }
     let p = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let least_sine = space_coarse_grazing_sine(map_light_view);
-    let compared = compared_compared_of(receiver_light_biased_plane_within(receiver, uniform_soft.bias_scale, least_sine), space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0, least_sine), p.z, depth_range_depth_range());
+    let least_sine = receiver_light_coarse_grazing_sine(receiver);
+    let extent = blocker_range_seen_extent(uniform_soft.light_extent, uniform_soft.light_extent_axis, p);
+    let compared = compared_compared_of(receiver_light_biased_plane_within(receiver, uniform_soft.bias_scale, least_sine), space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0, least_sine), p.z, depth_range_depth_range(), extent);
     if !blocker_range_may_be_blocked(compared.own_depth) {
         return above;
     }
-    let extent = blocker_range_seen_extent(uniform_soft.light_extent, uniform_soft.light_extent_axis, p);
-    let blockers = search_blockers(compared, extent);
+    let blockers = search_blockers(compared);
     let grown = extent / max(uniform_soft.light_extent, vec2f(1e-20));
     let on_plane = uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
     var covariance = soft_kernel_light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
+    var footprint = vec3f();
     if uniform_soft.with_footprint == 1u {
         if FOOTPRINT_ENDS {
-            covariance += soft_kernel_ending_footprint_covariance(receiver, compared.plane.uv, pixel);
+            footprint = soft_kernel_ending_footprint_covariance(receiver, compared.plane.uv, pixel);
         }
         else {
-            covariance += soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel, vec2f(1.0));
+            footprint = soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel, vec2f(1.0));
         }
+        covariance += footprint;
     }
     else if blockers.y <= 0.0 {
         return above;
@@ -539,7 +567,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let center_uv = compared.plane.uv + space_uv_step_at(map_light_view, compared.plane.uv, uniform_soft.light_mean * blockers.x);
     let center = center_uv * map_light_view.map_size;
     let kernel = soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u);
-    return above * kernel_lit(compared_asking_for(compared, blockers.x), kernel);
+    let footprint_texels = FOOTPRINT_DEVIATIONS * sqrt(max(footprint.x, footprint.z));
+    return above * kernel_lit(compared_asking_of_kernel(compared, blockers.x, footprint_texels), kernel);
 }
 
 @compute @workgroup_size(8, 8)
@@ -888,6 +917,11 @@ fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
+fn horizon_rise_above_center(half_axis_heights: vec3f) -> f32 {
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
+    return select(length(half_axis_heights), half_axis_heights.x + half_axis_heights.y, is_rectangle);
+}
+
 fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
@@ -900,12 +934,11 @@ fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
 fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
     let height = horizon_center_height(receiver);
     let half = horizon_half_axis_heights(receiver);
-    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
-    let reach = select(length(half), half.x + half.y, is_rectangle);
+    let reach = horizon_rise_above_center(half);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
-    if is_rectangle {
+    if inputs_light_source.kind == light_KIND_RECTANGLE {
         return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
@@ -954,6 +987,17 @@ fn map_lit_bilinear(plane: space_ReceiverPlane, uv: vec2f) -> f32 {
     }
     let quad = map_quad_at(plane, uv);
     return space_bilinear(quad.lit, quad.t);
+}
+
+const receiver_light_MOST_COARSE_SINE = 0.0175;
+
+fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
+    let least = space_min_grazing_sine(map_light_view);
+    if map_light_view.perspective == 0u {
+        return least;
+    }
+    let rise = horizon_rise_above_center(horizon_half_axis_heights(receiver));
+    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MOST_COARSE_SINE);
 }
 
 fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
@@ -1071,12 +1115,12 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
+const space_MIN_GRAZING_SINE = 0.00390625;
+
 const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
 
-const space_COARSE_GRAZING_SINE = 0.0175;
-
-fn space_coarse_grazing_sine(view: space_LightViewGpu) -> f32 {
-    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_COARSE_GRAZING_SINE, view.perspective == 1u);
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
 }
 
 struct space_ReceiverPlane {
@@ -1622,12 +1666,21 @@ struct compared_Compared {
     z_m: f32,
     range: depth_range_DepthRange,
     edge_g: f32,
-    goes_on: bool
+    goes_on: bool,
+    kernel_g: f32,
+    extent: vec2f,
+    finest: f32
 }
 
-fn compared_compared_of(plane: space_ReceiverPlane, bare: space_ReceiverPlane, z_m: f32, range: depth_range_DepthRange) -> compared_Compared {
+const compared_FINEST_TEXELS = 0.75;
+
+fn compared_compared_of(plane: space_ReceiverPlane, bare: space_ReceiverPlane, z_m: f32, range: depth_range_DepthRange, extent: vec2f) -> compared_Compared {
     let warp_per_uv = vec2f(dot(map_light_view.warp, map_light_view.plane_from_uv.xy), dot(map_light_view.warp, map_light_view.plane_from_uv.zw));
-    return compared_Compared(plane, plane.uv * map_light_view.map_size, bare.depth, bare.depth_per_uv / map_light_view.map_size, plane.depth_per_uv / map_light_view.map_size, space_inverse_divisor(map_light_view, plane.uv), -warp_per_uv / map_light_view.map_size, space_unwarped_depth(map_light_view, plane.depth, plane.uv), z_m, range, space_g_beyond_window(map_light_view, z_m), false);
+    return compared_Compared(plane, plane.uv * map_light_view.map_size, bare.depth, bare.depth_per_uv / map_light_view.map_size, plane.depth_per_uv / map_light_view.map_size, space_inverse_divisor(map_light_view, plane.uv), -warp_per_uv / map_light_view.map_size, space_unwarped_depth(map_light_view, plane.depth, plane.uv), z_m, range, space_g_beyond_window(map_light_view, z_m), false, 0.0, extent, compared_FINEST_TEXELS * compared_texel_in_plane(plane));
+}
+
+fn compared_texel_in_plane(plane: space_ReceiverPlane) -> f32 {
+    return space_texel_in_plane_at(map_light_view, space_warped_plane(map_light_view, plane.uv) / space_inverse_divisor(map_light_view, plane.uv));
 }
 
 override compared_EDGE_GOES_ON: bool = true;
@@ -1635,6 +1688,13 @@ override compared_EDGE_GOES_ON: bool = true;
 fn compared_asking_for(compared: compared_Compared, g: f32) -> compared_Compared {
     var asking = compared;
     asking.goes_on = compared_EDGE_GOES_ON && g > compared.edge_g;
+    return asking;
+}
+
+fn compared_asking_of_kernel(compared: compared_Compared, g: f32, footprint_texels: f32) -> compared_Compared {
+    var asking = compared_asking_for(compared, g);
+    asking.kernel_g = g;
+    asking.finest = max(asking.finest, footprint_texels * compared_texel_in_plane(compared.plane));
     return asking;
 }
 

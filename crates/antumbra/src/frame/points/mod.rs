@@ -11,9 +11,7 @@ use glam::{UVec2, Vec3};
 
 use crate::contract::{Mask, MaskChannels, PointBuffer, PointReceivers, PointWidths, PreparedReceivers, Surfaces};
 use crate::frame::NORMAL_FORMAT;
-use crate::gpu::{
-    Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels, texture_bytes,
-};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
 use crate::shaders;
 
 #[cfg(test)]
@@ -179,11 +177,6 @@ impl PointTextures {
             pass.set_bind_group(0, group, &[]);
             pass.dispatch_workgroups(tiles.x, tiles.y, 1);
         });
-    }
-
-    /// Bytes of the textures.
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        [&self.positions.0, &self.normals.0, &self.scratch].into_iter().map(|texture| texture_bytes(texture)).sum()
     }
 }
 

@@ -291,7 +291,7 @@ fn points_anywhere_err_no_more_than_surfaces() {
             PointReceivers { normals, ..PointReceivers::new(COUNT, PointBuffer::packed(&positions), bounds) };
         let casters = Casters::Meshes(&casters);
         let frame = PointFrame { light, casters, receivers, visibilities, channels: MaskChannels::One };
-        let settings = [("samples", "64"), ("search_samples", "64"), ("central_scale", "1"), ("map_size", "512")];
+        let settings = [("samples", "64"), ("search_samples", "64"), ("central_scale", "1")];
         let got = run_points(gpu, &mut create(gpu, kind, &settings), &frame);
         assert!(got.iter().all(|v| (0.0..=1.0).contains(v)), "{kind}");
         rms(&got, &places.iter().copied().map(visibility_in_space).collect::<Vec<_>>())

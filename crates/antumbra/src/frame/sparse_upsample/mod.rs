@@ -6,9 +6,11 @@
 //! the technique runs once more for those alone, side by side wherever they lie in the picture (`missing.wesl`), so that
 //! no thread waits for a neighbour's lookup.
 
+use std::sync::Arc;
+
 use crate::contract::PreparedFrame;
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline};
 use crate::shaders;
 
 #[cfg(test)]
@@ -41,10 +43,10 @@ pub(crate) struct PreparedUpsample {
 
 #[derive(Clone, Debug)]
 struct Lists {
-    /// Count and pixels.
-    missing: wgpu::Buffer,
+    /// Count and pixels; all lights share it.
+    missing: Arc<wgpu::Buffer>,
     /// Workgroups for them.
-    dispatch: wgpu::Buffer,
+    dispatch: Arc<wgpu::Buffer>,
     group: wgpu::BindGroup,
 }
 
@@ -82,10 +84,6 @@ impl SparseUpsample {
             lists: lists.clone(),
         }
     }
-
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.lists.as_ref().map_or(0, |lists| lists.missing.size() + lists.dispatch.size())
-    }
 }
 
 impl PreparedUpsample {
@@ -111,16 +109,19 @@ impl PreparedUpsample {
 
 impl Lists {
     fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, missing_bytes: u64) -> Self {
-        let buffer = |label, size, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        let buffer = |scratch, label, size, usage| {
+            let descriptor = wgpu::BufferDescriptor {
                 label: Some(label),
                 size,
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | usage,
                 mapped_at_creation: false,
-            })
+            };
+            gpu.device.scratch_buffer(scratch, &descriptor)
         };
-        let missing = buffer("antumbra missing pixels", missing_bytes, wgpu::BufferUsages::empty());
-        let dispatch = buffer("antumbra missing pixels' workgroups", 12, wgpu::BufferUsages::INDIRECT);
+        let label = "antumbra missing pixels";
+        let missing = buffer(Scratch::MissingPixels, label, missing_bytes, wgpu::BufferUsages::empty());
+        let label = "antumbra missing pixels' workgroups";
+        let dispatch = buffer(Scratch::MissingDispatch, label, 12, wgpu::BufferUsages::INDIRECT);
         let group = Upsampled { missing_list: &missing, missing_dispatch: &dispatch }.kept_group(gpu, layout);
         Self { missing, dispatch, group }
     }

@@ -2,14 +2,15 @@
 //! wide: maps name what may be there, and the triangles themselves say what is.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::Mat4;
 
 use super::CasterTriangles;
 use crate::contract::{Error, MeshCaster};
 use crate::gpu::{
-    Bindings, DrawPipeline, Gpu, Recorder, Span, Stage, array_view, bindings, create_uniform, depth_state, gpu_structs,
-    slice_views, write_uniform,
+    Bindings, DrawPipeline, Gpu, Lease, Recorder, Scratch, Span, Stage, array_view, bindings, create_uniform,
+    depth_state, gpu_structs, slice_views, write_uniform,
 };
 use crate::light_map::caster_depth::{CasterDepth, caster_primitives};
 use crate::shaders;
@@ -47,6 +48,9 @@ pub(crate) struct TriangleMaps {
 struct Maps {
     size: u32,
     views: u32,
+    /// Of both textures, which are the light's as long as it has it.
+    lease: Lease,
+    _textures: [Arc<wgpu::Texture>; 2],
     depth_array: wgpu::TextureView,
     depth_slices: Vec<wgpu::TextureView>,
     id_array: wgpu::TextureView,
@@ -90,6 +94,8 @@ impl TriangleMaps {
         let drawn = Drawn { triangle_map: &self.uniform, triangles: self.triangles.buffer() };
         self.group = Some(drawn.group(stage, &self.layout));
         if self.maps.as_ref().is_none_or(|maps| (maps.size, maps.views) != (size, views)) {
+            // What there is goes back to the budget before more is taken.
+            self.maps = None;
             self.maps = Some(Maps::new(stage, size, views));
         }
         Ok(())
@@ -112,6 +118,11 @@ impl TriangleMaps {
     /// `texture_2d_array<u32>` of the same size; see `triangles.wesl`.
     pub(crate) fn id_array(&self) -> &wgpu::TextureView {
         &self.maps().id_array
+    }
+
+    /// Whether no other light draws into the maps.
+    pub(crate) fn are_own(&self) -> bool {
+        self.maps.as_ref().is_some_and(|maps| maps.lease.is_own())
     }
 
     /// The triangles that ids are of.
@@ -143,8 +154,7 @@ impl TriangleMaps {
     }
 
     pub(crate) fn memory_bytes(&self) -> u64 {
-        let texels = self.maps.as_ref().map_or(0, |maps| u64::from(maps.size).pow(2) * u64::from(maps.views));
-        self.triangles.memory_bytes() + Self::TEXEL_BYTES * texels
+        self.triangles.memory_bytes() + self.maps.as_ref().map_or(0, |maps| maps.lease.own_bytes())
     }
 }
 
@@ -163,8 +173,10 @@ fn map_pipeline(gpu: &Gpu, layouts: [Option<&wgpu::BindGroupLayout>; 3]) -> wgpu
 
 impl Maps {
     fn new(gpu: &Gpu, size: u32, views: u32) -> Self {
-        let texture = |label, format| {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
+        let bytes = TriangleMaps::TEXEL_BYTES * u64::from(size).pow(2) * u64::from(views);
+        let lease = Lease::new(&gpu.device, bytes);
+        let texture = |scratch, label, format| {
+            let descriptor = wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: views },
                 mip_level_count: 1,
@@ -173,10 +185,11 @@ impl Maps {
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
-            })
+            };
+            lease.texture(&gpu.device, scratch, &descriptor)
         };
-        let depth = texture("antumbra triangle maps' depths", CasterDepth::FORMAT);
-        let id = texture("antumbra triangle maps", TriangleMaps::ID_FORMAT);
+        let depth = texture(Scratch::TriangleDepths, "antumbra triangle maps' depths", CasterDepth::FORMAT);
+        let id = texture(Scratch::TriangleIds, "antumbra triangle maps", TriangleMaps::ID_FORMAT);
         Self {
             size,
             views,
@@ -184,6 +197,8 @@ impl Maps {
             depth_slices: slice_views(gpu, &depth),
             id_array: array_view(gpu, &id),
             id_slices: slice_views(gpu, &id),
+            _textures: [depth, id],
+            lease,
         }
     }
 }

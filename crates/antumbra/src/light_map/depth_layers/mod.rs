@@ -6,11 +6,12 @@
 //! view, layer by layer.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::Mat4;
 
 use crate::contract::MeshCaster;
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, slice_views, texels};
+use crate::gpu::{Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, array_view, bindings, slice_views, texels};
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor, DrawnView};
 use crate::shaders;
 
@@ -57,8 +58,11 @@ struct Programs {
 #[derive(Debug)]
 struct Maps {
     of: LayersSize,
-    #[cfg(test)]
-    textures: [wgpu::Texture; 2],
+    /// Of both textures.
+    lease: Lease,
+    /// Depths and gradients.
+    #[cfg_attr(not(test), expect(dead_code, reason = "held, so that lights that share them find them"))]
+    textures: [Arc<wgpu::Texture>; 2],
     depth_array: wgpu::TextureView,
     depth_slices: Vec<wgpu::TextureView>,
     gradient_array: wgpu::TextureView,
@@ -105,6 +109,8 @@ impl DepthLayers {
             self.programs = Some(Programs::new(stage, &self.casters));
         }
         if self.maps.as_ref().is_none_or(|maps| maps.of != of) {
+            // What there is goes back to the budget before more is taken.
+            self.maps = None;
             self.maps = Some(Maps::new(stage, of, self.programs.as_ref()));
         }
     }
@@ -126,6 +132,11 @@ impl DepthLayers {
     /// Each slice alone, to attach.
     pub(crate) fn depth_slices(&self) -> &[wgpu::TextureView] {
         &self.maps().depth_slices
+    }
+
+    /// Whether no other light draws into the maps.
+    pub(crate) fn are_own(&self) -> bool {
+        self.maps.as_ref().is_some_and(|maps| maps.lease.is_own())
     }
 
     /// What is held.
@@ -174,15 +185,14 @@ impl DepthLayers {
         }
     }
 
+    /// Bytes of the maps where they are the light's own.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        self.maps
-            .as_ref()
-            .map_or(0, |maps| u64::from(maps.of.size).pow(2) * u64::from(maps.of.views) * maps.of.texel_bytes())
+        self.maps.as_ref().map_or(0, |maps| maps.lease.own_bytes())
     }
 
     /// Depths and gradients, for tests.
     #[cfg(test)]
-    pub(crate) fn textures(&self) -> &[wgpu::Texture; 2] {
+    pub(crate) fn textures(&self) -> &[Arc<wgpu::Texture>; 2] {
         &self.maps().textures
     }
 }
@@ -227,8 +237,9 @@ impl Programs {
 
 impl Maps {
     fn new(stage: &Stage<'_>, of: LayersSize, programs: Option<&Programs>) -> Self {
-        let texture = |label, format, size, slices| {
-            stage.device.create_texture(&wgpu::TextureDescriptor {
+        let lease = Lease::new(&stage.device, u64::from(of.size).pow(2) * u64::from(of.views) * of.texel_bytes());
+        let texture = |scratch, label, format, size, slices| {
+            let descriptor = wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: slices },
                 mip_level_count: 1,
@@ -239,13 +250,19 @@ impl Maps {
                     | wgpu::TextureUsages::TEXTURE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
-            })
+            };
+            lease.texture(&stage.device, scratch, &descriptor)
         };
         let slices = of.views * of.layers;
         let (gradient_size, gradient_slices) = if of.with_gradients { (of.size, slices) } else { (1, 1) };
-        let depth = texture("antumbra depth layers", CasterDepth::FORMAT, of.size, slices);
-        let gradients =
-            texture("antumbra depth layers' gradients", DepthLayers::GRADIENT_FORMAT, gradient_size, gradient_slices);
+        let depth = texture(Scratch::DepthLayers, "antumbra depth layers", CasterDepth::FORMAT, of.size, slices);
+        let gradients = texture(
+            Scratch::LayerGradients,
+            "antumbra depth layers' gradients",
+            DepthLayers::GRADIENT_FORMAT,
+            gradient_size,
+            gradient_slices,
+        );
         let depth_slices = slice_views(stage, &depth);
         let nearer = (0..slices)
             .map(|slice| {
@@ -260,8 +277,8 @@ impl Maps {
             depth_slices,
             gradient_array: array_view(stage, &gradients),
             gradient_slices: slice_views(stage, &gradients),
-            #[cfg(test)]
             textures: [depth, gradients],
+            lease,
             nearer,
         }
     }

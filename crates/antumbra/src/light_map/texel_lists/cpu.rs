@@ -2,7 +2,7 @@
 
 use glam::{DVec3, UVec2, Vec3};
 
-use super::DepthTolerance;
+use super::options::DepthTolerance;
 use crate::light_map::light_view::LightView;
 
 /// Triangles of one surface, for the twin.

@@ -3,8 +3,9 @@
 use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
 use glam::{UVec2, Vec2, Vec3};
 
+use super::TexelLists;
 use super::cpu::{TwinFragment, TwinMesh, covered_lists, lists};
-use super::{Accumulation, DepthTolerance, Gather, ListOptions, TexelLists};
+use super::options::{Accumulation, DepthTolerance, Gather, ListOptions};
 use crate::contract::{MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::central_view::fit_light_view;

@@ -9,11 +9,13 @@ use crate::gpu::{Cached, Gpu, Stage, bindings, create_uniform, samples, texels, 
 use crate::light_map::between::Between;
 use crate::light_map::light_view::{Followed, LightView, ViewFit};
 
+mod ball;
 pub(crate) mod gpu_types;
 pub mod multi_view;
 pub mod reprojection;
 pub mod reprojection_layered;
 
+use ball::ball_points;
 use gpu_types::{ALL_CHANNELS, ViewBatch, ViewSample};
 
 bindings! {
@@ -56,25 +58,21 @@ impl UnitPoints {
 }
 
 /// The light points that all receivers share.
-pub(crate) fn light_points(
-    light: &Light,
-    choice: &PointChoice,
-    unit_points: &mut UnitPoints,
-    casters: &[Aabb],
-    receivers: Option<Aabb>,
-) -> Vec<LightPoint> {
+pub(crate) fn light_points(light: &Light, choice: &PointChoice, unit_points: &mut UnitPoints) -> Vec<LightPoint> {
     let frame = light.frame();
     if let LightShape::Points { positions_m } = &light.shape {
         return positions_m.iter().map(|p| LightPoint { xyz: *p, w: 1.0, weight: 1.0 }).collect();
     }
-    let all = receivers.unwrap_or_else(|| casters.iter().copied().fold(Aabb::EMPTY, Aabb::union));
-    let seen_from = if all.is_empty() { light.center + light.axis } else { all.center() };
     let below_one = Vec3::splat(1.0 - f32::EPSILON);
-    unit_points
-        .of(choice)
-        .iter()
-        .map(|u| light.point(&frame, (u + choice.shift.extend(0.0)).fract().min(below_one), seen_from))
-        .collect()
+    let shift = choice.shift.extend(0.0);
+    let shifted = unit_points.of(choice).iter().map(|u| (u + shift).fract().min(below_one));
+    if let LightShape::Sphere { radius_m } = light.shape {
+        let in_ball = ball_points(&shifted.collect::<Vec<_>>());
+        let in_world = |p: Vec3| frame.center + radius_m * (frame.right * p.x + frame.up * p.y + frame.axis * p.z);
+        return in_ball.into_iter().map(|p| LightPoint { xyz: in_world(p), w: 1.0, weight: 1.0 }).collect();
+    }
+    // Of the other shapes none turns towards who sees it.
+    shifted.map(|u| light.point(&frame, u, frame.center + frame.axis)).collect()
 }
 
 /// The views from all light points, of one window's shape, which suits the first: warped for what is `seen`, where that

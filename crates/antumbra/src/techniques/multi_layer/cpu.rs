@@ -1,8 +1,8 @@
 //! The filter's twin on the CPU, for one channel.
 
 use super::levels::Level;
-use crate::light_map::texel_lists::DepthTolerance;
 use crate::light_map::texel_lists::cpu::TwinFragment;
+use crate::light_map::texel_lists::options::DepthTolerance;
 
 /// One level's lists from the lists of the level before; opacities in one list multiply, depths are averaged by opacity or
 /// by count.

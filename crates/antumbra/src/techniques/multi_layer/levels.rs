@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use crate::light_map::texel_lists::DepthTolerance;
+use crate::light_map::texel_lists::options::DepthTolerance;
 
 /// One level. Level 0 is the base.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -115,7 +115,8 @@ use crate::gpu::{
     create_uniform, upload_with_room, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
-use crate::light_map::texel_lists::{Accumulation, FRAGMENT_BYTES, PreparedLists, TexelLists};
+use crate::light_map::texel_lists::options::Accumulation;
+use crate::light_map::texel_lists::{FRAGMENT_BYTES, PreparedLists, TexelLists};
 use crate::shaders;
 use crate::techniques::Technique;
 
@@ -379,7 +380,7 @@ impl Technique for MultiLayer {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.lists.memory_bytes() + self.feedback.memory_bytes() + self.resolve.memory_bytes()
+        self.lists.memory_bytes() + self.feedback.memory_bytes()
     }
 
     fn overflow(&self) -> Option<Overflow> {

@@ -10,7 +10,7 @@ use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerHierarchy, MultiLayerP
 use crate::TechniqueKind;
 use crate::contract::{MapSize, Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
-use crate::light_map::texel_lists::DepthTolerance;
+use crate::light_map::texel_lists::options::DepthTolerance;
 use crate::light_map::texel_lists::tests::{TestMesh, agree, scenes, unpack};
 use crate::shadow::Casters;
 use crate::techniques::Technique;

@@ -143,7 +143,7 @@ impl Raster {
     pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32, drawn: Drawn) -> RasterTargets {
         let size = UVec2::splat(window_side);
         let made = self.no_depth.take().filter(|no_depth| no_depth.size() == size);
-        let no_depth = self.no_depth.insert(made.unwrap_or_else(|| NoDepth::new(stage, size, 1))).view.clone();
+        let no_depth = self.no_depth.insert(made.unwrap_or_else(|| NoDepth::new(stage, size, 1))).view().clone();
         let made = self.stencil_map.take().filter(|map| map.size == size);
         self.stencil_map = drawn.stencil.then(|| made.unwrap_or_else(|| StencilMap::new(stage, size)));
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT;
@@ -212,9 +212,7 @@ impl Raster {
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {
-        self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
-            + self.stencil_map.as_ref().map_or(0, StencilMap::memory_bytes)
-            + self.draw.as_ref().map_or(0, wgpu::Buffer::size)
+        self.stencil_map.as_ref().map_or(0, StencilMap::memory_bytes) + self.draw.as_ref().map_or(0, wgpu::Buffer::size)
     }
 }
 

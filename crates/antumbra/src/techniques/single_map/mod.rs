@@ -223,9 +223,9 @@ impl<P: GpuStruct> MapResolve<P> {
         self.map.drawn()
     }
 
-    /// Bytes of the light map, its pyramid, and of the lists of a sparse pass.
+    /// Bytes of the light map and its pyramid, where they are the light's own.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        self.map.memory_bytes() + self.resolve.memory_bytes()
+        self.map.memory_bytes()
     }
 }
 

@@ -1,9 +1,12 @@
 //! The basis as a texture, and its mips, for tables that do not encode what they read.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 
+use super::texture::written;
 use super::{Basis, Filter, SoftDesign};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, compute_pipeline, texels};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_entry, compute_pipeline, texels};
 use crate::shaders;
 use crate::techniques::summed::summed_area_table::Sums;
 
@@ -38,7 +41,8 @@ pub(super) struct BasisPass {
 /// What is made for one size of map.
 #[derive(Debug)]
 pub(super) struct BasisTexture {
-    texture: wgpu::Texture,
+    /// All lights share it.
+    texture: Arc<wgpu::Texture>,
     /// Of all levels.
     pub(super) view: wgpu::TextureView,
     encode_group: wgpu::BindGroup,
@@ -80,7 +84,8 @@ impl BasisPass {
     ) -> BasisTexture {
         let level_count = if self.halve.is_some() { size.max_element().ilog2() + 1 } else { 1 };
         let texture = made.map(|made| made.texture).unwrap_or_else(|| {
-            super::texture::texture(stage, "antumbra depth basis", self.sums.format(), size, level_count)
+            let descriptor = written("antumbra depth basis", self.sums.format(), size, level_count);
+            stage.device.scratch_texture(Scratch::DepthBasis, &descriptor)
         });
         let levels: Vec<_> = (0..level_count).map(|level| level_of(stage, &texture, level)).collect();
         let basis = &levels[0];
@@ -127,16 +132,6 @@ impl BasisPass {
                 pass.dispatch_workgroups(groups.x, groups.y, 1);
             });
         }
-    }
-}
-
-impl BasisTexture {
-    /// Bytes of all levels.
-    pub(super) fn memory_bytes(&self) -> u64 {
-        let texels = |level: u32| {
-            u64::from((self.texture.width() >> level).max(1)) * u64::from((self.texture.height() >> level).max(1))
-        };
-        (0..self.texture.mip_level_count()).map(|level| 16 * texels(level)).sum()
     }
 }
 

@@ -1,17 +1,21 @@
 //! The family's passes: map, pyramid, tables, resolve.
+//!
+//! A frame makes its tables anew from the map, so all lights share their memory.
+
+use std::sync::Arc;
 
 use antumbra_light::Aabb;
 use glam::UVec2;
 
 use super::basis_texture::{BasisPass, BasisTexture};
 use super::gpu_types::SoftUniform;
-use super::table_fit::TableFit;
-use super::texture::texture;
+use super::table_fit::{LEAST_TILE, TableFit};
+use super::texture::written;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
-use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, create_uniform, texels, write_uniform};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Stage, bindings, create_uniform, texels, write_uniform};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 use crate::shaders;
@@ -35,7 +39,7 @@ bindings! {
 }
 
 /// Tables of the convolution basis; the others have one.
-const CONVOLUTION_TABLES: u32 = 5;
+const CONVOLUTION_TABLES: u8 = 5;
 
 /// The passes.
 #[derive(Debug)]
@@ -81,8 +85,8 @@ struct Passes {
 #[derive(Debug)]
 struct Made {
     size: UVec2,
-    tile_side: u32,
-    tiles: Option<wgpu::TextureView>,
+    /// Planes of as many tiles as the map can have.
+    tiles: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
     basis: Option<BasisTexture>,
 }
 
@@ -91,7 +95,8 @@ impl SoftFilter {
         let params_layout = SoftBindings::layout(gpu);
         let uniform = create_uniform::<SoftUniform>(gpu, "antumbra soft parameters");
         let params_group = SoftBindings { soft: &uniform }.kept_group(gpu, &params_layout);
-        let no_tiles = texture(gpu, "antumbra no tiles", wgpu::TextureFormat::Rgba32Float, UVec2::ONE, 1);
+        let no_tiles = written("antumbra no tiles", wgpu::TextureFormat::Rgba32Float, UVec2::ONE, 1);
+        let no_tiles = gpu.device.create_texture(&no_tiles);
         Self {
             technique,
             map: LightMap::new(gpu, technique, MapSearch::Pyramid),
@@ -125,11 +130,11 @@ impl SoftFilter {
                 let parts = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
                 let of_part = |part| {
                     let constants = [("BASIS", basis), ("PART", f64::from(part))];
-                    SummedAreaTable::new(gpu, table, &Source::Encoded { wgsl, constants: &constants, layouts })
+                    SummedAreaTable::new(gpu, table, part, &Source::Encoded { wgsl, constants: &constants, layouts })
                 };
                 (0..parts).map(of_part).collect()
             }
-            Filter::Table(table) => vec![SummedAreaTable::new(gpu, table, &Source::Texture)],
+            Filter::Table(table) => vec![SummedAreaTable::new(gpu, table, 0, &Source::Texture)],
             Filter::Mips => Vec::new(),
         };
         Passes {
@@ -210,20 +215,14 @@ impl SoftFilter {
         size: UVec2,
         tile_side: u32,
     ) -> wgpu::BindGroup {
-        let made = self.made.take().filter(|made| (made.size, made.tile_side) == (size, tile_side));
+        let made = self.made.take().filter(|made| made.size == size);
         let (tiles, basis) = made.map_or((None, None), |made| (made.tiles, made.basis));
-        let tiles = tiles.or_else(|| {
-            (passes.design.basis == Basis::Tiles).then(|| {
-                let count = size.map(|n| n.div_ceil(tile_side));
-                let planes = texture(stage, "antumbra tile planes", wgpu::TextureFormat::Rgba32Float, count, 1);
-                stage.device.create_view(&planes, &wgpu::TextureViewDescriptor::default())
-            })
-        });
-        let planes = tiles.as_ref().unwrap_or(&self.no_tiles);
+        let tiles = tiles.or_else(|| (passes.design.basis == Basis::Tiles).then(|| tile_planes(stage, size)));
+        let planes = tiles.as_ref().map_or(&self.no_tiles, |(_, view)| view);
         let basis = passes
             .basis
             .as_ref()
-            .map(|pass| pass.prepare(stage, basis, size, tiles.as_ref().map(|tiles| (tiles, tile_side))));
+            .map(|pass| pass.prepare(stage, basis, size, tiles.as_ref().map(|(_, view)| (view, tile_side))));
         let whole_basis = basis.as_ref().map(|basis| &basis.view);
         for table in &mut passes.tables {
             table.prepare(stage, whole_basis.unwrap_or(planes), size, tile_side);
@@ -246,7 +245,7 @@ impl SoftFilter {
             table_4: table(4),
         };
         let table_group = bound.group(stage, &passes.table_layout);
-        self.made = Some(Made { size, tile_side, tiles, basis });
+        self.made = Some(Made { size, tiles, basis });
         table_group
     }
 
@@ -284,16 +283,19 @@ impl SoftFilter {
         self.map.drawn()
     }
 
-    /// Bytes of map, pyramid, basis and tables, and of the lists of a sparse pass.
+    /// Bytes of map and pyramid, where they are the light's own.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        let tables: u64 = self.passes.iter().flat_map(|passes| &passes.tables).map(SummedAreaTable::memory_bytes).sum();
-        let made = self.made.as_ref().map_or(0, |made| {
-            let count = made.size.map(|n| n.div_ceil(made.tile_side.max(1)));
-            let planes = made.tiles.as_ref().map_or(0, |_| 16 * u64::from(count.x) * u64::from(count.y));
-            planes + made.basis.as_ref().map_or(0, BasisTexture::memory_bytes)
-        });
-        self.map.memory_bytes() + tables + made + self.resolve.memory_bytes()
+        self.map.memory_bytes()
     }
+}
+
+/// Planes of the tiles of a map of `size`, with room for the smallest tiles: lamps that move have smaller and larger ones.
+fn tile_planes(stage: &Stage<'_>, size: UVec2) -> (Arc<wgpu::Texture>, wgpu::TextureView) {
+    let count = size.map(|n| n.div_ceil(LEAST_TILE));
+    let descriptor = written("antumbra tile planes", wgpu::TextureFormat::Rgba32Float, count, 1);
+    let planes = stage.device.scratch_texture(Scratch::TilePlanes, &descriptor);
+    let view = stage.create_view(&planes, &wgpu::TextureViewDescriptor::default());
+    (planes, view)
 }
 
 /// Of tables, and of the basis where no table encodes what it reads.
@@ -301,7 +303,7 @@ fn bytes_per_texel(design: SoftDesign) -> u32 {
     /// `Rgba32Float` and `Rgba32Uint`.
     const BYTES: u32 = 16;
     let tables = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
-    BYTES * (tables + u32::from(!design.is_encoded()))
+    BYTES * (u32::from(tables) + u32::from(!design.is_encoded()))
 }
 
 /// Whether a caster may hide the light's rim from beyond the map: one that comes within the light's own radius of its middle.

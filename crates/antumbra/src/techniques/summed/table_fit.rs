@@ -12,7 +12,7 @@ shared_constants! {
 }
 
 /// The smallest tile with a range of its own, texels: smaller ones would cut most parts.
-const LEAST_TILE: u32 = 32;
+pub(super) const LEAST_TILE: u32 = 32;
 
 /// A map has so many tiles along a side at the least, so that there are workgroups enough to sum them.
 const LEAST_TILES: u32 = 8;

@@ -170,7 +170,7 @@ fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
     }
 }
 
-/// With one look of the search; a second is another 150 at the most.
+/// With one look; a second is another 150 of the search at the most, and as much again of the kernel.
 const MOST_READS: f32 = 270.0;
 
 /// Nor under what is round, where the picture is penumbra all over; and an ellipse's kernel has no more than that of the rectangle

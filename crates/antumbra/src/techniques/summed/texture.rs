@@ -1,12 +1,15 @@
-//! Textures that stand between passes.
+//! Descriptor of textures that one pass writes and another reads.
 
 use glam::UVec2;
 
-use crate::gpu::Gpu;
-
 /// A texture that one pass writes and another reads.
-pub(super) fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size: UVec2, levels: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
+pub(super) fn written(
+    label: &'static str,
+    format: wgpu::TextureFormat,
+    size: UVec2,
+    levels: u32,
+) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
         mip_level_count: levels,
@@ -15,5 +18,5 @@ pub(super) fn texture(gpu: &Gpu, label: &str, format: wgpu::TextureFormat, size:
         format,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
         view_formats: &[],
-    })
+    }
 }

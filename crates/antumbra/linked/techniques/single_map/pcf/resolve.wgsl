@@ -81,7 +81,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached || !receiver_light_faces_light_center(receiver) {
         return 0.0;
     }
-    var plane = receiver_light_biased_plane_within(receiver, pcf.bias_scale, space_coarse_grazing_sine(map_light_view));
+    var plane = receiver_light_biased_plane_within(receiver, pcf.bias_scale, receiver_light_coarse_grazing_sine(receiver));
     let attach = pcf.attach_contacts == 1u;
     if attach {
         plane.farthest_depth = plane.depth;
@@ -258,6 +258,8 @@ const light_KIND_RECTANGLE = 0u;
 
 const light_KIND_DISK = 1u;
 
+const light_KIND_SPHERE = 2u;
+
 const light_KIND_SUN = 4u;
 
 struct light_LightSource {
@@ -316,6 +318,21 @@ const bias_SNAPPED_TEXELS = 0.00390625;
 
 fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
     return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
+}
+
+fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
+    let n = receiver.normal_in_world;
+    let along = vec3f(dot(inputs_light_source.right_in_world, n), dot(inputs_light_source.up_in_world, n), dot(inputs_light_source.axis_in_world, n));
+    if inputs_light_source.kind == light_KIND_SPHERE {
+        let facing = dot(normalize(inputs_light_source.center_in_world - receiver.pos_in_world), n);
+        return vec3f(inputs_light_source.half_right * sqrt(max(1.0 - facing * facing, 0.0)), 0.0, 0.0);
+    }
+    return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
+}
+
+fn horizon_rise_above_center(half_axis_heights: vec3f) -> f32 {
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
+    return select(length(half_axis_heights), half_axis_heights.x + half_axis_heights.y, is_rectangle);
 }
 
 @group(1) @binding(0)
@@ -388,6 +405,17 @@ fn map_narrowed(quad: map_Quad, plane: space_ReceiverPlane, width: f32, gaps: ve
     return space_bilinear(lit, saturate((quad.t - 0.5) / max(width, 0.001) + 0.5));
 }
 
+const receiver_light_MOST_COARSE_SINE = 0.0175;
+
+fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
+    let least = space_min_grazing_sine(map_light_view);
+    if map_light_view.perspective == 0u {
+        return least;
+    }
+    let rise = horizon_rise_above_center(horizon_half_axis_heights(receiver));
+    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MOST_COARSE_SINE);
+}
+
 fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
     let towards = select(inputs_light_source.center_in_world - receiver.pos_in_world, -inputs_light_source.axis_in_world, inputs_light_source.kind == light_KIND_SUN);
     return dot(receiver.normal_in_world, towards) > 0.0;
@@ -420,12 +448,12 @@ struct space_LightViewGpu {
     plane_center: vec2f
 }
 
+const space_MIN_GRAZING_SINE = 0.00390625;
+
 const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
 
-const space_COARSE_GRAZING_SINE = 0.0175;
-
-fn space_coarse_grazing_sine(view: space_LightViewGpu) -> f32 {
-    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_COARSE_GRAZING_SINE, view.perspective == 1u);
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
 }
 
 struct space_ReceiverPlane {

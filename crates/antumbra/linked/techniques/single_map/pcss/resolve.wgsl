@@ -402,6 +402,11 @@ fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
+fn horizon_rise_above_center(half_axis_heights: vec3f) -> f32 {
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
+    return select(length(half_axis_heights), half_axis_heights.x + half_axis_heights.y, is_rectangle);
+}
+
 fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
@@ -414,12 +419,11 @@ fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
 fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
     let height = horizon_center_height(receiver);
     let half = horizon_half_axis_heights(receiver);
-    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
-    let reach = select(length(half), half.x + half.y, is_rectangle);
+    let reach = horizon_rise_above_center(half);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
-    if is_rectangle {
+    if inputs_light_source.kind == light_KIND_RECTANGLE {
         return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
@@ -800,6 +804,8 @@ fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_Li
 
 const comparison_WIDEST_TANGENT = 0.05;
 
+const comparison_LOOKS = 2u;
+
 fn comparison_edge_sharpness(plane: space_ReceiverPlane, g: f32) -> f32 {
     let widest = map_widest_blur_texels(plane, g * abs(map_light_view.depth_scale), comparison_WIDEST_TANGENT);
     return select(1.0, 1.0 / clamp(widest, 0.001, 1.0), settings_pcss.attach_contacts == 1u);
@@ -860,23 +866,35 @@ fn comparison_gathered(quad: comparison_Quad, layer: u32) -> vec4f {
     return textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
 }
 
-fn comparison_lit_once(window: search_Window, texels: vec2f, g: f32, sharpness: f32) -> f32 {
-    let quad = comparison_quad_about(window.at, texels, g);
-    let stored = map_light_view.depth_sign * textureGather(map_light_map, map_light_map_sampler, quad.corner_uv);
-    return select(1.0, comparison_lit_of(comparison_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+fn comparison_lit_in_layer(window: search_Window, texels: vec2f, share: f32, layer: u32, g: f32, sharpness: f32) -> f32 {
+    var scale = g;
+    var lit = 1.0;
+    for (var look = 0u; look < comparison_LOOKS; look++) {
+        let quad = comparison_quad_about(window.at, texels, scale);
+        let stored = map_light_view.depth_sign * comparison_gathered(quad, layer);
+        let occluding = comparison_occluding(window, quad, stored);
+        let own_g = (stored - window.at.depth) * window.at.g_per_depth;
+        let hides = own_g >= vec4f(share * scale);
+        lit = min(lit, select(1.0, comparison_lit_of(occluding & hides, quad.t, sharpness), quad.is_in_map));
+        let nearer = select(vec4f(), vec4f(1.0), occluding & !hides);
+        let count = dot(nearer, vec4f(1.0));
+        if !quad.is_in_map || count == 0.0 {
+            break;
+        }
+        scale = dot(nearer, own_g) / count;
+    }
+    return lit;
 }
 
-fn comparison_lit_behind(window: search_Window, texels: vec2f, layer: u32, g: f32, sharpness: f32) -> f32 {
-    let quad = comparison_quad_about(window.at, texels, g);
-    let stored = map_light_view.depth_sign * textureGather(behind_further_layers, map_light_map_sampler, quad.corner_uv, layer - 1u);
-    return select(1.0, comparison_lit_of(comparison_occluding(window, quad, stored), quad.t, sharpness), quad.is_in_map);
+fn filter_hiding_share(light: light_taps_LightPlane, place: vec3f) -> f32 {
+    return select(0.0, light_taps_gauge(light, place) / blocker_range_RIM, settings_pcss.attach_contacts == 1u);
 }
 
 fn filter_filter_once(window: search_Window, light: light_taps_LightPlane, g: f32, sharpness: f32, begin: u32, end: u32) -> vec2f {
     var sums = vec2f();
     for (var i = begin; i < end; i++) {
         let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
-        let lit = select(1.0, comparison_lit_once(window, light_taps_texels_of(light, place), g, sharpness), g > 0.0);
+        let lit = select(1.0, comparison_lit_in_layer(window, light_taps_texels_of(light, place), filter_hiding_share(light, place), 0u, g, sharpness), g > 0.0);
         sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
     }
     return sums;
@@ -891,9 +909,10 @@ fn filter_filter_layers(plane: space_ReceiverPlane, window: search_Window, light
     for (var i = 0u; i < min(count, settings_pcss.filter_count); i++) {
         let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
         let texels = light_taps_texels_of(light, place);
-        var lit = comparison_lit_once(window, texels, blockers.g.x, sharpness.x);
+        let share = filter_hiding_share(light, place);
+        var lit = comparison_lit_in_layer(window, texels, share, 0u, blockers.g.x, sharpness.x);
         for (var layer = 1u; layer < behind_LAYER_COUNT; layer++) {
-            let behind = comparison_lit_behind(window, texels, layer, blockers.g[layer], sharpness[layer]);
+            let behind = comparison_lit_in_layer(window, texels, share, layer, blockers.g[layer], sharpness[layer]);
             lit = select(lit, min(lit, behind), blockers.g[layer] > 0.0);
         }
         sums += light_taps_weight_of(place) * vec2f(1.0, select(0.0, lit, light_taps_is_above_horizon(light, place)));
@@ -1008,9 +1027,12 @@ struct search_Blockers {
 
 struct search_Sums {
     g: vec4f,
-    count: vec4f,
-    least_g: f32
+    weight: vec4f,
+    least_g: f32,
+    found: u32
 }
+
+const search_RIM_WEIGHT = 0.0625;
 
 const search_GROUPS = 4.0;
 
@@ -1032,24 +1054,25 @@ fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look,
     let g = search_blocking_g(window, look.texel, stored);
     let counts = g > 0.0 && g >= look.hiding_g;
     let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    let weight = select(0.0, select(search_RIM_WEIGHT, 1.0, g >= blocker_range_RIM * look.hiding_g), counts);
+    let found = sums.found + select(0u, 1u, counts);
     if !settings_MEANS_OF_RANGES && layer == 0u {
-        return search_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+        return search_Sums(vec4f(sums.g.x + weight * g, sums.g.yzw), vec4f(sums.weight.x + weight, sums.weight.yzw), least_g, found);
     }
     let group = vec4u(0u, 1u, 2u, 3u) == vec4u(search_group_of(g, window.most_g, layer));
-    return search_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+    return search_Sums(sums.g + select(vec4f(), vec4f(weight * g), group), sums.weight + select(vec4f(), vec4f(weight), group), least_g, found);
 }
 
 fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
     let own = floor(window.at.center);
     let own_g = search_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
-    var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
+    var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0), 0u);
     let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
-    let enough = f32(settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS));
+    let enough = settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS);
     for (var i = 0u; i < min(window.search_count, settings_pcss.search_count); i++) {
         let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
         sums = search_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
-        let found = search_sum_of(sums.count);
-        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= settings_pcss.search_enough && found > 0.0) {
+        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && sums.found >= enough) || (i + 1u >= settings_pcss.search_enough && sums.found > 0u) {
             break;
         }
     }
@@ -1059,29 +1082,25 @@ fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_
 fn search_search_behind(window: search_Window, light: light_taps_LightPlane, first: search_Sums) -> search_Sums {
     let own = floor(window.at.center);
     var sums = first;
-    var found = search_sum_of(first.count);
+    var found = first.found;
     let count = min(min(window.search_count, settings_part_of(settings_pcss.search_count, search_BEHIND_TAPS)), settings_pcss.search_count);
-    for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0.0; layer++) {
-        let before = search_sum_of(sums.count);
+    for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0u; layer++) {
+        let before = sums.found;
         let own_g = search_blocking_g(window, own, textureLoad(behind_further_layers, vec2i(own), layer - 1u, 0));
         sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
         for (var i = 0u; i < count; i++) {
             let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
             sums = search_add(sums, window, look, textureLoad(behind_further_layers, vec2i(look.texel), layer - 1u, 0), layer);
         }
-        found = search_sum_of(sums.count) - before;
+        found = sums.found - before;
     }
     return sums;
 }
 
-fn search_sum_of(v: vec4f) -> f32 {
-    return dot(v, vec4f(1.0));
-}
-
 fn search_blockers_of(sums: search_Sums, window: search_Window) -> search_Blockers {
-    let some = sums.count > vec4f();
+    let some = sums.weight > vec4f();
     let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return search_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
+    return search_Blockers(sums.g / max(sums.weight, vec4f(search_RIM_WEIGHT)), groups, sums.least_g, window.most_g);
 }
 
 struct settings_PcssUniform {

@@ -387,6 +387,11 @@ fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
+fn horizon_rise_above_center(half_axis_heights: vec3f) -> f32 {
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
+    return select(length(half_axis_heights), half_axis_heights.x + half_axis_heights.y, is_rectangle);
+}
+
 fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
@@ -399,12 +404,11 @@ fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
 fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
     let height = horizon_center_height(receiver);
     let half = horizon_half_axis_heights(receiver);
-    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
-    let reach = select(length(half), half.x + half.y, is_rectangle);
+    let reach = horizon_rise_above_center(half);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
-    if is_rectangle {
+    if inputs_light_source.kind == light_KIND_RECTANGLE {
         return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
@@ -955,9 +959,12 @@ struct search_Blockers {
 
 struct search_Sums {
     g: vec4f,
-    count: vec4f,
-    least_g: f32
+    weight: vec4f,
+    least_g: f32,
+    found: u32
 }
+
+const search_RIM_WEIGHT = 0.0625;
 
 const search_GROUPS = 4.0;
 
@@ -972,38 +979,35 @@ fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look,
     let g = search_blocking_g(window, look.texel, stored);
     let counts = g > 0.0 && g >= look.hiding_g;
     let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    let weight = select(0.0, select(search_RIM_WEIGHT, 1.0, g >= blocker_range_RIM * look.hiding_g), counts);
+    let found = sums.found + select(0u, 1u, counts);
     if !settings_MEANS_OF_RANGES && layer == 0u {
-        return search_Sums(vec4f(sums.g.x + select(0.0, g, counts), sums.g.yzw), vec4f(sums.count.x + select(0.0, 1.0, counts), sums.count.yzw), least_g);
+        return search_Sums(vec4f(sums.g.x + weight * g, sums.g.yzw), vec4f(sums.weight.x + weight, sums.weight.yzw), least_g, found);
     }
     let group = vec4u(0u, 1u, 2u, 3u) == vec4u(search_group_of(g, window.most_g, layer));
-    return search_Sums(sums.g + select(vec4f(), vec4f(g), group & vec4<bool>(counts)), sums.count + select(vec4f(), vec4f(1.0), group & vec4<bool>(counts)), least_g);
+    return search_Sums(sums.g + select(vec4f(), vec4f(weight * g), group), sums.weight + select(vec4f(), vec4f(weight), group), least_g, found);
 }
 
 fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
     let own = floor(window.at.center);
     let own_g = search_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
-    var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0));
+    var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0), 0u);
     let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
-    let enough = f32(settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS));
+    let enough = settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS);
     for (var i = 0u; i < min(window.search_count, settings_pcss.search_count); i++) {
         let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
         sums = search_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
-        let found = search_sum_of(sums.count);
-        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && found >= enough) || (i + 1u >= settings_pcss.search_enough && found > 0.0) {
+        if (light_taps_IS_PROGRESSIVE && i + 1u >= least && sums.found >= enough) || (i + 1u >= settings_pcss.search_enough && sums.found > 0u) {
             break;
         }
     }
     return sums;
 }
 
-fn search_sum_of(v: vec4f) -> f32 {
-    return dot(v, vec4f(1.0));
-}
-
 fn search_blockers_of(sums: search_Sums, window: search_Window) -> search_Blockers {
-    let some = sums.count > vec4f();
+    let some = sums.weight > vec4f();
     let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return search_Blockers(sums.g / max(sums.count, vec4f(1.0)), groups, sums.least_g, window.most_g);
+    return search_Blockers(sums.g / max(sums.weight, vec4f(search_RIM_WEIGHT)), groups, sums.least_g, window.most_g);
 }
 
 struct settings_PcssUniform {

@@ -567,6 +567,11 @@ fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
+fn horizon_rise_above_center(half_axis_heights: vec3f) -> f32 {
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
+    return select(length(half_axis_heights), half_axis_heights.x + half_axis_heights.y, is_rectangle);
+}
+
 fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
@@ -579,12 +584,11 @@ fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
 fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
     let height = horizon_center_height(receiver);
     let half = horizon_half_axis_heights(receiver);
-    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
-    let reach = select(length(half), half.x + half.y, is_rectangle);
+    let reach = horizon_rise_above_center(half);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
-    if is_rectangle {
+    if inputs_light_source.kind == light_KIND_RECTANGLE {
         return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);

@@ -7,6 +7,10 @@
 //! do). Maps are rendered in batches that fit a memory budget and are added into the mask, so
 //! that 1024 views never need 1024 maps.
 //!
+//! A sphere is seen as another disc from each receiver, and views are shared: its points lie within the ball so that from anywhere they
+//! are spread evenly over the disc (`light_views/ball`). Under a bulb in a box the rmse with 64 views is .020; of points on one disc, which faces
+//! the receivers' middle, it was .032.
+//!
 //! Comparison is with the receiver's plane at each of the four texels (`compare = gather`), or by the hardware's
 //! comparison sampler with one reference depth (`compare = hardware`, as in the papers), which needs a slope bias and
 //! so detaches contacts at grazing light.
@@ -312,15 +316,18 @@ impl Technique for MultiView {
         }
     }
 
-    /// Those of the last batch: each is drawn over the one before.
+    /// Those of the last batch: each is drawn over the one before. None where all lights share them.
     fn drawn_maps(&self) -> Vec<DrawnMap> {
         if self.last_points.is_empty() {
             return Vec::new();
         }
-        let slices = match &self.triangle_maps {
-            Some(maps) => maps.depth_slices(),
-            None => self.layers.depth_slices(),
+        let (slices, are_own) = match &self.triangle_maps {
+            Some(maps) => (maps.depth_slices(), maps.are_own()),
+            None => (self.layers.depth_slices(), self.layers.are_own()),
         };
+        if !are_own {
+            return Vec::new();
+        }
         let (views, view_size) = &self.views;
         let map = |(point, depth): (u32, &wgpu::TextureView)| DrawnMap {
             light_point: Some(point),
@@ -360,7 +367,7 @@ impl MultiView {
             seed: params.seed,
             shift: Vec2::ZERO,
         };
-        let points = light_points(frame.light, &choice, &mut self.unit_points, &bounds, frame.receivers.bounds);
+        let points = light_points(frame.light, &choice, &mut self.unit_points);
         let corners = frame.receivers.corners();
         let is_warped = params.window == MultiViewWindow::Warped;
         let seen = if is_warped { frame.receivers.seen_points(&corners) } else { Vec::new() };

@@ -1,6 +1,9 @@
 //! Shared passes of `reprojection` and `reprojection_layered`: central maps, fragments scattered into a batch of views, and
 //! that batch added into the mask; batch after batch, within a budget.
 
+#[cfg(test)]
+use std::sync::Arc;
+
 use antumbra_light::Aabb;
 #[cfg(test)]
 use glam::Mat4;
@@ -13,7 +16,7 @@ use super::scatter::{PreparedScatter, Scatter, Targets};
 use super::settings::{ReprojectionFilter, Settings, Splat};
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
-use crate::gpu::{Gpu, Recorder, Stage, sized_buffer};
+use crate::gpu::{Gpu, LeasedBuffer, Recorder, Scratch, Stage};
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::light_map::light_view::{LightView, LightViewGpu};
@@ -36,7 +39,7 @@ pub(crate) struct Engine {
     sample_views: SampleViews,
     scatter: Scatter,
     resolve: Resolve,
-    target_buffer: Option<wgpu::Buffer>,
+    target_buffer: LeasedBuffer,
     /// Views of the frame's central maps; none where maps are drawn from the light's points alone.
     central: Vec<LightViewGpu>,
     frame_number: u32,
@@ -70,7 +73,7 @@ pub(crate) struct Parts<'a> {
     /// The depth that a texel of each central view is wide: (a, b) of a · depth + b.
     pub(crate) widths: &'a [(f32, f32)],
     /// Central depths and gradients.
-    pub(crate) central: &'a [wgpu::Texture; 2],
+    pub(crate) central: &'a [Arc<wgpu::Texture>; 2],
     /// The list of surfels and its counts, where there is one.
     pub(crate) list: Option<[&'a wgpu::Buffer; 2]>,
 }
@@ -86,7 +89,7 @@ impl Engine {
             sample_views: SampleViews::new(),
             scatter: Scatter::new(gpu),
             resolve: Resolve::new(technique),
-            target_buffer: None,
+            target_buffer: LeasedBuffer::default(),
             central: Vec::new(),
             frame_number: 0,
             #[cfg(test)]
@@ -134,7 +137,7 @@ impl Engine {
 
         let light = frame.light;
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let points = light_points(light, &settings.points, &mut self.unit_points, &bounds, frame.receivers.bounds);
+        let points = light_points(light, &settings.points, &mut self.unit_points);
         let views = Views::of(light, &points, &bounds, &frame.receivers.corners(), settings);
         let faces = views.faces();
         let clip_from_world: Vec<_> = views.central.iter().map(LightView::clip_from_world).collect();
@@ -207,7 +210,13 @@ impl Engine {
             });
         }
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
-        let buffer = sized_buffer(stage, &mut self.target_buffer, "antumbra reprojected maps", bytes, usage).clone();
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some("antumbra reprojected maps"),
+            size: bytes,
+            usage,
+            mapped_at_creation: false,
+        };
+        let buffer = self.target_buffer.sized(&stage.device, Scratch::ReprojectedMaps, &descriptor).clone();
         Ok((Targets { buffer, view_size, row_texels, map_count: in_batch * faces }, in_batch))
     }
 
@@ -225,9 +234,9 @@ impl Engine {
         }
     }
 
-    /// The central maps, with their layers, where there are such: maps of the light's points are words of a buffer.
+    /// The central maps, with their layers, where there are such and they are the light's own: maps of the light's points are words of a buffer.
     pub(crate) fn drawn_maps(&self) -> Vec<DrawnMap> {
-        if self.central.is_empty() {
+        if self.central.is_empty() || !self.layers.are_own() {
             return Vec::new();
         }
         let layers = self.layers.size().layers as usize;
@@ -241,7 +250,7 @@ impl Engine {
     /// Bytes of central maps, one batch of integer maps, what they are copied into, and the lists.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.layers.memory_bytes()
-            + self.target_buffer.as_ref().map_or(0, wgpu::Buffer::size)
+            + self.target_buffer.own_bytes()
             + self.scatter.memory_bytes()
             + self.resolve.memory_bytes()
             + self.sample_views.memory_bytes()
@@ -251,7 +260,7 @@ impl Engine {
     #[cfg(test)]
     pub(crate) fn parts(&self) -> Parts<'_> {
         Parts {
-            targets: self.target_buffer.as_ref().expect("prepare comes first"),
+            targets: self.target_buffer.buffer().expect("prepare comes first"),
             matrices: &self.matrices_on_cpu,
             widths: &self.widths,
             central: self.layers.textures(),

@@ -1,12 +1,14 @@
 //! A batch of integer maps, made filterable where that is asked for, and added into the mask.
 
+use std::sync::Arc;
+
 use super::gpu_types::DrawMaps;
 use super::scatter::Targets;
 use super::settings::ReprojectionFilter;
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
-    Bindings, DrawPipeline, Gpu, Recorder, Span, Stage, array_view, bindings, compute_pipeline, depth_state, samples,
-    slice_views, texels,
+    Bindings, DrawPipeline, Gpu, Lease, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline,
+    depth_state, samples, slice_views, texels,
 };
 use crate::light_map::caster_depth::CasterDepth;
 use crate::shaders;
@@ -52,7 +54,8 @@ struct Accumulate {
 /// What the integers are copied or drawn into.
 #[derive(Debug)]
 struct Filterable {
-    texture: wgpu::Texture,
+    lease: Lease,
+    texture: Arc<wgpu::Texture>,
     array: wgpu::TextureView,
     slices: Vec<wgpu::TextureView>,
 }
@@ -126,7 +129,11 @@ impl Resolve {
         if self.filterable.as_ref().is_some_and(|f| f.texture.size() == size && f.texture.format() == format) {
             return;
         }
-        let texture = stage.device.create_texture(&wgpu::TextureDescriptor {
+        // What there is goes back to the budget before more is taken.
+        self.filterable = None;
+        let bytes = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers) * 4;
+        let lease = Lease::new(&stage.device, bytes);
+        let descriptor = wgpu::TextureDescriptor {
             label: Some("antumbra filterable reprojected maps"),
             size,
             mip_level_count: 1,
@@ -135,9 +142,10 @@ impl Resolve {
             format,
             usage: usage | wgpu::TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
-        });
-        self.filterable =
-            Some(Filterable { array: array_view(stage, &texture), slices: slice_views(stage, &texture), texture });
+        };
+        let texture = lease.texture(&stage.device, Scratch::FilterableMaps, &descriptor);
+        let (array, slices) = (array_view(stage, &texture), slice_views(stage, &texture));
+        self.filterable = Some(Filterable { lease, texture, array, slices });
     }
 
     /// Adds batch `index`, of `map_count` maps, to the mask.
@@ -166,10 +174,7 @@ impl Resolve {
 
     /// Bytes of what the integers are copied or drawn into.
     pub(super) fn memory_bytes(&self) -> u64 {
-        self.filterable.as_ref().map_or(0, |filterable| {
-            let size = filterable.texture.size();
-            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers) * 4
-        })
+        self.filterable.as_ref().map_or(0, |filterable| filterable.lease.own_bytes())
     }
 }
 

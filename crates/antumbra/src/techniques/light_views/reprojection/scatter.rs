@@ -327,7 +327,7 @@ impl Scatter {
                 Program::Points(_) | Program::Surfels(_) => {}
                 Program::Screen(pipeline) => {
                     let no_depth = self.no_depth.as_ref().expect("prepare makes it for this form");
-                    recorder.render_pass(REPROJECT, span, &[], &no_depth.view, None, |pass| {
+                    recorder.render_pass(REPROJECT, span, &[], no_depth.view(), None, |pass| {
                         pass.set_pipeline(pipeline);
                         pass.set_bind_group(1, prepared.central.as_ref(), &[]);
                         for offset in offsets(splat.groups) {
@@ -363,9 +363,7 @@ impl Scatter {
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {
-        self.groups.as_ref().map_or(0, wgpu::Buffer::size)
-            + self.list.as_ref().map_or(0, SurfelList::memory_bytes)
-            + self.no_depth.as_ref().map_or(0, NoDepth::memory_bytes)
+        self.groups.as_ref().map_or(0, wgpu::Buffer::size) + self.list.as_ref().map_or(0, SurfelList::memory_bytes)
     }
 }
 

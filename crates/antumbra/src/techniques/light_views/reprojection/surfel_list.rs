@@ -10,7 +10,7 @@
 
 use super::gpu_types::SurfelPiece;
 use super::program::compute_program;
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, sized_buffer, texels};
+use crate::gpu::{Bindings, Gpu, LeasedBuffer, Recorder, Scratch, Span, Stage, bindings, sized_buffer, texels};
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::shaders;
 
@@ -64,7 +64,7 @@ pub(super) struct SurfelList {
     collect_layout: wgpu::BindGroupLayout,
     listed_layout: wgpu::BindGroupLayout,
     collect: wgpu::ComputePipeline,
-    names: Option<wgpu::Buffer>,
+    names: LeasedBuffer,
     counts: Option<wgpu::Buffer>,
 }
 
@@ -138,7 +138,7 @@ impl SurfelList {
             collect: compute_program(gpu, shaders::REPROJECTION_COLLECT_SURFELS, &layouts, &[]),
             listed_layout: ListedSurfels::layout(gpu),
             collect_layout,
-            names: None,
+            names: LeasedBuffer::default(),
             counts: None,
         }
     }
@@ -151,7 +151,13 @@ impl SurfelList {
         let pieces = Pieces::of(layers.size(), limits);
         let gpu_pieces: Vec<SurfelPiece> = pieces.all.iter().map(|piece| piece.gpu).collect();
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-        let names = sized_buffer(stage, &mut self.names, "antumbra names of surfels", pieces.names * 4, usage);
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some("antumbra names of surfels"),
+            size: pieces.names * 4,
+            usage,
+            mapped_at_creation: false,
+        };
+        let names = self.names.sized(&stage.device, Scratch::SurfelNames, &descriptor);
         let usage = usage | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_DST;
         let count_bytes = gpu_pieces.len() as u64 * u64::from(COUNT_BYTES);
         let counts = sized_buffer(stage, &mut self.counts, "antumbra counts of surfels", count_bytes, usage);
@@ -228,13 +234,13 @@ impl SurfelList {
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {
-        [&self.names, &self.counts].into_iter().flatten().map(wgpu::Buffer::size).sum()
+        self.names.own_bytes() + self.counts.as_ref().map_or(0, wgpu::Buffer::size)
     }
 
     /// The list, and each piece's count.
     #[cfg(test)]
     pub(super) fn buffers(&self) -> Option<[&wgpu::Buffer; 2]> {
-        Some([self.names.as_ref()?, self.counts.as_ref()?])
+        Some([self.names.buffer()?, self.counts.as_ref()?])
     }
 }
 

@@ -406,7 +406,10 @@ fn memory_does_not_grow_with_the_views() {
     case.with_frame(Casters::Meshes(&casters), |frame| technique.prepare(frame).map(drop)).expect("a good frame");
     let lists = 1024 * (96 + 192);
     let central = 512 * 512 * 4;
-    assert!(technique.memory_bytes() <= BATCH_BUDGET_BYTES + central + lists, "{}", technique.memory_bytes());
+    // What is uploaded passes through a buffer of a power of two bytes.
+    let uploads = u64::next_power_of_two(lists);
+    let bytes = technique.memory_bytes();
+    assert!(bytes <= BATCH_BUDGET_BYTES + central + lists + uploads, "{bytes}");
     // 80 views are two batches, whose shares add up.
     let settings = [("samples", "80"), ("sample_set", "stratified"), ("central_scale", "1")];
     let mask = case.run(gpu, TechniqueKind::Reprojection, &settings);

@@ -26,6 +26,10 @@
 //!   the light's shape spans about a texel of the map, light points that are free at the mean's scale are tested again at the
 //!   nearest's. Between texels an edge blurs no more than it could at that distance. Without it `pcss` has the sketch's one layer and one
 //!   mean depth, which pre-filtered techniques are compared with.
+//! - *Blockers hide what their own depth says* (`attach_contacts`): at the mean's scale a light point falls on a texel. Where that texel's
+//!   surface is nearer to the receiver than a blocker that hides the point, it hides another point, or none, as a wall beside a lamp
+//!   does. The point is then looked for once more, at that surface's own scale. At 320 × 180 the rmse of `overlap` is .032
+//!   (at the mean's scale alone .050), of `lantern-wall` .025 (.039), of `window` .044 (.059).
 //! - *Layers behind the map* (`layers`): the map holds what the light's centre sees. More layers are peeled behind it, and each has a mean of
 //!   its own; a light point is free where no layer hides it at its own scale. Each costs a pass over the casters and a map.
 //! - *Means of ranges* (`means=ranges`): the blockers of all layers are grouped by their `g`, in quarters of the range of `√g`, each with its own
@@ -42,7 +46,7 @@
 //!
 //! # Limits
 //! One mean depth stands for all blockers of a layer (or of a quarter of depths): where a near and a far occluder lie side by side in it,
-//! both get a width between theirs, and umbrae behind thin bars are too bright. Nothing is known behind the last layer, nor
+//! the far one gets a width between theirs, and umbrae behind thin bars are too bright. Nothing is known behind the last layer, nor
 //! behind a host's own depth map. Few samples show as noise (`rotate`) or bands.
 
 use antumbra_light::Light;

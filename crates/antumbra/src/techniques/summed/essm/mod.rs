@@ -42,6 +42,9 @@
 //! - A row of a sheared parallelogram is a rectangle: there are so many rows that its ends lie within a fifth of its width.
 //! - Blockers are searched at several scales, and count where they hide a point of the light, as in `pcss`
 //!   (`search = window` is the paper's one window).
+//! - A part counts as hidden where the blockers found in it hide that part of the light by their own depth. Those nearer to the receiver
+//!   hide another part, or none, as a wall beside a lamp does: the part is then compared with the map once more, at their
+//!   own scale. At 320 × 180 the rmse of `overlap` is .029 (with one depth for all parts .045), of `lantern-wall` .030 (.041).
 //! - A kernel's rows have n columns; the paper cuts each row into n × n parts, and its ends too (`cuts = squares`).
 //! - An ellipse of any size has n rows, five at the least, which have its covariance (`ellipse_of_rows` in `resolve.wesl`); the paper's N = ⌈Y / H⌉ grows
 //!   with it (`cuts = squares`).

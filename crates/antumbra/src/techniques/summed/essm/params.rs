@@ -99,9 +99,10 @@ params! {
         /// Scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
-        /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster.
+        /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster, and look at each blocker at its
+        /// own depth where that hides another part of the light than the mean.
         second_look: bool = true,
-            more "Truer penumbrae under occluders of many depths; there the search takes twice the time.";
+            more "Truer penumbrae under occluders of many depths; there search and kernel take up to twice the time.";
         /// Where blockers are searched; `search_scales` and `second_look` are for scales alone.
         search: EssmSearch = EssmSearch::Scales,
             more "window is the paper's; behind lattices what it holds that hides no part of the light widens penumbrae.";

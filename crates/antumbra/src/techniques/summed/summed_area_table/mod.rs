@@ -10,10 +10,12 @@
 //! one table it reads the source twice. The source is a texture, or is encoded where it is read ([`Source::Encoded`]), so
 //! that no texture need hold it. [`Scan::Doubling`] is how it was done in 2013, kept to be measured against.
 
+use std::sync::Arc;
+
 use glam::UVec2;
 
 use crate::gpu::{
-    Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, shared_constants, texels,
+    Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_entry, create_uniform, shared_constants, texels,
     write_uniform,
 };
 use crate::shaders;
@@ -154,6 +156,8 @@ pub(crate) struct SummedAreaTable {
     layout: wgpu::BindGroupLayout,
     pipelines: Pipelines,
     uniform: wgpu::Buffer,
+    /// Which table it is of those that a pass reads together.
+    part: u8,
     made: Option<Made>,
 }
 
@@ -186,18 +190,18 @@ struct Made {
     late: Option<Late>,
 }
 
-/// What is allocated for one size.
+/// What is allocated for one size; all lights share it.
 #[derive(Debug)]
 struct Memory {
-    texture: wgpu::Texture,
+    texture: Arc<wgpu::Texture>,
     /// `above`, `before`, `corner` of blocks.
-    borders: [wgpu::Buffer; 3],
+    borders: [Arc<wgpu::Buffer>; 3],
     /// The largest sums of tiles of 2^i blocks.
-    largest: wgpu::Buffer,
+    largest: Arc<wgpu::Buffer>,
     /// The other of the two textures between which doubling goes to and fro.
-    other: Option<wgpu::Texture>,
+    other: Option<Arc<wgpu::Texture>>,
     /// Workgroups of the steps of doubling that not every tile takes: none where they are not taken.
-    late_dispatch: Option<wgpu::Buffer>,
+    late_dispatch: Option<Arc<wgpu::Buffer>>,
 }
 
 /// The steps at the end of `steps` that the GPU takes only where the tile that it has chosen is so large.
@@ -209,7 +213,8 @@ struct Late {
 }
 
 impl SummedAreaTable {
-    pub(crate) fn new(gpu: &Gpu, design: TableDesign, source: &Source<'_>) -> Self {
+    /// Table of a design. `part` is its number among those that a pass reads together.
+    pub(crate) fn new(gpu: &Gpu, design: TableDesign, part: u8, source: &Source<'_>) -> Self {
         let sums = design.sums;
         let is_encoded = matches!(source, Source::Encoded { .. });
         let adapt = |ty: &mut wgpu::BindingType| sums.adapt(ty);
@@ -247,18 +252,19 @@ impl SummedAreaTable {
             (Scan::Blocks, _) => Pipelines::Tiles { choose: choose(), sum_tiles: entry("sum_tiles") },
         };
         let uniform = create_uniform::<TableUniform>(gpu, "antumbra summed-area table");
-        Self { design, is_encoded, layout, pipelines, uniform, made: None }
+        Self { design, is_encoded, layout, pipelines, uniform, part, made: None }
     }
 
     /// Allocates the table of a source of `size` texels and binds `binding` to it: the source's texture, or where values
-    /// are encoded the texture that their tiles' planes go to. `side` is that of [`Tiling::Tiles`].
+    /// are encoded the texture that their tiles' planes go to. `side` is that of [`Tiling::Tiles`]; another one takes the same
+    /// memory.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, binding: &wgpu::TextureView, size: UVec2, side: u32) {
         let side = match self.design.tiling {
             Tiling::Whole => size.max_element().next_power_of_two().max(BLOCK),
             Tiling::Tiles => side,
             Tiling::Chosen => 0,
         };
-        let made = self.made.take().filter(|made| (made.size, made.side) == (size, side));
+        let made = self.made.take().filter(|made| made.size == size);
         let memory = made.map_or_else(|| self.allocate(stage, size), |made| made.memory);
         let view = stage.create_view(&memory.texture, &wgpu::TextureViewDescriptor::default());
         write_uniform(stage, &self.uniform, &TableUniform { size, tile: side, padding: 0 });
@@ -279,13 +285,19 @@ impl SummedAreaTable {
             let Doubling { strides, late_count } = Doubling::of(size, side);
             let last = strides.len() - 1;
             late = (late_count > 0).then_some(strides.len() - late_count);
-            for (i, stride) in strides.into_iter().enumerate() {
+            // Those of the largest tile are kept, though smaller ones take fewer.
+            let is_tiled = self.design.tiling == Tiling::Tiles;
+            let most = if is_tiled { Doubling::of(size, MAX_TILE).strides.len() } else { strides.len() };
+            for i in 0..most.max(strides.len()) {
+                let stride = strides[i.min(last)];
                 let step = DoublingUniform { size, stride, tile: side, ..DoublingUniform::default() };
                 let uniform = stage.uniform("antumbra doubling", &step);
                 // To and fro, so that the last step writes the table.
-                let (from, to) = if (last - i).is_multiple_of(2) { (&other, &view) } else { (&view, &other) };
+                let is_to_table = (last % 2) == (i % 2);
+                let (from, to) = if is_to_table { (&other, &view) } else { (&view, &other) };
                 steps.push(bind(if i == 0 { binding } else { from }, to, &uniform));
             }
+            steps.truncate(strides.len());
         }
         let late = match (late, &self.pipelines, &memory.late_dispatch) {
             (Some(first), Pipelines::Doubling { choose: Some(choose), .. }, Some(late_dispatch)) => {
@@ -297,8 +309,8 @@ impl SummedAreaTable {
     }
 
     fn allocate(&self, gpu: &Gpu, size: UVec2) -> Memory {
-        let texture = || {
-            gpu.device.create_texture(&wgpu::TextureDescriptor {
+        let texture = |scratch| {
+            let descriptor = wgpu::TextureDescriptor {
                 label: Some("antumbra summed-area table"),
                 size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
                 mip_level_count: 1,
@@ -309,38 +321,33 @@ impl SummedAreaTable {
                     | wgpu::TextureUsages::STORAGE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
-            })
+            };
+            gpu.device.scratch_texture(scratch, &descriptor)
         };
-        let buffer = |items: u32, bytes: u64| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("antumbra summed-area table borders"),
-                size: u64::from(items.max(1)) * bytes,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            })
+        let buffer = |scratch, size: u64, more: wgpu::BufferUsages| {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | more;
+            let label = Some("antumbra summed-area table borders");
+            let descriptor = wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false };
+            gpu.device.scratch_buffer(scratch, &descriptor)
+        };
+        let border = |i: u8, items: u32| {
+            buffer(Scratch::TableBorders(i), 16 * u64::from(items.max(1)), wgpu::BufferUsages::COPY_DST)
         };
         let blocks = size.map(|n| n.div_ceil(BLOCK));
         let count = blocks.x * blocks.y;
         let has_borders = matches!(self.pipelines, Pipelines::Whole { .. });
         let has_corners = has_borders || self.design.tiling == Tiling::Chosen;
         let lines = if has_borders { count * BLOCK } else { 0 };
-        let borders = [buffer(lines, 16), buffer(lines, 16), buffer(if has_corners { count } else { 0 }, 16)];
+        let corners = if has_corners { count } else { 0 };
         let levels = blocks.max_element().next_power_of_two().min(MAX_TILE / BLOCK).ilog2() + 1;
-        let late_dispatch = || {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("antumbra late steps of doubling"),
-                size: 12,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            })
-        };
         let (is_doubling, is_chosen) = (self.design.scan == Scan::Doubling, self.design.tiling == Tiling::Chosen);
         Memory {
-            texture: texture(),
-            borders,
-            largest: buffer(levels, 4),
-            other: is_doubling.then(texture),
-            late_dispatch: (is_doubling && is_chosen).then(late_dispatch),
+            texture: texture(Scratch::SummedTable(self.part)),
+            borders: [border(0, lines), border(1, lines), border(2, corners)],
+            largest: buffer(Scratch::LargestSums, 4 * u64::from(levels), wgpu::BufferUsages::COPY_DST),
+            other: is_doubling.then(|| texture(Scratch::DoubledTable)),
+            late_dispatch: (is_doubling && is_chosen)
+                .then(|| buffer(Scratch::LateDoubling, 12, wgpu::BufferUsages::INDIRECT)),
         }
     }
 
@@ -416,17 +423,7 @@ impl SummedAreaTable {
 
     /// The largest sum of tiles of 2^i blocks, as bits of floats; see the shader's `tile_side`.
     pub(crate) fn largest(&self) -> Option<&wgpu::Buffer> {
-        self.made.as_ref().map(|made| &made.memory.largest)
-    }
-
-    /// Bytes of the table and of what it is made with.
-    pub(crate) fn memory_bytes(&self) -> u64 {
-        self.made.as_ref().map_or(0, |made| {
-            let table = u64::from(made.size.x) * u64::from(made.size.y) * 16;
-            let Memory { borders, largest, other, late_dispatch, .. } = &made.memory;
-            let buffers: u64 = borders.iter().chain([largest]).chain(late_dispatch).map(wgpu::Buffer::size).sum();
-            table * if other.is_some() { 2 } else { 1 } + buffers
-        })
+        self.made.as_ref().map(|made| &*made.memory.largest)
     }
 }
 

@@ -95,7 +95,7 @@ impl std::ops::Add for Sum4 {
 }
 
 fn of(gpu: &Gpu, sums: Sums, scan: Scan, tiling: Tiling) -> SummedAreaTable {
-    SummedAreaTable::new(gpu, TableDesign { sums, scan, tiling }, &Source::Texture)
+    SummedAreaTable::new(gpu, TableDesign { sums, scan, tiling }, 0, &Source::Texture)
 }
 
 fn check_integer(gpu: &Gpu, made: &mut SummedAreaTable, size: UVec2, side: u32) {

@@ -1,0 +1,45 @@
+//! The runs that `antumbra compare` holds its own against.
+
+use std::path::{Path, PathBuf};
+
+use antumbra_lab::baseline::{Baseline, Source};
+use antumbra_lab::compare::CompareRequest;
+use antumbra_lab::error::LabError;
+use antumbra_lab::report::METRICS_PATH;
+use serde_json::json;
+
+use crate::args::CompareArgs;
+use crate::failure::Failure;
+
+/// The baseline of each scene: the file that is given, or, of several scenes, those in the folder.
+pub(super) fn baselines(args: &CompareArgs, folders: &[String]) -> Result<Vec<Option<BaselineFile>>, Failure> {
+    let Some(given) = &args.run.baseline else { return Ok(vec![None; folders.len()]) };
+    if folders.len() > 1 && given.is_file() {
+        let why = format!(
+            "--baseline {}: it is of one scene, and here are several; give the folder that `compare` wrote of the same scenes",
+            given.display()
+        );
+        return Err(Failure::Input(why));
+    }
+    let read = |folder: &String| {
+        let path = if given.is_dir() { given.join(folder).join(METRICS_PATH) } else { given.clone() };
+        let baseline = Baseline::read(&path, Source::Compare)?;
+        Ok(Some(BaselineFile { path, baseline }))
+    };
+    folders.iter().map(read).collect()
+}
+
+/// A baseline and where it is from.
+#[derive(Clone)]
+pub(super) struct BaselineFile {
+    pub(super) path: PathBuf,
+    pub(super) baseline: Baseline,
+}
+
+/// Refuses a baseline of something else.
+pub(super) fn check_view(path: &Path, baseline: &Baseline, request: &CompareRequest<'_>) -> Result<(), LabError> {
+    let name = request.scene_name();
+    let setup = request.setup.counted_from(-request.anchor).to_toml();
+    let view = [("name", json!(name)), ("size", json!(request.size_px.to_array())), ("setup", json!(setup))];
+    baseline.check_view(path, &view)
+}

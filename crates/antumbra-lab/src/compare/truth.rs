@@ -1,0 +1,138 @@
+//! What the techniques of a comparison are held against: traced, or filtered exactly.
+
+use std::time::Instant;
+
+use antumbra_reference::{Tracer, VisibilityOptions};
+use image::RgbImage;
+
+use super::{CompareRequest, Truth};
+use crate::error::LabError;
+use crate::picture::Visibility;
+use crate::progress::Progress;
+use crate::report::{Reference, ReferenceInfo, Report};
+use crate::scene_facts::SceneFacts;
+use crate::technique_run::TechniqueChoice;
+use crate::truth::{LightTruth, trace_lights_until};
+use crate::view::View;
+
+/// The truth of every light, and what came to light with it.
+pub(super) struct Judge {
+    /// In the setup's order; of a report that is resumed the judged light's in every place, since the others only shade its picture.
+    pub(super) truths: Vec<LightTruth>,
+    /// Shaded with all of them.
+    pub(super) picture: RgbImage,
+    pub(super) facts: Option<SceneFacts>,
+    pub(super) warnings: Vec<String>,
+    info: ReferenceInfo,
+}
+
+impl Judge {
+    /// Traces every light.
+    pub(super) fn trace(
+        request: &CompareRequest<'_>,
+        view: &View<'_>,
+        deadline: Option<Instant>,
+        progress: &dyn Progress,
+    ) -> Result<Self, LabError> {
+        // Of a filtered truth the tracer tells no more than which pixels are judged.
+        let samples = if request.truth == Truth::Traced { request.samples } else { 1 };
+        let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
+        progress.begin("building the ray tracer's tree", 0);
+        let tracer = Tracer::new(request.scene)?;
+        let (camera, lights) = (&request.setup.camera, &request.setup.lights);
+        let receivers = tracer.primary(camera, request.size_px);
+        let mut truths = trace_lights_until(&tracer, &receivers, lights, &options, deadline, progress)?;
+        let mut warnings = request.scene.warnings.clone();
+        let seen = view.surface_points()?;
+        let others: Vec<usize> = truths.iter_mut().map(|truth| truth.judge_what_is_seen(&seen, camera.eye)).collect();
+        if others[request.light] > 0 {
+            warnings.push(format!(
+                "{} pixels are not judged: an edge passes through their centres, and the depth buffer shows another face \
+                 there than the ray meets.",
+                others[request.light]
+            ));
+        }
+        // A truth of one ray knows no penumbra.
+        let facts = (request.truth == Truth::Traced).then(|| {
+            let truth = &truths[request.light];
+            SceneFacts::measure(request.scene, &tracer, &receivers, camera, &lights[request.light], truth)
+        });
+        let facts = facts.transpose()?;
+        if request.truth == Truth::Filtered {
+            let (own, warning) = filtered(request, view, &truths)?;
+            truths = own;
+            warnings.push(warning);
+        }
+        let visibilities: Vec<&Visibility> = truths.iter().map(|truth| &truth.visibility).collect();
+        let picture = view.shade(&visibilities)?.to_srgb8();
+        let LightTruth { rays, seconds, .. } = truths[request.light];
+        Ok(Self { info: ReferenceInfo { samples, rays, seconds }, truths, picture, facts, warnings })
+    }
+
+    /// That of an earlier report.
+    pub(super) fn of_report(report: &Report, lights: usize) -> Self {
+        let Reference { visibility, shaded, judged, info } = &report.reference;
+        let truth = LightTruth {
+            visibility: visibility.clone(),
+            judged: judged.clone(),
+            first_hits: [].into(),
+            seconds: info.seconds,
+            rays: info.rays,
+        };
+        Self {
+            truths: vec![truth; lights],
+            picture: shaded.clone(),
+            facts: report.facts.clone(),
+            warnings: report.warnings.clone(),
+            info: *info,
+        }
+    }
+
+    /// What a report has of it.
+    pub(super) fn reference(&self, light: usize) -> Reference {
+        let truth = &self.truths[light];
+        Reference {
+            visibility: truth.visibility.clone(),
+            shaded: self.picture.clone(),
+            judged: truth.judged.clone(),
+            info: self.info,
+        }
+    }
+}
+
+/// The truths of the first technique that has a kernel of fixed width, and what a reader has to know of them.
+fn filtered(
+    request: &CompareRequest<'_>,
+    view: &View<'_>,
+    judged: &[LightTruth],
+) -> Result<(Vec<LightTruth>, String), LabError> {
+    let Some(exact) = request.choices.iter().find_map(TechniqueChoice::filtered_truth) else {
+        return Err(LabError::Request(
+            "none of these techniques has a kernel of fixed width to be held against; a filtered truth is for vsm, \
+             lvsm, evsm, esm, convolution and moment"
+                .into(),
+        ));
+    };
+    let warning = format!(
+        "Each technique is held against exact percentage-closer filtering of its own light map by its own kernel, \
+         not against traced light. The truth shown is {}'s.",
+        exact.kind
+    );
+    Ok((filtered_truths(view, &exact, judged)?, warning))
+}
+
+/// The truths of a technique's own kernel, over the pixels that are judged anyway.
+pub(super) fn filtered_truths(
+    view: &View<'_>,
+    exact: &TechniqueChoice,
+    judged: &[LightTruth],
+) -> Result<Vec<LightTruth>, LabError> {
+    let mut technique = view.create(exact)?;
+    let lights = judged.iter().enumerate();
+    lights
+        .map(|(light, truth)| {
+            let visibility = view.draw(&mut technique, light, 1)?.visibility;
+            Ok(LightTruth { visibility, seconds: 0.0, rays: 0, ..truth.clone() })
+        })
+        .collect()
+}

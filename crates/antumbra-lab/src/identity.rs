@@ -1,0 +1,139 @@
+//! Identity of results: what they depend on. A file is resumed only where all of it is the same.
+
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use crate::device::LabDevice;
+use crate::error::LabError;
+use crate::output_files::{FileError, read_json};
+
+/// Program, adapter and settings of a run, as they are in its file: `antumbra` (the version), `commit`, `adapter`, `driver`,
+/// `backend`, `settings`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identity(Map<String, Value>);
+
+impl Identity {
+    /// Identity of a run on this device, by the program of this commit, with these settings: an object.
+    pub fn new(lab: &LabDevice, commit: &str, settings: &Value) -> Self {
+        let adapter = &lab.adapter;
+        let map = json!({
+            "antumbra": env!("CARGO_PKG_VERSION"),
+            "commit": commit,
+            "adapter": adapter.name,
+            "driver": adapter.driver_and_version(),
+            "backend": adapter.backend.to_string(),
+            "settings": settings,
+        });
+        let Value::Object(map) = map else { unreachable!("it is written as an object") };
+        Self(map)
+    }
+
+    /// Its keys and values, for a file.
+    pub fn entries(&self) -> impl Iterator<Item = (&String, &Value)> {
+        self.0.iter()
+    }
+
+    /// What a file keeps of the settings.
+    pub fn settings(&self) -> &Value {
+        &self.0["settings"]
+    }
+
+    /// Refuses to resume the file at `path`, whose keys are `there`, if it is of another run.
+    ///
+    /// # Errors
+    /// One line with the first key that differs, its value there and here, and what would be right.
+    pub fn check(&self, path: &Path, there: &Value) -> Result<(), LabError> {
+        let Some((key, there, here)) = self.difference(there) else { return Ok(()) };
+        Err(LabError::Request(format!(
+            "--resume {}: its {key} is {}, and here it is {}; repeat the command that wrote it, or leave out --resume to measure anew",
+            path.display(),
+            short(&there),
+            short(&here)
+        )))
+    }
+
+    /// The first key that differs in a file, and its values there and here; of settings the one below it.
+    fn difference(&self, there: &Value) -> Option<(String, Value, Value)> {
+        let differs = |(key, here): &(&String, &Value)| there.get(key.as_str()) != Some(here);
+        let (key, here) = self.0.iter().find(differs)?;
+        let there = there.get(key.as_str()).cloned().unwrap_or_default();
+        if let (Value::Object(here), Value::Object(there)) = (here, &there) {
+            let keys = here.keys().chain(there.keys());
+            let key = keys.into_iter().find(|key| here.get(key.as_str()) != there.get(key.as_str()))?;
+            let of = |map: &Map<String, Value>| map.get(key.as_str()).cloned().unwrap_or_default();
+            return Some((key.replace('_', " "), of(there), of(here)));
+        }
+        Some((key.clone(), there, here.clone()))
+    }
+}
+
+/// A value on one line of bearable length.
+fn short(value: &Value) -> String {
+    let text = match value {
+        Value::Null => return "not in it".to_owned(),
+        value => value.to_string(),
+    };
+    if text.chars().count() > 80 { format!("{}…", text.chars().take(79).collect::<String>()) } else { text }
+}
+
+/// A file's JSON; `None` if there is no such file, so that a run that was stopped early is begun anew by the same line.
+///
+/// # Errors
+/// Where it cannot be read, or is not JSON of this format.
+pub fn read_to_resume(path: &Path, format: &str) -> Result<Option<Value>, LabError> {
+    const REMEDY: &str = "leave out --resume to measure anew, or name another file";
+    if !path.exists() {
+        return Ok(None);
+    }
+    let value: Value = read_json(path, REMEDY)?;
+    if value["format"] != format {
+        return Err(FileError::bad_content(path, format!("it is no file of the format {format}"), REMEDY).into());
+    }
+    Ok(Some(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identity() -> Identity {
+        let map = json!({ "antumbra": "1.0.0", "commit": "abc", "adapter": "card", "settings": { "frames": 5, "size": [64, 36] } });
+        Identity(map.as_object().unwrap().clone())
+    }
+
+    #[test]
+    fn what_differs_is_said_in_one_line() {
+        let same = json!({ "rows": [], "settings": { "size": [64, 36], "frames": 5 }, "adapter": "card", "commit": "abc", "antumbra": "1.0.0" });
+        let refused = |key: &str, value: Value| {
+            let mut there = same.clone();
+            there[key] = value;
+            identity().check(Path::new("t.json"), &there).unwrap_err().to_string()
+        };
+        identity().check(Path::new("t.json"), &same).unwrap();
+        assert!(refused("commit", json!("def")).starts_with(
+            "--resume t.json: its commit is \"def\", and here it is \"abc\"; repeat the command that wrote it, or leave out --resume"
+        ));
+        assert!(refused("adapter", json!("other")).contains("its adapter is \"other\", and here it is \"card\""));
+        assert!(refused("antumbra", json!("0.9.0")).contains("its antumbra is \"0.9.0\""));
+        let frames = refused("settings", json!({ "frames": 9, "size": [64, 36] }));
+        assert!(frames.contains("its frames is 9, and here it is 5"), "{frames}");
+        let more = refused("settings", json!({ "frames": 5, "size": [64, 36], "other_key": 1 }));
+        assert!(more.contains("its other key is 1, and here it is not in it"), "{more}");
+        assert!(refused("settings", Value::Null).contains("its settings is not in it"));
+    }
+
+    #[test]
+    fn only_files_of_the_format_are_resumed() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("t.json");
+        assert_eq!(read_to_resume(&path, "antumbra-test").unwrap(), None);
+        for text in ["", "[]", "{}", r#"{"format":"antumbra-other"}"#] {
+            std::fs::write(&path, text).unwrap();
+            let error = read_to_resume(&path, "antumbra-test").unwrap_err().to_string();
+            assert!(error.ends_with("name another file") && !error.contains('\n'), "{error}");
+        }
+        std::fs::write(&path, r#"{"format":"antumbra-test","rows":[]}"#).unwrap();
+        assert!(read_to_resume(&path, "antumbra-test").unwrap().is_some());
+    }
+}

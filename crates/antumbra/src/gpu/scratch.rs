@@ -1,0 +1,138 @@
+//! Uses of scratch resources, which one light's commands fill and read before another's do: lights share one for each use and size.
+
+/// Use of a scratch resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Scratch {
+    /// 32-bit mask that a host's mask of another format is drawn from.
+    WideMask,
+    /// Mask before it is denoised.
+    NoisyMask,
+    /// Visibility before it is made smooth over pixels.
+    NoisyVisibility,
+    /// Mask of one part of a light.
+    PartMask,
+    /// Depth of the receivers of one part.
+    PartDepth,
+    /// Normals of the receivers of one part.
+    PartNormals,
+    /// Positions of points.
+    PointPositions,
+    /// Normals of points.
+    PointNormals,
+    /// Mask of points.
+    PointMask,
+    /// Light map of depths.
+    LightMap,
+    /// Layers of casters behind a light map.
+    LayersBehind,
+    /// Pyramid of a light map.
+    DepthPyramid,
+    /// Rows of a map whose columns are blurred next.
+    BlurredRows,
+    /// Cursors of lists per texel.
+    ListCursors,
+    /// Fragments of lists per texel.
+    ListFragments,
+    /// Lists per texel.
+    Lists,
+    /// Counters of lists per texel.
+    ListCounters,
+    /// Linked fragments of lists per texel.
+    LinkedFragments,
+    /// Links of linked fragments.
+    Links,
+    /// Nearest depths of squares of lists.
+    NearestSquares,
+    /// Layers of depths of several views.
+    DepthLayers,
+    /// Gradients of such layers.
+    LayerGradients,
+    /// Depths of maps of triangles.
+    TriangleDepths,
+    /// Triangles of such maps.
+    TriangleIds,
+    /// Maps of a light's points, as words.
+    ReprojectedMaps,
+    /// The same as textures.
+    FilterableMaps,
+    /// Names of surfels.
+    SurfelNames,
+    /// Planes of tiles of a depth basis.
+    TilePlanes,
+    /// Depth basis that tables sum, or that mips are made of.
+    DepthBasis,
+    /// Summed-area table of a part of a depth basis.
+    SummedTable(u8),
+    /// Texture that recursive doubling alternates with its table.
+    DoubledTable,
+    /// Sums along one of three borders of a table's blocks.
+    TableBorders(u8),
+    /// Largest sums of a table's tiles.
+    LargestSums,
+    /// Workgroups of late steps of doubling.
+    LateDoubling,
+    /// Pixels that interpolation leaves missing.
+    MissingPixels,
+    /// Workgroups for missing pixels.
+    MissingDispatch,
+    /// Depth attachment without content.
+    NoDepth,
+}
+
+/// What lights that share a scratch texture have in common.
+#[derive(Debug, PartialEq)]
+pub(super) struct ScratchTextureKey {
+    scratch: Scratch,
+    size: wgpu::Extent3d,
+    mip_level_count: u32,
+    sample_count: u32,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+}
+
+impl ScratchTextureKey {
+    pub(super) fn new(scratch: Scratch, descriptor: &wgpu::TextureDescriptor<'_>) -> Self {
+        Self {
+            scratch,
+            size: descriptor.size,
+            mip_level_count: descriptor.mip_level_count,
+            sample_count: descriptor.sample_count,
+            format: descriptor.format,
+            usage: descriptor.usage,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Scratch;
+    use crate::testing::gpu;
+
+    #[test]
+    fn textures_are_shared_by_use_and_description() {
+        let Some(gpu) = gpu() else { return };
+        let texture = |scratch, mip_level_count, format| {
+            let descriptor = wgpu::TextureDescriptor {
+                label: Some("test scratch"),
+                size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
+                mip_level_count,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            };
+            gpu.device.scratch_texture(scratch, &descriptor)
+        };
+        let float = wgpu::TextureFormat::R32Float;
+        let first = texture(Scratch::DepthBasis, 1, float);
+        assert_eq!(first, texture(Scratch::DepthBasis, 1, float));
+        for other in [
+            texture(Scratch::DepthBasis, 3, float),
+            texture(Scratch::DepthBasis, 1, wgpu::TextureFormat::R32Uint),
+            texture(Scratch::SummedTable(0), 1, float),
+        ] {
+            assert_ne!(first, other);
+        }
+    }
+}

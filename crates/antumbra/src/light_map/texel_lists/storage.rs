@@ -1,0 +1,89 @@
+//! Buffers of lists, for the sizes that they have room for.
+
+use std::sync::Arc;
+
+use super::FRAGMENT_BYTES;
+use super::options::{Gather, ListOptions};
+use crate::gpu::{Gpu, Lease, NoDepth, Scratch};
+
+/// The buffers, for their sizes.
+#[derive(Debug)]
+pub(super) struct Storage {
+    pub(super) options: ListOptions,
+    pub(super) lease: Arc<Lease>,
+    pub(super) cursors: Arc<wgpu::Buffer>,
+    pub(super) fragments: Arc<wgpu::Buffer>,
+    pub(super) lists: Arc<wgpu::Buffer>,
+    pub(super) counters: Arc<wgpu::Buffer>,
+    /// Linked fragments and their links; of the least size for arrays.
+    pub(super) nodes: Arc<wgpu::Buffer>,
+    pub(super) links: Arc<wgpu::Buffer>,
+    /// Of one sample, and of four.
+    pub(super) no_depth: NoDepth,
+    pub(super) no_covered_depth: Option<NoDepth>,
+}
+
+impl Storage {
+    pub(super) fn new(gpu: &Gpu, options: &ListOptions) -> Self {
+        let texels = u64::from(options.most_texels);
+        let node_count = if options.gather == Gather::Linked { u64::from(options.capacity) } else { 0 };
+        let limits = gpu.device.limits();
+        let most_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let bytes = [
+            texels * 4,
+            u64::from(options.capacity) * FRAGMENT_BYTES,
+            // Levels have a few more or fewer lists as the map's sides change.
+            (u64::from(options.list_count) * FRAGMENT_BYTES * 5 / 4).next_multiple_of(FRAGMENT_BYTES).min(most_bytes),
+            8,
+            node_count * FRAGMENT_BYTES,
+            node_count * 4,
+        ];
+        let lease = Arc::new(Lease::new(&gpu.device, bytes.iter().sum::<u64>() + options.owners_bytes));
+        // Lights share buffers of a few sizes.
+        let rounded = |bytes: u64| if lease.is_own() { bytes } else { bytes.next_power_of_two().min(most_bytes) };
+        let buffer = |scratch, label, bytes: u64| {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+            let descriptor = wgpu::BufferDescriptor {
+                label: Some(label),
+                size: rounded(bytes).max(16),
+                usage,
+                mapped_at_creation: false,
+            };
+            lease.buffer(&gpu.device, scratch, &descriptor)
+        };
+        let no_depth = |sample_count| NoDepth::at_least(gpu, options.map_size, sample_count);
+        let [cursors, fragments, lists, counters, nodes, links] = bytes;
+        Self {
+            options: *options,
+            cursors: buffer(Scratch::ListCursors, "antumbra list cursors", cursors),
+            fragments: buffer(Scratch::ListFragments, "antumbra fragments", fragments),
+            lists: buffer(Scratch::Lists, "antumbra lists", lists),
+            counters: buffer(Scratch::ListCounters, "antumbra list counters", counters),
+            nodes: buffer(Scratch::LinkedFragments, "antumbra linked fragments", nodes),
+            links: buffer(Scratch::Links, "antumbra links", links),
+            no_depth: no_depth(1),
+            no_covered_depth: (options.samples > 1).then(|| no_depth(options.samples)),
+            lease,
+        }
+    }
+
+    /// Whether other options can use these buffers.
+    pub(super) fn fits(&self, options: &ListOptions) -> bool {
+        self.options.most_texels == options.most_texels
+            && self.options.gather == options.gather
+            && self.options.samples == options.samples
+            && self.options.capacity == options.capacity
+            && self.options.owners_bytes == options.owners_bytes
+            && self.lists.size() >= u64::from(options.list_count) * FRAGMENT_BYTES
+    }
+
+    /// Makes attachments wide and high enough for the options' map.
+    pub(super) fn widen(&mut self, gpu: &Gpu) {
+        for no_depth in std::iter::once(&mut self.no_depth).chain(&mut self.no_covered_depth) {
+            let needed = no_depth.size().max(self.options.map_size);
+            if needed != no_depth.size() {
+                *no_depth = NoDepth::at_least(gpu, needed, no_depth.sample_count());
+            }
+        }
+    }
+}
