@@ -108,9 +108,12 @@ shaders! {
     /// The same with every point tested against every patch.
     #[cfg(test)]
     BITMASK_RESOLVE_EXHAUSTIVE = "techniques/single_map/bitmask/resolve" with "exhaustive";
-    /// `bitmask`: patches of given squares.
+    /// The same with every square split that may be too wide.
     #[cfg(test)]
-    BITMASK_PATCH_PROBE = "techniques/single_map/bitmask/probe";
+    BITMASK_RESOLVE_ONE_BY_ONE = "techniques/single_map/bitmask/resolve" with "one_by_one";
+    /// Micro-patches of given squares.
+    #[cfg(test)]
+    PATCH_PROBE = "techniques/single_map/micro_patches/probe";
     /// `pcss_anisotropic`: `pcss` over the pixel's footprint.
     PCSS_ANISOTROPIC_RESOLVE = "techniques/single_map/pcss_anisotropic/resolve";
     /// `multi_view`: adds a batch of views to the mask.

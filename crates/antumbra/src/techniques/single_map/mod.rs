@@ -14,6 +14,7 @@ use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
 pub mod bitmask;
 pub mod hard;
+mod micro_patches;
 pub mod pcf;
 pub mod pcss;
 pub mod pcss_anisotropic;

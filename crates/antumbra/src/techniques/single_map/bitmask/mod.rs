@@ -1,26 +1,29 @@
 //! `bitmask`: a bit for each point of the light, set where a texel of the light map hides the point.
 //!
 //! Michael Schwarz, Marc Stamminger, "Bitmask Soft Shadows", Computer Graphics Forum 26(3) (Eurographics 2007), 515–524. The map
-//! stands for the casters: each texel is a *micro-patch*, a square at the texel's depth. Projected from the receiver onto
-//! the light's plane it hides an upright rectangle of the light (`patch.wesl`; Guennebaud, Barthe, Paulin, "Real-time soft shadow mapping by
-//! backprojection", EGSR 2006, add such rectangles' areas up). A bit for each of a set of light points records what is hidden: where
-//! patches overlap, a point is counted once, however many hide it, and several layers of casters are one more set of
-//! patches each.
+//! stands for the casters: each texel is a *micro-patch*, a square at the texel's depth (`micro_patches`).
+//! Projected from the receiver onto the light's plane it hides an upright rectangle of the light; Guennebaud, Barthe, Paulin
+//! ("Real-time soft shadow mapping by backprojection", EGSR 2006) add such rectangles' areas up. A bit for each of a set of light points
+//! records what is hidden: where patches overlap, a point is counted once, however many hide it, and several layers of casters are
+//! one more set of patches each.
 //!
 //! For each receiver:
 //! 1. **Search area.** The part of the map through which the receiver sees the light, which a min/max pyramid of the map narrows down.
-//! 2. **Patches** (`window.wesl`). A quadtree over that part: a square whose nearest depth hides nothing of the light is skipped, and one whose
+//! 2. **Patches** (`window.wesl`). A quadtree over that part: a square whose nearest depth hides nothing of the light is skipped. Where one
+//!    surface in front of the receiver fills a square without a gap, by its nearest and its farthest depth, the square hides as a whole what
+//!    a segment reaches through it at all depths between, and its parts are left out if they can hide no other point. Else a square whose
 //!    patch may be wider than the light's width / `patches` is split, down to texels. A square of several texels shows the depth of one of
 //!    them, at a place that is random at each pixel and evenly spread over squares: the share of squares that counts as covered is
-//!    then that of their area, where the nearest depth of each would darken whatever is near a silhouette. What is in front of the receiver's plane
-//!    is a patch, in every layer.
+//!    then that of their area, where the nearest depth of each would darken whatever is near a silhouette. What is in front of the receiver's
+//!    plane is a patch, in every layer.
 //! 3. **Gaps** (`gaps`). The side that two squares share lies at two places of the light's plane where their depths differ. Each patch is
 //!    carried on to where its neighbours begin, corners included, as Guennebaud et al. fill gaps; bits make overlaps harmless. Between two
 //!    occluders the gap stays open, as it is in space: what one hides of the other is in the layers behind.
 //! 4. **Bits** (`light_bits.wesl`). A table of the points, sorted into 32 bins along either axis, gives those that may lie in the
-//!    rectangle; they are tested one by one.
+//!    rectangle; they are tested one by one. The search ends when all are hidden.
 //!
 //! # Departures from the paper
+//! `bitmask:paper` turns off what a parameter names; the parameters' declarations list them.
 //! - The points are those of the other techniques of one map, moved at each pixel (`rotate`); the paper's are the same at all pixels, which
 //!   shows bands.
 //! - The table holds prefixes of bins for a rectangle's, a disk's, a sun's or a sphere's points in their own coordinates, and the points
@@ -33,8 +36,7 @@
 //! Silhouettes are staircases of texels, and no penumbra is narrower than a texel. Nothing is known behind the last layer, nor behind
 //! a host's own depth map: light leaks in below stacked occluders. Micro-patches are parallel to the map: the paper's micro-quads, between
 //! texels' centres, are not here. Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide
-//! penumbrae. It takes about ten times as long as `smrt` on a software renderer (`overlap`, 320 × 180). Loops are bounded by the counts of
-//! patches, layers and points.
+//! penumbrae. Loops are bounded by the counts of patches, layers and points.
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -45,8 +47,6 @@ use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{TapLists, TapUse, Taps, TapsProgram};
 use crate::techniques::single_map::{MapResolve, PreparedMapResolve, ResolvePass};
 
-#[cfg(test)]
-mod cpu;
 pub(crate) mod gpu_types;
 mod params;
 #[cfg(test)]

@@ -44,4 +44,15 @@ params! {
     Fast { map_size: MapSize::Texels(640), samples: 32, patches: 8, layers: 2, }
     High { map_size: MapSize::Texels(2048), samples: 128, patches: 32, layers: 4, }
     Best { map_size: MapSize::Texels(4096), samples: 256, patches: 64, layers: 4, }
+    => Paper {
+        gaps: BitmaskGaps::All, ours "The gap between two surfaces stays open, as it is in space.";
+        patches: 64, ours "Squares of up to a sixteenth of the light's width stand for their texels.";
+        rotate: false, ours "The points are moved at each pixel: noise in place of bands.";
+    } kept {
+        "A square of several texels, narrower than 1/64 of the light, shows one of them; the paper projects every texel.",
+        "Squares of a quadtree by a min/max pyramid; the paper has a multi-scale map.",
+        "A table leaves few points, which are tested one by one; the paper takes a rectangle's bits from tables.",
+        "Micro-patches alone: the paper has micro-quads between texels' centres, too.",
+        "Points below the receiver's horizon are hidden.",
+    }
 }

@@ -1,112 +1,17 @@
-//! Patches against rays in space, bits against tests of every point, and what bits are for: occluders one behind another.
+//! Bits against tests of every point, and what bits are for: occluders one behind another.
 
-use antumbra_light::{Light, LightShape, hash_u32, unit_f32};
+use antumbra_light::{Light, LightShape};
 use glam::{Vec2, Vec3};
 
-use super::cpu::{Patch, Squares, hidden_point};
 use super::{Bitmask, BitmaskParams, gpu_types};
 use crate::TechniqueKind;
 use crate::contract::Params;
-use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, compute_pipeline};
+use crate::gpu::{Gpu, Recorder, Stage};
 use crate::shaders;
 use crate::techniques::Technique;
-use crate::testing::{
-    Case, Mesh, RECTANGLE, SIZE, View, gpu, half_plane_visibility, read_storage, read_texture, rmse, test_ground,
-};
+use crate::testing::{Case, Mesh, RECTANGLE, SIZE, View, gpu, half_plane_visibility, read_texture, rmse, test_ground};
 
 const KIND: TechniqueKind = TechniqueKind::Bitmask;
-
-/// In [0, 1).
-fn random(i: u32, of: u32) -> f32 {
-    unit_f32(hash_u32(i ^ hash_u32(of + 0x51ed)))
-}
-
-#[test]
-fn the_reference_hides_what_lies_on_the_segment() {
-    // Halfway up, an occluder hides the point that mirrors the receiver in it.
-    let hidden = hidden_point(Vec3::new(0.5, 0.0, 4.0), Vec2::new(100.0, 0.0), 2.0, 100.0);
-    assert!((hidden - Vec2::new(350.0, 0.0)).length() < 1e-3, "{hidden}");
-}
-
-bindings! {
-    struct Probe = "patch probe", COMPUTE, group 0 of [BITMASK_PATCH_PROBE] {
-        0 inputs: Storage,
-        1 outputs: ReadWrite,
-    }
-}
-
-/// `ProbedSquare` of the shader, as words.
-type ProbedSquare = [f32; 16];
-
-/// The shader's patches of squares, alone and joined.
-fn probed(gpu: &Gpu, squares: &[ProbedSquare]) -> Vec<[Patch; 2]> {
-    let buffer = |bytes: usize, usage| {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("test probe"),
-            size: bytes as u64,
-            usage: usage | wgpu::BufferUsages::STORAGE,
-            mapped_at_creation: false,
-        })
-    };
-    let input = buffer(size_of_val(squares), wgpu::BufferUsages::COPY_DST);
-    let output = buffer(32 * squares.len(), wgpu::BufferUsages::COPY_SRC);
-    gpu.queue().write_buffer(&input, 0, bytemuck::cast_slice(squares));
-    let layout = Probe::layout(gpu);
-    let pipeline = compute_pipeline(gpu, "test probe", shaders::BITMASK_PATCH_PROBE, &[&layout]);
-    let group = Probe { inputs: &input, outputs: &output }.kept_group(gpu, &layout);
-    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-    pass.set_pipeline(&pipeline);
-    pass.set_bind_group(0, &group, &[]);
-    pass.dispatch_workgroups(squares.len().div_ceil(64) as u32, 1, 1);
-    drop(pass);
-    gpu.queue().submit([encoder.finish()]);
-    let patch = |v: &[f32]| Patch { low: Vec2::new(v[0], v[1]), high: Vec2::new(v[2], v[3]) };
-    read_storage::<[f32; 8]>(gpu, &output).iter().map(|v| [patch(&v[..4]), patch(&v[4..])]).collect()
-}
-
-#[test]
-fn patches_are_what_rays_through_their_corners_hit() {
-    let Some(gpu) = gpu() else { return };
-    const TEXELS_PER_TANGENT: f32 = 512.0;
-    let scene = |i: u32| {
-        let receiver_m = Vec3::new(2.0 * random(i, 0) - 1.0, 2.0 * random(i, 1) - 1.0, 5.0 + random(i, 2));
-        let depth_m = move |x: i32, y: i32| {
-            let square = hash_u32(i ^ hash_u32((x + 3) as u32 ^ ((y + 3) as u32) << 8));
-            // A quarter of the neighbours hides nothing.
-            let hides = (x, y) == (0, 0) || unit_f32(hash_u32(square)) > 0.25;
-            hides.then(|| 1.0 + 3.0 * unit_f32(square))
-        };
-        (receiver_m, depth_m)
-    };
-    let square = |i: u32| {
-        let (receiver_m, depth_m) = scene(i);
-        let center = TEXELS_PER_TANGENT * receiver_m.truncate() / receiver_m.z;
-        let scale = |x, y| depth_m(x, y).map_or(0.0, |z_m: f32| 1.0 / (1.0 / z_m - 1.0 / receiver_m.z));
-        let (low, high) = (-center, Vec2::ONE - center);
-        [
-            [low.x, low.y, high.x, high.y],
-            [scale(-1, -1), scale(0, -1), scale(1, -1), scale(0, 0)],
-            [scale(-1, 1), scale(0, 1), scale(1, 1), 0.0],
-            [scale(-1, 0), scale(1, 0), 0.0, 0.0],
-        ]
-        .concat()
-        .try_into()
-        .expect("sixteen words")
-    };
-    let squares: Vec<ProbedSquare> = (0..4096).map(square).collect();
-    let mut wider = 0;
-    for (i, [alone, joined]) in (0..).zip(probed(gpu, &squares)) {
-        let (receiver_m, depth_m) = scene(i);
-        let squares = Squares { receiver_m, texels_per_tangent: TEXELS_PER_TANGENT, depth_m: &depth_m };
-        for (is, of) in [(alone, squares.alone(0, 0)), (joined, squares.joined(0, 0))] {
-            let off = (is.low - of.low).abs().max((is.high - of.high).abs()).max_element();
-            assert!(off < 0.02, "square {i}: {is:?}, and {of:?} by rays");
-        }
-        wider += usize::from(joined != alone);
-    }
-    assert!(wider > 2000, "{wider} squares have gaps beside them");
-}
 
 /// The mask of a technique that is made by hand.
 fn mask_of(gpu: &Gpu, case: &Case, technique: &mut Bitmask, params: &BitmaskParams) -> Vec<f32> {
@@ -148,6 +53,32 @@ fn the_table_leaves_no_point_out() {
             let off = masks[0].iter().zip(&masks[1]).filter(|(a, b)| a != b).count();
             assert_eq!(off, 0, "{shape:?}, {key}={value}: pixels that differ");
         }
+    }
+}
+
+/// A square that one surface fills hides what its texels hide, one by one, and leaves no part out that hides more.
+#[test]
+fn whole_squares_hide_what_their_texels_hide() {
+    let Some(gpu) = gpu() else { return };
+    let mut case = Case::half_plane(gpu, RECTANGLE);
+    // A strip, so tilted that few texels, and not many, are whole squares.
+    let corners =
+        [Vec3::new(0.4, 2.15, -1.5), Vec3::new(0.4, 2.15, 1.5), Vec3::new(-0.2, 2.0, 1.5), Vec3::new(-0.2, 2.0, -1.5)];
+    case.meshes.push(Mesh::new(gpu, &corners, &[0, 1, 2, 0, 2, 3]));
+    let pixels = case.ground_pixels(test_ground);
+    for gaps in ["open", "surfaces", "all"] {
+        let [whole, split] = [shaders::BITMASK_RESOLVE, shaders::BITMASK_RESOLVE_ONE_BY_ONE].map(|wgsl| {
+            let mut params = BitmaskParams::default();
+            for (key, value) in [("map_size", "512"), ("samples", "256"), ("patches", "64"), ("gaps", gaps)] {
+                params.set(Bitmask::NAME, key, value).expect("in range");
+            }
+            mask_of(gpu, &case, &mut Bitmask::with_shader(gpu, wgsl), &params)
+        });
+        let partly = pixels.iter().filter(|(i, _)| (0.02..0.98).contains(&split[*i])).count();
+        assert!(partly > 100, "{partly} pixels in penumbrae");
+        let most = pixels.iter().map(|(i, _)| (whole[*i] - split[*i]).abs()).fold(0.0, f32::max);
+        println!("gaps={gaps}: {most:.4} apart at the most");
+        assert!(most <= 2.0 / 256.0, "gaps={gaps}: {most} apart");
     }
 }
 

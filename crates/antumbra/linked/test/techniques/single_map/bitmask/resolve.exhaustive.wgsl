@@ -57,15 +57,20 @@ fn hide_by(patch_: patch_Patch, wider: patch_Patch, bins: light_bits_Bins, light
     return has_more;
 }
 
-fn hide_in(window: window_Window, square: window_Square, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) {
+struct Layers {
+    first: u32,
+    end: u32
+}
+
+fn hide_in(window: window_Window, square: window_Square, layers: Layers, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) {
     let slope = max(settings_bitmask.steepest_gap, 0.0);
-    for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
+    for (var layer = layers.first; layer < min(layers.end, behind_LAYER_COUNT); layer++) {
         let scale = window_scale_in(window, square, layer);
         if scale <= 0.0 {
             break;
         }
         let widest = window_widest_patch(window, square, scale, slope);
-        let bins = light_bits_bins_of(light, widest);
+        let bins = light_bits_bins_of(light, window_near_open(window, widest));
         if hide_by(window_own_patch(window, square, scale), widest, bins, light, hidden) {
             let filled = window_joined_patch(window, square, scale, layer, slope);
             _ = hide_by(filled, filled, bins, light, hidden);
@@ -73,23 +78,54 @@ fn hide_in(window: window_Window, square: window_Square, light: light_taps_Light
     }
 }
 
-fn hide_below(window: window_Window, root: vec2u, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) {
+fn hide_whole(window: window_Window, square: window_Square, depths: window_Depths, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) -> bool {
+    let slope = max(settings_bitmask.steepest_gap, 0.0);
+    let outer = window_outer_patch(window, square, depths, slope);
+    return hide_by(window_inner_patch(window, square, depths, slope), outer, light_bits_bins_of(light, window_near_open(window, outer)), light, hidden);
+}
+
+const SKIP = 0u;
+
+const SHOW = 1u;
+
+const SPLIT = 2u;
+
+fn step_at(window: window_Window, square: window_Square, layers: Layers, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) -> u32 {
+    if square.level == 0u {
+        return SHOW;
+    }
+    let depths = window_depths_in(window, square);
+    if depths.most <= 0.0 {
+        return SKIP;
+    }
+    if window_side_of(square) <= window.widest * depths.most {
+        return SHOW;
+    }
+    {
+        if layers.end == 1u && depths.least > 0.0 && !hide_whole(window, square, depths, light, hidden) {
+            return SKIP;
+        }
+    }
+    return SPLIT;
+}
+
+fn hide_below(window: window_Window, root: vec2u, layers: Layers, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) {
     let across = 2u * settings_bitmask.patches + 4u;
     let end = 1u << (2u * window.level);
     var level = window.level;
     var code = 0u;
     for (var i = 0u; i < LEVELS * across * across; i++) {
-        if code >= end {
+        if code >= end || is_all_hidden(*hidden) {
             break;
         }
         let square = window_square_at(window, root, code, level);
-        let most_g = select(0.0, window_most_g_in(window, square), level > 0u);
-        if most_g > 0.0 && window_side_of(square) > window.widest * most_g {
+        let step = step_at(window, square, layers, light, hidden);
+        if step == SPLIT {
             level -= 1u;
             continue;
         }
-        if level == 0u || most_g > 0.0 {
-            hide_in(window, square, light, hidden);
+        if step == SHOW {
+            hide_in(window, square, layers, light, hidden);
         }
         code += 1u << (2u * level);
         level = min(countTrailingZeros(code) / 2u, window.level);
@@ -114,6 +150,25 @@ fn visible_share(light: light_taps_LightPlane, hidden: Hidden) -> f32 {
     return sums.x / max(select(f32(settings_bitmask.sample_count), sums.y, light_taps_HAS_EMISSION), 1e-20);
 }
 
+fn hide_all(window: window_Window, layers: Layers, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) {
+    for (var y = 0u; y < min(window.count.y, window_ROOTS + 1u); y++) {
+        for (var x = 0u; x < min(window.count.x, window_ROOTS + 1u); x++) {
+            hide_below(window, window.first + vec2u(x, y), layers, light, hidden);
+        }
+    }
+}
+
+fn open_bounds(light: light_taps_LightPlane, hidden: Hidden) -> patch_Patch {
+    var bounds = patch_Patch(vec2f(1e30), vec2f(-1e30));
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
+        for (var rest = ~hidden.words[word]; rest > 0u; rest &= rest - 1u) {
+            let offset = light_taps_texels_of(light, light_taps_place_of(light, light_taps_taps[32u * word + countTrailingZeros(rest)].xyz));
+            bounds = patch_Patch(min(bounds.low, offset), max(bounds.high, offset));
+        }
+    }
+    return bounds;
+}
+
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
@@ -134,12 +189,13 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let texels = light_taps_texels_per_offset();
     let reach = abs(texels[0]) * extent.x + abs(texels[1]) * extent.y;
     let at = map_receiver_map_receiver(plane, pos_in_light.z);
-    let window = window_window_of(at, pos_in_light.z, reach, most_g, settings_bitmask.patches, shift + R2);
+    var window = window_window_of(at, pos_in_light.z, reach, most_g, settings_bitmask.patches, shift + R2);
     var hidden = below_horizon(light, share);
-    for (var y = 0u; y < min(window.count.y, window_ROOTS + 1u); y++) {
-        for (var x = 0u; x < min(window.count.x, window_ROOTS + 1u) && !is_all_hidden(hidden); x++) {
-            hide_below(window, window.first + vec2u(x, y), light, &hidden);
+    for (var part = 0u; part < min(behind_LAYER_COUNT, 2u) && !is_all_hidden(hidden); part++) {
+        if part == 1u {
+            window.open = open_bounds(light, hidden);
         }
+        hide_all(window, Layers(part, select(behind_LAYER_COUNT, 1u, part == 0u)), light, &hidden);
     }
     return visible_share(light, hidden);
 }
@@ -476,6 +532,11 @@ fn horizon_half_axis_heights(receiver: inputs_Receiver) -> vec3f {
     return abs(along) * vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
 }
 
+fn horizon_rise_above_center(half_axis_heights: vec3f) -> f32 {
+    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
+    return select(length(half_axis_heights), half_axis_heights.x + half_axis_heights.y, is_rectangle);
+}
+
 fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
     let a = max(max(across.x, across.y), 1e-20);
     let b = max(min(across.x, across.y) / a, 0.01);
@@ -488,12 +549,11 @@ fn horizon_rectangle_share(height: f32, across: vec2f) -> f32 {
 fn horizon_horizon_share(receiver: inputs_Receiver) -> f32 {
     let height = horizon_center_height(receiver);
     let half = horizon_half_axis_heights(receiver);
-    let is_rectangle = inputs_light_source.kind == light_KIND_RECTANGLE;
-    let reach = select(length(half), half.x + half.y, is_rectangle);
+    let reach = horizon_rise_above_center(half);
     if abs(height) >= reach {
         return select(0.0, 1.0, height > 0.0);
     }
-    if is_rectangle {
+    if inputs_light_source.kind == light_KIND_RECTANGLE {
         return horizon_rectangle_share(height, half.xy);
     }
     let h = height / max(reach, 1e-20);
@@ -686,7 +746,7 @@ fn light_bits_table_place(tap: vec2f) -> vec2f {
 fn light_bits_make_prefix(lane: u32) {
     let axis = lane / light_bits_BINS;
     let bin = lane % light_bits_BINS;
-    for (var word = 0u; word < settings_MOST_WORDS; word++) {
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
         var bits = 0u;
         for (var i = 0u; i < 32u; i++) {
             let point = 32u * word + i;
@@ -707,35 +767,19 @@ struct light_bits_Bins {
     last: vec2i
 }
 
-fn light_bits_place_at(light: light_taps_LightPlane, offset: vec2f) -> vec2f {
-    let right = light.right + offset * light.nearness.x;
-    let up = light.up + offset * light.nearness.y;
-    let to = offset * (1.0 - light.center_nearness) - light.origin;
-    let determinant = right.x * up.y - right.y * up.x;
-    let inverse = 1.0 / select(determinant, 1e-30, determinant == 0.0);
-    return clamp(vec2f(to.x * up.y - to.y * up.x, right.x * to.y - right.y * to.x) * inverse, vec2f(-1000000.0), vec2f(1000000.0));
-}
-
 const light_bits_ROUNDING = 0.01;
-
-const light_bits_THINNEST = 0.001;
-
-fn light_bits_is_thin(light: light_taps_LightPlane) -> bool {
-    let determinant = light.right.x * light.up.y - light.right.y * light.up.x;
-    return abs(determinant) <= light_bits_THINNEST * max(dot(light.right, light.right), dot(light.up, light.up));
-}
 
 const light_bits_FAR_OUT = 100000000.0;
 
 fn light_bits_bins_of(light: light_taps_LightPlane, patch_: patch_Patch) -> light_bits_Bins {
     let farthest = max(abs(patch_.low), abs(patch_.high));
-    if max(farthest.x, farthest.y) > light_bits_FAR_OUT || light_bits_is_thin(light) {
+    if max(farthest.x, farthest.y) > light_bits_FAR_OUT || light_place_is_thin(light) {
         return light_bits_Bins(vec2i(), vec2i(i32(light_bits_BINS) - 1));
     }
-    let a = light_bits_place_at(light, patch_.low);
-    let b = light_bits_place_at(light, vec2f(patch_.high.x, patch_.low.y));
-    let c = light_bits_place_at(light, patch_.high);
-    let d = light_bits_place_at(light, vec2f(patch_.low.x, patch_.high.y));
+    let a = light_place_place_at(light, patch_.low);
+    let b = light_place_place_at(light, vec2f(patch_.high.x, patch_.low.y));
+    let c = light_place_place_at(light, patch_.high);
+    let d = light_place_place_at(light, vec2f(patch_.low.x, patch_.high.y));
     var low = clamp(min(min(a, b), min(c, d)), vec2f(-1.0), vec2f(1.0));
     var high = clamp(max(max(a, b), max(c, d)), vec2f(-1.0), vec2f(1.0));
     if light_taps_LIGHT_KIND == light_KIND_RECTANGLE {
@@ -750,42 +794,6 @@ fn light_bits_bins_of(light: light_taps_LightPlane, patch_: patch_Patch) -> ligh
         high = clamp(0.5 * (middle + turned) + 0.5, vec2f(), vec2f(1.0));
     }
     return light_bits_Bins(vec2i(floor(f32(light_bits_BINS) * low - light_bits_ROUNDING)), vec2i(floor(f32(light_bits_BINS) * high + light_bits_ROUNDING)));
-}
-
-struct patch_Patch {
-    low: vec2f,
-    high: vec2f
-}
-
-fn patch_patch_of(low: vec2f, high: vec2f, scale: f32) -> patch_Patch {
-    return patch_Patch(low * scale, high * scale);
-}
-
-fn patch_hides(patch_: patch_Patch, offset: vec2f) -> bool {
-    return all(offset >= patch_.low) && all(offset < patch_.high);
-}
-
-struct patch_Neighbours {
-    below: vec3f,
-    beside: vec2f,
-    above: vec3f
-}
-
-fn patch_reach_of(edge: f32, own: f32, neighbours: vec3f) -> vec2f {
-    let places = edge * select(vec3f(own), neighbours, neighbours > vec3f());
-    let least = min(min(places.x, places.y), places.z);
-    let most = max(max(places.x, places.y), places.z);
-    return vec2f(min(least, edge * own), max(most, edge * own));
-}
-
-fn patch_joined(low: vec2f, high: vec2f, own: f32, around: patch_Neighbours) -> patch_Patch {
-    let left = vec3f(around.below.x, around.beside.x, around.above.x);
-    let right = vec3f(around.below.z, around.beside.y, around.above.z);
-    return patch_Patch(vec2f(patch_reach_of(low.x, own, left).x, patch_reach_of(low.y, own, around.below).x), vec2f(patch_reach_of(high.x, own, right).y, patch_reach_of(high.y, own, around.above).y));
-}
-
-fn patch_widest_of(low: vec2f, high: vec2f, scales: vec3f) -> patch_Patch {
-    return patch_Patch(min(min(low * scales.x, low * scales.y), low * scales.z), max(max(high * scales.x, high * scales.y), high * scales.z));
 }
 
 struct settings_BitmaskUniform {
@@ -804,147 +812,6 @@ var<uniform> settings_bitmask: settings_BitmaskUniform;
 override settings_WORD_COUNT: u32 = 2u;
 
 const settings_MOST_WORDS: u32 = 8;
-
-struct window_Window {
-    at: map_receiver_MapReceiver,
-    inverse_z: f32,
-    extent: vec2f,
-    widest: f32,
-    level: u32,
-    first: vec2u,
-    count: vec2u,
-    share: vec2f
-}
-
-struct window_Square {
-    place: vec2u,
-    level: u32
-}
-
-const window_ROOTS = 4u;
-
-fn window_window_of(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, most_g: f32, parts: u32, share: vec2f) -> window_Window {
-    let last = map_light_view.map_size - 1.0;
-    let low = vec2u(clamp(at.center - extent * most_g, vec2f(), last));
-    let high = vec2u(clamp(at.center + extent * most_g, vec2f(), last));
-    let span = max(high.x - low.x, high.y - low.y);
-    let level = 32u - countLeadingZeros(span / window_ROOTS);
-    let first = low >> vec2u(level);
-    let widest = 2.0 * sqrt(extent.x * extent.y) / f32(parts);
-    return window_Window(at, 1.0 / z_m, extent, widest, level, first, (high >> vec2u(level)) - first + 1u, share);
-}
-
-fn window_even_bits(number: u32) -> u32 {
-    var x = number & 1431655765u;
-    x = (x | (x >> 1u)) & 858993459u;
-    x = (x | (x >> 2u)) & 252645135u;
-    x = (x | (x >> 4u)) & 16711935u;
-    return (x | (x >> 8u)) & 65535u;
-}
-
-fn window_square_at(window: window_Window, root: vec2u, code: u32, level: u32) -> window_Square {
-    let texel = (root << vec2u(window.level)) + vec2u(window_even_bits(code), window_even_bits(code >> 1u));
-    return window_Square(texel >> vec2u(level), level);
-}
-
-fn window_side_of(square: window_Square) -> f32 {
-    return f32(1u << square.level);
-}
-
-struct window_Sides {
-    low: vec2f,
-    high: vec2f
-}
-
-fn window_sides_of(window: window_Window, square: window_Square) -> window_Sides {
-    let low = vec2f(square.place << vec2u(square.level)) - window.at.center;
-    return window_Sides(low, low + window_side_of(square));
-}
-
-fn window_most_g_in(window: window_Window, square: window_Square) -> f32 {
-    let ends = textureLoad(blocker_range_light_map_pyramid, square.place, square.level - 1u).xy;
-    let nearest = select(-ends.x, ends.y, map_light_view.depth_sign > 0.0);
-    let g = (nearest - window.at.depth) * window.at.g_per_depth;
-    let sides = window_sides_of(window, square);
-    let is_beside = any(sides.low > g * window.extent) || any(sides.high < -g * window.extent);
-    return select(g, 0.0, g <= 0.0 || (is_beside && g < window.at.edge_g));
-}
-
-const window_GOLDEN = 0.618033989;
-
-fn window_shown_texel(window: window_Window, square: window_Square) -> vec2u {
-    let share = fract(window.share + window_GOLDEN * vec2f(square.place.yx & vec2u(63u)));
-    let texel = (square.place << vec2u(square.level)) + vec2u(share * window_side_of(square));
-    return min(texel, vec2u(map_light_view.map_size) - 1u);
-}
-
-fn window_stored_depth(texel: vec2u, layer: u32) -> f32 {
-    if layer == 0u {
-        return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
-    }
-    return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
-}
-
-fn window_scale_in(window: window_Window, square: window_Square, layer: u32) -> f32 {
-    let texel = window_shown_texel(window, square);
-    let depth = window_stored_depth(texel, layer);
-    let g = (depth - window.at.depth) * window.at.g_per_depth;
-    return select(0.0, 1.0 / max(g, 1e-20), depth > map_receiver_plane_depth(window.at, vec2f(texel)));
-}
-
-fn window_scale_beside(window: window_Window, square: window_Square, step: vec2i, layer: u32) -> f32 {
-    let place = vec2i(square.place) + step;
-    if !map_receiver_is_texel(vec2f(place) * window_side_of(square)) {
-        return 0.0;
-    }
-    return window_scale_in(window, window_Square(vec2u(place), square.level), layer);
-}
-
-fn window_step_of(window: window_Window, square: window_Square, g: f32, slope: f32) -> f32 {
-    let per_slope = map_light_view.texel_in_plane * window_side_of(square);
-    return slope * space_SURFACE_SLOPE * per_slope * select(1.0, g + window.inverse_z, map_light_view.perspective == 1u);
-}
-
-fn window_joining_row(window: window_Window, square: window_Square, y: i32, layer: u32, g: f32, step: f32) -> vec3f {
-    let scales = vec3f(window_scale_beside(window, square, vec2i(-1, y), layer), window_scale_beside(window, square, vec2i(0, y), layer), window_scale_beside(window, square, vec2i(1, y), layer));
-    let steps = abs(1.0 / max(scales, vec3f(1e-30)) - g);
-    return select(vec3f(), scales, (scales > vec3f()) & (steps <= vec3f(step)));
-}
-
-fn window_neighbours_of(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Neighbours {
-    let g = 1.0 / scale;
-    let step = window_step_of(window, square, g, slope);
-    return patch_Neighbours(window_joining_row(window, square, -1, layer, g, step), window_joining_row(window, square, 0, layer, g, step).xz, window_joining_row(window, square, 1, layer, g, step));
-}
-
-fn window_beyond_edge(window: window_Window, square: window_Square, scale: f32, inside: patch_Patch) -> patch_Patch {
-    var patch_ = inside;
-    if scale * window.at.edge_g < 1.0 {
-        let last = (vec2u(map_light_view.map_size) - 1u) >> vec2u(square.level);
-        patch_.low = select(patch_.low, vec2f(-1e30), square.place == vec2u());
-        patch_.high = select(patch_.high, vec2f(1e30), square.place == last);
-    }
-    return patch_;
-}
-
-fn window_own_patch(window: window_Window, square: window_Square, scale: f32) -> patch_Patch {
-    let sides = window_sides_of(window, square);
-    return window_beyond_edge(window, square, scale, patch_patch_of(sides.low, sides.high, scale));
-}
-
-fn window_widest_patch(window: window_Window, square: window_Square, scale: f32, slope: f32) -> patch_Patch {
-    let sides = window_sides_of(window, square);
-    let g = 1.0 / scale;
-    let step = window_step_of(window, square, g, slope);
-    let scales = vec3f(1.0 / (g + step), scale, 1.0 / max(g - step, 1e-20));
-    return window_beyond_edge(window, square, scale, patch_widest_of(sides.low, sides.high, scales));
-}
-
-fn window_joined_patch(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Patch {
-    let sides = window_sides_of(window, square);
-    let around = window_neighbours_of(window, square, scale, layer, slope);
-    return window_beyond_edge(window, square, scale, patch_joined(sides.low, sides.high, scale, around));
-}
 
 override light_taps_LIGHT_KIND: u32 = 0u;
 
@@ -1097,4 +964,234 @@ fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) ->
 
 fn map_receiver_is_texel(texel: vec2f) -> bool {
     return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
+}
+
+fn light_place_place_at(light: light_taps_LightPlane, offset: vec2f) -> vec2f {
+    let right = light.right + offset * light.nearness.x;
+    let up = light.up + offset * light.nearness.y;
+    let to = offset * (1.0 - light.center_nearness) - light.origin;
+    let determinant = right.x * up.y - right.y * up.x;
+    let inverse = 1.0 / select(determinant, 1e-30, determinant == 0.0);
+    return clamp(vec2f(to.x * up.y - to.y * up.x, right.x * to.y - right.y * to.x) * inverse, vec2f(-1000000.0), vec2f(1000000.0));
+}
+
+const light_place_THINNEST = 0.001;
+
+fn light_place_is_thin(light: light_taps_LightPlane) -> bool {
+    let determinant = light.right.x * light.up.y - light.right.y * light.up.x;
+    return abs(determinant) <= light_place_THINNEST * max(dot(light.right, light.right), dot(light.up, light.up));
+}
+
+struct patch_Patch {
+    low: vec2f,
+    high: vec2f
+}
+
+fn patch_patch_of(low: vec2f, high: vec2f, scale: f32) -> patch_Patch {
+    return patch_Patch(low * scale, high * scale);
+}
+
+fn patch_hides(patch_: patch_Patch, offset: vec2f) -> bool {
+    return all(offset >= patch_.low) && all(offset < patch_.high);
+}
+
+struct patch_Neighbours {
+    below: vec3f,
+    beside: vec2f,
+    above: vec3f
+}
+
+fn patch_reach_of(edge: f32, own: f32, neighbours: vec3f) -> vec2f {
+    let places = edge * select(vec3f(own), neighbours, neighbours > vec3f());
+    let least = min(min(places.x, places.y), places.z);
+    let most = max(max(places.x, places.y), places.z);
+    return vec2f(min(least, edge * own), max(most, edge * own));
+}
+
+fn patch_joined(low: vec2f, high: vec2f, own: f32, around: patch_Neighbours) -> patch_Patch {
+    let left = vec3f(around.below.x, around.beside.x, around.above.x);
+    let right = vec3f(around.below.z, around.beside.y, around.above.z);
+    return patch_Patch(vec2f(patch_reach_of(low.x, own, left).x, patch_reach_of(low.y, own, around.below).x), vec2f(patch_reach_of(high.x, own, right).y, patch_reach_of(high.y, own, around.above).y));
+}
+
+fn patch_widest_of(low: vec2f, high: vec2f, scales: vec3f) -> patch_Patch {
+    return patch_Patch(min(min(low * scales.x, low * scales.y), low * scales.z), max(max(high * scales.x, high * scales.y), high * scales.z));
+}
+
+fn patch_innermost_of(low: vec2f, high: vec2f, scales: vec2f) -> patch_Patch {
+    return patch_Patch(max(low * scales.x, low * scales.y), min(high * scales.x, high * scales.y));
+}
+
+struct window_Window {
+    at: map_receiver_MapReceiver,
+    inverse_z: f32,
+    open: patch_Patch,
+    widest: f32,
+    level: u32,
+    first: vec2u,
+    count: vec2u,
+    share: vec2f
+}
+
+struct window_Square {
+    place: vec2u,
+    level: u32
+}
+
+const window_ROOTS = 4u;
+
+fn window_window_of(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, most_g: f32, parts: u32, share: vec2f) -> window_Window {
+    let last = map_light_view.map_size - 1.0;
+    let low = vec2u(clamp(at.center - extent * most_g, vec2f(), last));
+    let high = vec2u(clamp(at.center + extent * most_g, vec2f(), last));
+    let span = max(high.x - low.x, high.y - low.y);
+    let level = 32u - countLeadingZeros(span / window_ROOTS);
+    let first = low >> vec2u(level);
+    let widest = 2.0 * sqrt(extent.x * extent.y) / f32(parts);
+    return window_Window(at, 1.0 / z_m, patch_Patch(-extent, extent), widest, level, first, (high >> vec2u(level)) - first + 1u, share);
+}
+
+fn window_even_bits(number: u32) -> u32 {
+    var x = number & 1431655765u;
+    x = (x | (x >> 1u)) & 858993459u;
+    x = (x | (x >> 2u)) & 252645135u;
+    x = (x | (x >> 4u)) & 16711935u;
+    return (x | (x >> 8u)) & 65535u;
+}
+
+fn window_square_at(window: window_Window, root: vec2u, code: u32, level: u32) -> window_Square {
+    let texel = (root << vec2u(window.level)) + vec2u(window_even_bits(code), window_even_bits(code >> 1u));
+    return window_Square(texel >> vec2u(level), level);
+}
+
+fn window_side_of(square: window_Square) -> f32 {
+    return f32(1u << square.level);
+}
+
+struct window_Sides {
+    low: vec2f,
+    high: vec2f
+}
+
+fn window_sides_of(window: window_Window, square: window_Square) -> window_Sides {
+    let low = vec2f(square.place << vec2u(square.level)) - window.at.center;
+    return window_Sides(low, low + window_side_of(square));
+}
+
+struct window_Depths {
+    least: f32,
+    most: f32
+}
+
+fn window_depths_in(window: window_Window, square: window_Square) -> window_Depths {
+    let ends = textureLoad(blocker_range_light_map_pyramid, square.place, square.level - 1u).xy;
+    let ordered = select(-ends.yx, ends, map_light_view.depth_sign > 0.0);
+    let g = (ordered - window.at.depth) * window.at.g_per_depth;
+    let sides = window_sides_of(window, square);
+    let is_beside = any(sides.low > g.y * max(window.open.high, vec2f())) || any(sides.high < g.y * min(window.open.low, vec2f()));
+    let most = select(g.y, 0.0, g.y <= 0.0 || (is_beside && g.y < window.at.edge_g));
+    let half = 0.5 * (window_side_of(square) - 1.0);
+    let center = vec2f(square.place << vec2u(square.level)) + half;
+    let plane = map_receiver_held(window.at, map_receiver_plane_depth_at(window.at, center) + half * dot(abs(window.at.slope), vec2f(1.0)));
+    return window_Depths(select(0.0, max(g.x, 0.0), ordered.x > plane), most);
+}
+
+const window_GOLDEN = 0.618033989;
+
+fn window_shown_texel(window: window_Window, square: window_Square) -> vec2u {
+    let share = fract(window.share + window_GOLDEN * vec2f(square.place.yx & vec2u(63u)));
+    let texel = (square.place << vec2u(square.level)) + vec2u(share * window_side_of(square));
+    return min(texel, vec2u(map_light_view.map_size) - 1u);
+}
+
+fn window_stored_depth(texel: vec2u, layer: u32) -> f32 {
+    if layer == 0u {
+        return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
+    }
+    return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
+}
+
+fn window_scale_in(window: window_Window, square: window_Square, layer: u32) -> f32 {
+    let texel = window_shown_texel(window, square);
+    let depth = window_stored_depth(texel, layer);
+    let g = (depth - window.at.depth) * window.at.g_per_depth;
+    return select(0.0, 1.0 / max(g, 1e-20), depth > map_receiver_plane_depth(window.at, vec2f(texel)));
+}
+
+fn window_scale_beside(window: window_Window, square: window_Square, step: vec2i, layer: u32) -> f32 {
+    let place = vec2i(square.place) + step;
+    if !map_receiver_is_texel(vec2f(place) * window_side_of(square)) {
+        return 0.0;
+    }
+    return window_scale_in(window, window_Square(vec2u(place), square.level), layer);
+}
+
+fn window_step_of(window: window_Window, side: f32, g: f32, slope: f32) -> f32 {
+    let per_slope = map_light_view.texel_in_plane * side;
+    return slope * space_SURFACE_SLOPE * per_slope * select(1.0, g + window.inverse_z, map_light_view.perspective == 1u);
+}
+
+fn window_joining_row(window: window_Window, square: window_Square, y: i32, layer: u32, g: f32, step: f32) -> vec3f {
+    let scales = vec3f(window_scale_beside(window, square, vec2i(-1, y), layer), window_scale_beside(window, square, vec2i(0, y), layer), window_scale_beside(window, square, vec2i(1, y), layer));
+    let steps = abs(1.0 / max(scales, vec3f(1e-30)) - g);
+    return select(vec3f(), scales, (scales > vec3f()) & (steps <= vec3f(step)));
+}
+
+fn window_neighbours_of(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Neighbours {
+    let g = 1.0 / scale;
+    let step = window_step_of(window, window_side_of(square), g, slope);
+    return patch_Neighbours(window_joining_row(window, square, -1, layer, g, step), window_joining_row(window, square, 0, layer, g, step).xz, window_joining_row(window, square, 1, layer, g, step));
+}
+
+fn window_beyond_edge(window: window_Window, square: window_Square, scale: f32, inside: patch_Patch) -> patch_Patch {
+    var patch_ = inside;
+    if scale * window.at.edge_g < 1.0 {
+        let last = (vec2u(map_light_view.map_size) - 1u) >> vec2u(square.level);
+        patch_.low = select(patch_.low, vec2f(-1e30), square.place == vec2u());
+        patch_.high = select(patch_.high, vec2f(1e30), square.place == last);
+    }
+    return patch_;
+}
+
+fn window_own_patch(window: window_Window, square: window_Square, scale: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    return window_beyond_edge(window, square, scale, patch_patch_of(sides.low, sides.high, scale));
+}
+
+fn window_widest_patch(window: window_Window, square: window_Square, scale: f32, slope: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    let g = 1.0 / scale;
+    let step = window_step_of(window, window_side_of(square), g, slope);
+    let scales = vec3f(1.0 / (g + step), scale, 1.0 / max(g - step, 1e-20));
+    return window_beyond_edge(window, square, scale, patch_widest_of(sides.low, sides.high, scales));
+}
+
+fn window_joined_patch(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    let around = window_neighbours_of(window, square, scale, layer, slope);
+    return window_beyond_edge(window, square, scale, patch_joined(sides.low, sides.high, scale, around));
+}
+
+fn window_parts_side(window: window_Window, square: window_Square, depths: window_Depths) -> f32 {
+    return clamp(window.widest * depths.most, 1.0, window_side_of(square));
+}
+
+fn window_inner_patch(window: window_Window, square: window_Square, depths: window_Depths, slope: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    let step = window_step_of(window, window_parts_side(window, square, depths), depths.least, slope);
+    let whole = patch_innermost_of(sides.low, sides.high, 1.0 / vec2f(depths.least, depths.most));
+    let is_whole = depths.most - depths.least <= step;
+    return patch_Patch(whole.low, select(whole.low, whole.high, is_whole));
+}
+
+fn window_outer_patch(window: window_Window, square: window_Square, depths: window_Depths, slope: f32) -> patch_Patch {
+    let sides = window_sides_of(window, square);
+    let step = window_step_of(window, window_parts_side(window, square, depths), depths.most, slope);
+    let ends = 1.0 / vec2f(max(depths.least - step, 1e-20), depths.most + step);
+    return window_beyond_edge(window, square, 1.0 / depths.most, patch_widest_of(sides.low, sides.high, ends.xyy));
+}
+
+fn window_near_open(window: window_Window, patch_: patch_Patch) -> patch_Patch {
+    let margin = 0.01 * (window.open.high - window.open.low);
+    return patch_Patch(max(patch_.low, window.open.low - margin), min(patch_.high, window.open.high + margin));
 }

@@ -57,6 +57,14 @@ impl Squares<'_> {
         }
         patch
     }
+
+    /// What the patches of a square at two depths, and at all between, hide in common.
+    pub(crate) fn innermost(&self, x: i32, y: i32, ends_m: [f32; 2]) -> Patch {
+        const STEPS: i32 = 64;
+        let depths_m = (0..=STEPS).map(|i| ends_m[0] + (ends_m[1] - ends_m[0]) * i as f32 / STEPS as f32);
+        let patches = depths_m.map(|z_m| box_of(&self.corners(x, y, z_m)));
+        patches.reduce(|a, b| Patch { low: a.low.max(b.low), high: a.high.min(b.high) }).expect("two depths or more")
+    }
 }
 
 fn box_of(points: &[Vec2]) -> Patch {

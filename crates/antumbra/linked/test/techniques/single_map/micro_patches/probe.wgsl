@@ -1,4 +1,4 @@
-// Linked from src/techniques/single_map/bitmask/probe.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/single_map/micro_patches/probe.wesl by `cargo xtask shaders`: edit that, not this.
 
 struct ProbedSquare {
     low: vec2f,
@@ -8,12 +8,13 @@ struct ProbedSquare {
     above: vec3f,
     padding: f32,
     beside: vec2f,
-    padding_2: vec2f
+    ends: vec2f
 }
 
 struct ProbedPatches {
     alone: patch_Patch,
-    joined: patch_Patch
+    joined: patch_Patch,
+    innermost: patch_Patch
 }
 
 @group(0) @binding(0)
@@ -28,7 +29,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let square = inputs[id.x];
-    outputs[id.x] = ProbedPatches(patch_patch_of(square.low, square.high, square.scale), patch_joined(square.low, square.high, square.scale, patch_Neighbours(square.below, square.beside, square.above)));
+    outputs[id.x] = ProbedPatches(patch_patch_of(square.low, square.high, square.scale), patch_joined(square.low, square.high, square.scale, patch_Neighbours(square.below, square.beside, square.above)), patch_innermost_of(square.low, square.high, square.ends));
 }
 
 struct patch_Patch {
@@ -57,4 +58,8 @@ fn patch_joined(low: vec2f, high: vec2f, own: f32, around: patch_Neighbours) -> 
     let left = vec3f(around.below.x, around.beside.x, around.above.x);
     let right = vec3f(around.below.z, around.beside.y, around.above.z);
     return patch_Patch(vec2f(patch_reach_of(low.x, own, left).x, patch_reach_of(low.y, own, around.below).x), vec2f(patch_reach_of(high.x, own, right).y, patch_reach_of(high.y, own, around.above).y));
+}
+
+fn patch_innermost_of(low: vec2f, high: vec2f, scales: vec2f) -> patch_Patch {
+    return patch_Patch(max(low * scales.x, low * scales.y), min(high * scales.x, high * scales.y));
 }
