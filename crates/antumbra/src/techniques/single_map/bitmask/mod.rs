@@ -15,7 +15,7 @@
 //!    patch may be wider than the light's width / `patches` is split, down to texels. A square of several texels shows the depth of one of
 //!    them, at a place that is random at each pixel and evenly spread over squares: the share of squares that counts as covered is
 //!    then that of their area, where the nearest depth of each would darken whatever is near a silhouette. What is in front of the receiver's
-//!    plane is a patch, in every layer.
+//!    plane is a patch. The map comes first, and then the layers behind it, for the points that it leaves open.
 //! 3. **Gaps** (`gaps`). The side that two squares share lies at two places of the light's plane where their depths differ. Each patch is
 //!    carried on to where its neighbours begin, corners included, as Guennebaud et al. fill gaps; bits make overlaps harmless. Between two
 //!    occluders the gap stays open, as it is in space: what one hides of the other is in the layers behind.
