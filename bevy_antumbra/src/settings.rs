@@ -271,6 +271,8 @@ techniques! {
     /// default, good for most scenes.
     #[default]
     Smrt,
+    /// A bit for each point of the light, set by the texels of three layers.
+    Bitmask,
     /// Percentage-closer soft shadows over the pixel's footprint too.
     PcssAnisotropic,
     /// A map for each of many points of the light: truth, at the price of as many passes.

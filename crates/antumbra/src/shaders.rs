@@ -103,7 +103,18 @@ shaders! {
     PCSS_RESOLVE = "techniques/single_map/pcss/resolve";
     /// `smrt`: search, rays through layers.
     SMRT_RESOLVE = "techniques/single_map/smrt/resolve";
-    /// `pcss_anisotropic`: the same over the pixel's footprint.
+    /// `bitmask`: a bit for each light point, micro-patches.
+    BITMASK_RESOLVE = "techniques/single_map/bitmask/resolve";
+    /// The same with every point tested against every patch.
+    #[cfg(test)]
+    BITMASK_RESOLVE_EXHAUSTIVE = "techniques/single_map/bitmask/resolve" with "exhaustive";
+    /// The same with every square split that may be too wide.
+    #[cfg(test)]
+    BITMASK_RESOLVE_ONE_BY_ONE = "techniques/single_map/bitmask/resolve" with "one_by_one";
+    /// Micro-patches of given squares.
+    #[cfg(test)]
+    PATCH_PROBE = "techniques/single_map/micro_patches/probe";
+    /// `pcss_anisotropic`: `pcss` over the pixel's footprint.
     PCSS_ANISOTROPIC_RESOLVE = "techniques/single_map/pcss_anisotropic/resolve";
     /// `multi_view`: adds a batch of views to the mask.
     MULTI_VIEW_ACCUMULATE = "techniques/light_views/multi_view/accumulate";

@@ -21,7 +21,9 @@ use crate::techniques::ray_traced::RayTraced;
 #[cfg(feature = "receiver_lists")]
 use crate::techniques::receiver_lists::{alias_free::AliasFree, sample_based::SampleBased};
 #[cfg(feature = "single_map")]
-use crate::techniques::single_map::{hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic, smrt::Smrt};
+use crate::techniques::single_map::{
+    bitmask::Bitmask, hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic, smrt::Smrt,
+};
 #[cfg(feature = "summed")]
 use crate::techniques::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
 
@@ -210,6 +212,15 @@ techniques! {
         good_for: "near and far occluders, side by side or behind one another",
         fails_where: "rays that pass behind the last layer; penumbrae narrower than a texel, which get a texel's width",
         worst_case: "tree", "many small surfaces behind one another, which three layers do not hold",
+    }
+    "single_map", Bitmask, "bitmask", "single_map::bitmask", {
+        title: "Bitmask soft shadows",
+        source: "Schwarz, Stamminger 2007, CGF 26(3)",
+        penumbra: "from the texels of three layers, each a small square",
+        light_maps: "3",
+        good_for: "occluders at any depths, fused without double counting",
+        fails_where: "cost; staircases of texels where penumbrae are narrow; casters behind the last layer",
+        worst_case: "tree", "leaves behind the third layer are missing, and speckles of light remain",
     }
     "light_views", MultiView, "multi_view", "light_views::multi_view", {
         title: "One depth map per light sample",

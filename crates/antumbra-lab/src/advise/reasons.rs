@@ -37,6 +37,7 @@ impl Assumes {
             Kind::Pcss if has("layers", "1") || has("attach_contacts", "false") => Self::OneDepth,
             Kind::Pcss | Kind::MultiLayer => Self::SeveralDepths,
             Kind::Smrt
+            | Kind::Bitmask
             | Kind::MultiView
             | Kind::Reprojection
             | Kind::ReprojectionLayered

@@ -417,6 +417,7 @@ kept! {
     pcf: Pcf,
     pcss: Pcss,
     smrt: Smrt,
+    bitmask: Bitmask,
     multi_view: MultiView,
     vsm: Vsm,
     lvsm: Lvsm,

@@ -3,6 +3,7 @@
 
 mod as_printed;
 mod baselines;
+mod bitmask;
 mod common;
 mod edge_cases;
 mod enclosed;

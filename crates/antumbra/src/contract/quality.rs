@@ -15,8 +15,8 @@ pub enum Quality {
     High,
     /// The least error that the technique's parameters reach, whatever the time: for stills, and to compare with.
     Best,
-    /// No step of the ladder: the algorithm as its paper prints it, to compare with; see [`Printed`]. Techniques that are of
-    /// none of our five papers have no such setting, and are as they come.
+    /// No step of the ladder: the algorithm as its paper prints it, to compare with; see [`Printed`]. Techniques that do not follow one paper
+    /// closely have no such setting.
     Paper,
 }
 

@@ -69,6 +69,7 @@ techniques! {
     pcf: Pcf,
     pcss: Pcss,
     smrt: Smrt,
+    bitmask: Bitmask,
     multi_view: MultiView,
     vsm: Vsm,
     lvsm: Lvsm,

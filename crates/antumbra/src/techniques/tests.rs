@@ -27,6 +27,7 @@ fn half_plane_under_a_rectangle_light() {
         (TechniqueKind::Smrt, &[("samples", "256"), ("smooth", "false")][..], 0.002),
         // A quarter of the rays in the same penumbra, and means of them.
         (TechniqueKind::Smrt, &[("samples", "256")][..], 0.004),
+        (TechniqueKind::Bitmask, &[("samples", "256")][..], 0.003),
         (TechniqueKind::MultiLayer, &[], 0.02),
         (TechniqueKind::MultiView, &[("samples", "64")][..], 0.007),
         (TechniqueKind::MultiView, &[("samples", "256"), ("sample_set", "stratified")][..], 0.004),
@@ -81,7 +82,14 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
         let first_visible = -p.x * (1.0 - 0.375) / 0.375;
         0.5 * f32::from(u8::from(-0.5 > first_visible) + u8::from(0.5 > first_visible))
     };
-    for kind in [TechniqueKind::MultiView, TechniqueKind::Pcss, TechniqueKind::Smrt, TechniqueKind::RayTraced] {
+    let kinds = [
+        TechniqueKind::MultiView,
+        TechniqueKind::Pcss,
+        TechniqueKind::Smrt,
+        TechniqueKind::Bitmask,
+        TechniqueKind::RayTraced,
+    ];
+    for kind in kinds {
         let error = rmse(&pixels, &case.run(gpu, kind, &[]), truth);
         println!("{kind}, points: rmse {error:.4}");
         assert!(error < 0.025, "{kind}: {error}");
@@ -98,6 +106,7 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
             (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..]),
             // What the rays converge to. Means over pixels have tests of their own: a quarter of the rays, nearer to the truth.
             (TechniqueKind::Smrt, &[("samples", "256"), ("smooth", "false")][..]),
+            (TechniqueKind::Bitmask, &[("samples", "256")][..]),
             (TechniqueKind::RayTraced, &[("samples", "256")][..]),
         ] {
             let error = rmse(&pixels, &case.run(gpu, kind, settings), disk);
@@ -129,6 +138,7 @@ fn a_sun_s_penumbra_grows_with_distance_alone() {
         (TechniqueKind::MultiView, &[("samples", "256"), ("view_size", "2048")][..]),
         (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256"), ("map_size", "2048")][..]),
         (TechniqueKind::Smrt, &[("samples", "256"), ("map_size", "2048")][..]),
+        (TechniqueKind::Bitmask, &[("samples", "256"), ("map_size", "2048")][..]),
         (TechniqueKind::RayTraced, &[("samples", "256")][..]),
     ] {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), truth);
@@ -313,8 +323,7 @@ fn a_host_s_depth_map_may_be_infinitely_deep() {
     let size_px = UVec2::splat(512);
     let fov_y = 2.0 * 1.2f32.atan();
     let near_m = 0.3;
-    let take_depth =
-        "hard pcf pcss smrt pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
+    let take_depth = "hard pcf pcss smrt bitmask pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
     for name in take_depth.split(' ') {
         let kind = TechniqueKind::from_name(name).expect("a technique");
         let masks = [

@@ -252,9 +252,10 @@ fn visibility_in_space(p: Vec3) -> f32 {
 }
 
 /// Techniques whose penumbrae are near the truth wherever their occluder is.
-const CLOSE: [TechniqueKind; 10] = [
+const CLOSE: [TechniqueKind; 11] = [
     TechniqueKind::Pcss,
     TechniqueKind::Smrt,
+    TechniqueKind::Bitmask,
     TechniqueKind::MultiView,
     TechniqueKind::PcssAnisotropic,
     TechniqueKind::Essm,

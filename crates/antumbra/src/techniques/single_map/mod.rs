@@ -12,7 +12,9 @@ use crate::gpu::{
 };
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
+pub mod bitmask;
 pub mod hard;
+mod micro_patches;
 pub mod pcf;
 pub mod pcss;
 pub mod pcss_anisotropic;

@@ -31,11 +31,11 @@ pub(crate) enum TapUse {
     Square,
 }
 
-/// Two lists of taps, one after the other, of so many taps each.
+/// Lists of taps, one after the other, of so many taps each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct TapLists<'a>(pub(crate) [(Taps<'a>, TapUse, u32); 2]);
+pub(crate) struct TapLists<'a, const COUNT: usize>(pub(crate) [(Taps<'a>, TapUse, u32); COUNT]);
 
-impl TapLists<'_> {
+impl<const COUNT: usize> TapLists<'_, COUNT> {
     /// Runs a pass's preparation with the kernel of these taps.
     pub(crate) fn with_kernel<R>(&self, prepare: impl FnOnce(KernelPoints<'_>) -> R) -> R {
         prepare(KernelPoints { key: self.key(), bytes: &|| bytemuck::pod_collect_to_vec(&self.taps()) })
