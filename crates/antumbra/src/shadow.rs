@@ -121,10 +121,7 @@ impl<T: Technique> Shadow<T> {
     fn prepare_asked<'a>(&'a mut self, asked: Asked<'a>) -> Result<Prepared<'a>, Error> {
         self.params.validate(T::NAME)?;
         self.validator.check(T::NAME, &self.gpu, &asked, self.denoise.as_ref())?;
-        let casters = match asked.casters() {
-            Casters::Set { set, layers } => Some(set.key(*layers)),
-            Casters::Meshes(_) | Casters::DepthMap(_) => None,
-        };
+        let casters = asked.casters().key();
         let is_lost = self.commands.take_dropped() || !self.is_recorded;
         if is_lost {
             self.mask = Content::default();
@@ -153,6 +150,24 @@ impl<T: Technique> Shadow<T> {
         let passes = Some((uploads, outcome?));
         self.mask.ask(key);
         Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes }) })
+    }
+
+    /// Whether the mask holds what a frame would draw, so that the frame would record nothing.
+    pub(crate) fn holds(&self, frame: &Frame<'_>) -> bool {
+        let asked = Asked::Mask(*frame);
+        let key = FrameKey::of(&self.params, self.denoise.as_ref(), &asked, frame.casters.key());
+        self.is_intact() && self.mask.is_of(key.as_ref()) && self.is_settled()
+    }
+
+    /// Whether the frame prepared last was recorded and its commands were not dropped.
+    pub(crate) fn is_intact(&self) -> bool {
+        self.is_recorded && !self.commands.are_dropped()
+    }
+
+    /// Texels of the depth maps of the frame prepared last.
+    pub(crate) fn map_texels(&self) -> u64 {
+        let texels = |map: &DrawnMap| map.size_px.as_u64vec2().element_product() * (1 + map.layers_behind.len() as u64);
+        self.drawn_maps().iter().map(texels).sum()
     }
 
     /// Prepares a frame's stages, from the host's mask back to the light: each writes the mask that the one before it reads.

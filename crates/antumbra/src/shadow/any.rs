@@ -27,6 +27,9 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn drawn_maps(&self) -> Vec<DrawnMap>;
     fn drawn_lists(&self) -> Vec<DrawnLists>;
     fn overflow(&self) -> Option<Overflow>;
+    fn holds(&self, frame: &Frame<'_>) -> bool;
+    fn is_intact(&self) -> bool;
+    fn map_texels(&self) -> u64;
 }
 
 impl<T: Technique> ErasedShadow for Shadow<T> {
@@ -77,6 +80,15 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn overflow(&self) -> Option<Overflow> {
         Shadow::overflow(self)
+    }
+    fn holds(&self, frame: &Frame<'_>) -> bool {
+        Shadow::holds(self, frame)
+    }
+    fn is_intact(&self) -> bool {
+        Shadow::is_intact(self)
+    }
+    fn map_texels(&self) -> u64 {
+        Shadow::map_texels(self)
     }
 }
 
@@ -195,5 +207,20 @@ impl AnyShadow {
     /// [`Shadow::overflow`].
     pub fn overflow(&self) -> Option<Overflow> {
         self.inner.overflow()
+    }
+
+    /// [`Shadow::holds`].
+    pub(crate) fn holds(&self, frame: &Frame<'_>) -> bool {
+        self.inner.holds(frame)
+    }
+
+    /// [`Shadow::is_intact`].
+    pub(crate) fn is_intact(&self) -> bool {
+        self.inner.is_intact()
+    }
+
+    /// [`Shadow::map_texels`].
+    pub(crate) fn map_texels(&self) -> u64 {
+        self.inner.map_texels()
     }
 }
