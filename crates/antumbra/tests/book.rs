@@ -121,6 +121,11 @@ fn within_a_budget(
     Ok(())
 }
 
+/// docs/integrating.md, Half resolution.
+fn half_resolution(mut shadow: AnyShadow) {
+    shadow.set_half_resolution(true); // or the field Shadow::half_resolution
+}
+
 /// docs/integrating.md, Known before anything is allocated.
 fn known_beforehand(
     gpu: Gpu,

@@ -18,6 +18,8 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn set_quality(&mut self, quality: Quality);
     fn denoise(&self) -> Option<&Denoise>;
     fn set_denoise(&mut self, denoise: Option<Denoise>);
+    fn half_resolution(&self) -> bool;
+    fn set_half_resolution(&mut self, is_half: bool);
     fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error>;
@@ -53,6 +55,12 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn set_denoise(&mut self, denoise: Option<Denoise>) {
         self.denoise = denoise;
+    }
+    fn half_resolution(&self) -> bool {
+        self.half_resolution
+    }
+    fn set_half_resolution(&mut self, is_half: bool) {
+        self.half_resolution = is_half;
     }
     fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
         Shadow::warm_up(self, what)
@@ -150,6 +158,16 @@ impl AnyShadow {
     /// Sets the denoiser of the next frame: [`Shadow::denoise`].
     pub fn set_denoise(&mut self, denoise: Option<Denoise>) {
         self.inner.set_denoise(denoise);
+    }
+
+    /// Whether the next frame's technique writes a mask of half the width and height: [`Shadow::half_resolution`].
+    pub fn half_resolution(&self) -> bool {
+        self.inner.half_resolution()
+    }
+
+    /// Sets [`Shadow::half_resolution`] of the next frame.
+    pub fn set_half_resolution(&mut self, is_half: bool) {
+        self.inner.set_half_resolution(is_half);
     }
 
     /// [`Shadow::warm_up`].

@@ -13,6 +13,7 @@ use crate::casters::{
 use crate::contract::{DepthConvention, Error, Mask, MaskChannels, Receivers, SurfaceCoverage};
 use crate::cover::pictures::PartPictures;
 use crate::frame::denoise::Denoiser;
+use crate::frame::half_resolution::HalfResolution;
 use crate::frame::points::PointTextures;
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{Coverage, Technique};
@@ -53,6 +54,9 @@ impl<T: Technique> Shadow<T> {
         }
         if self.denoise.is_some() {
             drop(Denoiser::new(&self.gpu));
+        }
+        if self.half_resolution {
+            drop(HalfResolution::new(&self.gpu));
         }
         for scene in scenes {
             let dummy = DummyScene::new(&self.gpu, scene)?;
