@@ -104,7 +104,7 @@ pub use gpu::{
     Gpu, MemoryBytes, MemoryPlan, ObjectCounts, PassTime, PassTimer, PlannedResource, Recorder, ShaderFunction,
 };
 pub use light_set::{Budget, LightId, LightSet, LightSetFrame, MaskState, PreparedLights, RangedLight};
-pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp};
+pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp, WarmUpSteps};
 pub use technique_kind::{TechniqueFacts, TechniqueKind};
 pub use techniques::Technique;
 

@@ -37,7 +37,7 @@ use validate::Validator;
 
 pub use any::AnyShadow;
 pub use frame::{Casters, Frame, PointFrame};
-pub use warm_up::WarmUp;
+pub use warm_up::{WarmUp, WarmUpSteps};
 
 /// State of one light's shadow, by a technique known at compile time.
 pub struct Shadow<T: Technique> {

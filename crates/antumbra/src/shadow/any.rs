@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Frame, PointFrame, Prepared, Shadow, WarmUp};
+use super::{Frame, PointFrame, Prepared, Shadow, WarmUp, WarmUpSteps};
 use crate::contract::{
     Denoise, DrawnLists, DrawnMap, Error, Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
 };
@@ -21,6 +21,7 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn half_resolution(&self) -> bool;
     fn set_half_resolution(&mut self, is_half: bool);
     fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
+    fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error>;
     fn shader_function(&mut self, group: u32, prefix: &str) -> Result<ShaderFunction, Error>;
@@ -34,7 +35,7 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn map_texels(&self) -> u64;
 }
 
-impl<T: Technique> ErasedShadow for Shadow<T> {
+impl<T: Technique + 'static> ErasedShadow for Shadow<T> {
     fn param_specs(&self) -> &'static [ParamSpec] {
         T::Params::specs()
     }
@@ -64,6 +65,9 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
         Shadow::warm_up(self, what)
+    }
+    fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps {
+        Shadow::warm_up_steps(self, what)
     }
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
         Shadow::prepare(self, frame)
@@ -176,6 +180,11 @@ impl AnyShadow {
     /// As [`Shadow::warm_up`].
     pub fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
         self.inner.warm_up(what)
+    }
+
+    /// [`Shadow::warm_up_steps`].
+    pub fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps {
+        self.inner.warm_up_steps(what)
     }
 
     /// [`Shadow::prepare`].
