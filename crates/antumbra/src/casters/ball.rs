@@ -13,7 +13,7 @@ pub(crate) struct Ball {
 }
 
 impl Ball {
-    /// Whether any of a box is inside; of a box without numbers it may be. An empty one is nowhere.
+    /// Whether a box reaches into the ball. One without numbers may, an empty one does not.
     pub(crate) fn touches(&self, bounds: &Aabb) -> bool {
         if bounds.is_empty() {
             return false;

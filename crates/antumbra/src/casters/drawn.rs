@@ -61,7 +61,7 @@ impl CasterSet {
             .collect())
     }
 
-    /// What tells the casters of some layers from others, and from what they were. Of those in a ball the key stays while others change.
+    /// Key of the casters of some layers. That of the casters in a ball stays while others change.
     pub(crate) fn key(&self, layers: u32, within: Option<Ball>) -> CastersKey {
         // Before an update the order is not that of the casters there are.
         let version = match within.filter(|_| self.is_updated()) {

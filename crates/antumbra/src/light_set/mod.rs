@@ -67,7 +67,7 @@ impl RangedLight {
         Self { light, range_m, layers: u32::MAX }
     }
 
-    /// What holds the light, all that it shades, and so all that casts a shadow there.
+    /// Ball that holds the light and all that it shades, and so all that casts a shadow there.
     fn ball(&self) -> Ball {
         let Light { center, .. } = self.light;
         let radius_m = if self.light.is_distant() { f32::INFINITY } else { self.light.bounding_radius() };
@@ -113,7 +113,7 @@ pub struct LightSetFrame<'a> {
     pub casters: &'a CasterSet,
     /// Receivers, of the masks' size. With a [`version`](Receivers::version), masks of frames in which nothing changed are not redrawn.
     pub receivers: Receivers<'a>,
-    /// What is redrawn at most.
+    /// Upper limit of what is redrawn.
     pub budget: Budget,
 }
 
@@ -172,7 +172,7 @@ impl LightSet {
         Self::default()
     }
 
-    /// Adds a light with its state and its mask. What is drawn first, and is to be, has no mask yet.
+    /// Adds a light with its state and its mask, which is [`MaskState::Missing`] until a frame draws it.
     ///
     /// # Errors
     /// Where light or range are not usable, or another light has the mask.
@@ -282,7 +282,7 @@ impl LightSet {
         Ok(PreparedLights { works })
     }
 
-    /// Decides what becomes of each light's mask.
+    /// Sets the state of each light's mask, and which lights the frame redraws.
     fn choose(&mut self, frame: &LightSetFrame<'_>) {
         let seen = SeenSpace::of(&frame.receivers);
         let largest = self.lights.values_mut().map(Entry::known_texels).max().flatten();
@@ -336,7 +336,7 @@ impl Entry {
         Frame { light: &self.light.light, casters, receivers: frame.receivers, mask: &self.mask }
     }
 
-    /// What the schedule has to know of the light; `None` where it need not be redrawn.
+    /// Candidate for the schedule; `None` where the light need not be redrawn.
     fn candidate(&mut self, frame: &LightSetFrame<'_>, seen: &SeenSpace, largest: Option<u64>) -> Option<Candidate> {
         let Some(area) = seen.share_of(&self.light.ball()) else {
             // The mask may be of another view by the time that the light is seen again.

@@ -1,10 +1,10 @@
-//! Which lights are redrawn in a frame, of those whose masks are not those of the frame.
+//! Schedule of a frame: which lights are redrawn, of those whose masks are of an earlier one.
 //!
 //! A light ranks by the part of the image that it may reach, by what has changed, and by the frames that it has waited for: the
 //! product of all three, so that of two lights one of which counts for twice the other it is redrawn about twice as often. Whoever
 //! has waited for too long goes first, the longest before others, so that none waits for ever.
 
-/// What has changed since a light's mask was drawn; later ones weigh more.
+/// Change since a light's mask was drawn; later ones weigh more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Change {
     /// Camera, receivers or settings: what the mask holds is right at the same surfaces.
@@ -34,7 +34,7 @@ pub(super) struct Candidate {
     pub(super) change: Change,
     /// Frames for which its mask was not theirs, this one included.
     pub(super) waits: u32,
-    /// What redrawing it takes of the budget.
+    /// Part of the budget that redrawing it takes.
     pub(super) cost: u64,
 }
 

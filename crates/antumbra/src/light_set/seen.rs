@@ -1,4 +1,4 @@
-//! What a camera sees of a light's range.
+//! Part of the image that a light's range may cover.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -8,7 +8,7 @@ use glam::DVec4;
 use crate::casters::Ball;
 use crate::contract::{Camera, PreparedReceivers, Receivers};
 
-/// What a camera sees of its receivers.
+/// Space that a camera sees, with what it knows of receivers there.
 #[derive(Debug)]
 pub(super) struct SeenSpace {
     camera: Camera,

@@ -46,7 +46,7 @@ bindings! {
     }
 }
 
-/// What halves receivers and doubles masks.
+/// Passes that halve receivers and double masks.
 #[derive(Debug)]
 pub(crate) struct HalfResolution {
     inputs: FrameInputs,
