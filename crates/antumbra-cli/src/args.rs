@@ -263,7 +263,7 @@ Open DIR/index.html; DIR/metrics.json has the numbers. Both are written as they 
 --resume continues it. --baseline is the metrics.json of another run, or, of several scenes, its folder.
 
 A technique may have a quality: fast, balanced, high or best; `all:fast` is every technique at fast. `essm:paper` is as its paper publishes it; --preset is a \
-paper's whole comparison. With `+denoised` (pcss:fast+denoised) masks are denoised over --frames frames. `--set NAME.KEY=VALUE` sets a parameter of one \
+paper's whole comparison. With `+half` masks are drawn at half the width and height and interpolated; with `+denoised` (pcss:fast+denoised) they are denoised over --frames frames. `--set NAME.KEY=VALUE` sets a parameter of one \
 technique, `--set KEY=VALUE` of every technique that has it.
 
 --motion measures what happens while one thing moves, to the camera's right, until it is where the scene and the setup place it: flicker, the rms of \

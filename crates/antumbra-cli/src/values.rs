@@ -11,7 +11,7 @@ use antumbra_lab::preset::read_preset;
 use antumbra_lab::reproduce::{PRESETS, Preset};
 use antumbra_lab::suite::Part;
 use antumbra_lab::sweep::Shard;
-use antumbra_lab::technique_run::{TechniqueChoice, without_denoised};
+use antumbra_lab::technique_run::{Extras, TechniqueChoice};
 use antumbra_scene::builtin;
 use glam::UVec2;
 
@@ -29,13 +29,13 @@ pub struct Setting {
     pub value: String,
 }
 
-/// A technique, how much it may spend, and whether its masks are made smooth: `pcss`, `pcss:fast`, `pcss:fast+denoised`; or as a
-/// preset file has it: `advice.toml`.
+/// A technique, how much it may spend, and passes beside its own: `pcss`, `pcss:fast`, `pcss:fast+half+denoised`; or as a preset file
+/// has it: `advice.toml`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Technique {
     pub kind: TechniqueKind,
     pub quality: Quality,
-    pub is_denoised: bool,
+    pub extras: Extras,
     /// What a preset sets; `--set` comes after it.
     pub settings: Vec<(String, String)>,
 }
@@ -145,18 +145,19 @@ pub fn distance(text: &str) -> Result<f32, String> {
 }
 
 pub fn technique(text: &str) -> Result<Technique, String> {
-    let (text, is_denoised) = without_denoised(text);
+    let (text, extras) = Extras::split(text);
     if Path::new(text).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         let TechniqueChoice { kind, quality, settings, .. } =
             read_preset(Path::new(text)).map_err(|error| error.to_string())?;
-        return Ok(Technique { kind, quality, is_denoised, settings });
+        return Ok(Technique { kind, quality, extras, settings });
     }
     let (kind, quality) = kind_and_quality(text)?;
     let quality = quality.unwrap_or_default();
     if kind.has_quality(quality) {
-        return Ok(Technique { kind, quality, is_denoised, settings: Vec::new() });
+        return Ok(Technique { kind, quality, extras, settings: Vec::new() });
     }
-    let list = all_of(quality, false).iter().map(|technique| technique.kind.name()).collect::<Vec<_>>().join(", ");
+    let list =
+        all_of(quality, Extras::default()).iter().map(|technique| technique.kind.name()).collect::<Vec<_>>().join(", ");
     Err(format!("`{kind}` has no setting `{quality}`; {list} have"))
 }
 
@@ -194,10 +195,10 @@ pub fn kind(name: &str) -> Result<TechniqueKind, String> {
 pub fn techniques(text: &str) -> Result<Techniques, String> {
     let mut techniques = Vec::new();
     for name in text.split(',').map(str::trim) {
-        let (plain, is_denoised) = without_denoised(name);
+        let (plain, extras) = Extras::split(name);
         let named = match plain.split_once(':') {
-            None if is_all(plain) => all_of(Quality::default(), is_denoised),
-            Some((all, step)) if is_all(all) => all_of(quality(step)?, is_denoised),
+            None if is_all(plain) => all_of(Quality::default(), extras),
+            Some((all, step)) if is_all(all) => all_of(quality(step)?, extras),
             _ => vec![technique(name)?],
         };
         // Twice the same row would only confuse.
@@ -212,15 +213,15 @@ pub fn techniques_of(preset: &Preset) -> Vec<Technique> {
     let of = |kind: &TechniqueKind| Technique {
         kind: *kind,
         quality: if kind.has_quality(Quality::Paper) { Quality::Paper } else { Quality::default() },
-        is_denoised: false,
+        extras: Extras::default(),
         settings: Vec::new(),
     };
     preset.techniques.iter().map(of).collect()
 }
 
-fn all_of(quality: Quality, is_denoised: bool) -> Vec<Technique> {
+fn all_of(quality: Quality, extras: Extras) -> Vec<Technique> {
     let all = TechniqueKind::ALL.iter().filter(|kind| kind.has_quality(quality));
-    all.map(|kind| Technique { kind: *kind, quality, is_denoised, settings: Vec::new() }).collect()
+    all.map(|kind| Technique { kind: *kind, quality, extras, settings: Vec::new() }).collect()
 }
 
 /// Techniques without qualities, among which to choose.
@@ -399,8 +400,8 @@ mod tests {
 
     #[test]
     fn technique_lists() {
-        assert_eq!(techniques("all").unwrap().0, all_of(Quality::Balanced, false));
-        let of = |kind, quality| Technique { kind, quality, is_denoised: false, settings: Vec::new() };
+        assert_eq!(techniques("all").unwrap().0, all_of(Quality::Balanced, Extras::default()));
+        let of = |kind, quality| Technique { kind, quality, extras: Extras::default(), settings: Vec::new() };
         assert_eq!(
             techniques("hard, pcss:fast,pcss, hard:balanced,pcss").unwrap().0,
             [
@@ -409,12 +410,12 @@ mod tests {
                 of(TechniqueKind::Pcss, Quality::Balanced)
             ]
         );
-        assert_eq!(techniques("all:high").unwrap().0, all_of(Quality::High, false));
+        assert_eq!(techniques("all:high").unwrap().0, all_of(Quality::High, Extras::default()));
         assert_eq!(
             techniques("pcss:fast+denoised").unwrap().0,
-            [Technique { is_denoised: true, ..of(TechniqueKind::Pcss, Quality::Fast) }]
+            [Technique { extras: Extras::denoised(), ..of(TechniqueKind::Pcss, Quality::Fast) }]
         );
-        assert_eq!(techniques("all+denoised").unwrap().0, all_of(Quality::Balanced, true));
+        assert_eq!(techniques("all+denoised").unwrap().0, all_of(Quality::Balanced, Extras::denoised()));
         assert!(techniques("pcss:fats").unwrap_err().contains("did you mean `fast`?"));
         assert!(techniques("pcss:paper").unwrap_err().contains("essm"));
         assert!(techniques("all:paper").unwrap().0.contains(&of(TechniqueKind::Essm, Quality::Paper)));

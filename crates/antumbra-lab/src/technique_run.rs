@@ -31,20 +31,53 @@ pub struct TechniqueChoice {
     pub quality: Quality,
     /// Keys and values as written, set after what the quality sets; later ones win.
     pub settings: Vec<(String, String)>,
-    /// Whether its masks are made smooth over frames and pixels, as the library does by default where it is asked to.
+    /// Passes beside its own.
+    pub extras: Extras,
+}
+
+/// Passes that any technique can have beside its own: what its name ends with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// Masks of half the width and height, interpolated: `+half`.
+    pub is_half: bool,
+    /// Masks made smooth over frames and pixels, as the library does by default where it is asked to: `+denoised`.
     pub is_denoised: bool,
 }
 
-/// What the name of a technique ends with whose masks are made smooth.
-pub const DENOISED: &str = "+denoised";
+impl Extras {
+    const HALF: &str = "+half";
+    const DENOISED: &str = "+denoised";
 
-/// A technique's name without that end, and whether it had it, in any case.
-pub fn without_denoised(name: &str) -> (&str, bool) {
-    let head = name.len().checked_sub(DENOISED.len()).and_then(|at| name.split_at_checked(at));
-    match head {
-        Some((head, end)) if end.eq_ignore_ascii_case(DENOISED) => (head, true),
-        _ => (name, false),
+    /// Of masks that are made smooth, and nothing else.
+    pub const fn denoised() -> Self {
+        Self { is_half: false, is_denoised: true }
     }
+
+    /// A technique's name without its ends, and what these say, in any case and order.
+    pub fn split(name: &str) -> (&str, Self) {
+        let (mut name, mut extras) = (name, Self::default());
+        loop {
+            if let Some(head) = without_end(name, Self::HALF).filter(|_| !extras.is_half) {
+                (name, extras.is_half) = (head, true);
+            } else if let Some(head) = without_end(name, Self::DENOISED).filter(|_| !extras.is_denoised) {
+                (name, extras.is_denoised) = (head, true);
+            } else {
+                return (name, extras);
+            }
+        }
+    }
+
+    /// What a name ends with.
+    pub fn suffix(self) -> String {
+        let ends = [(self.is_half, Self::HALF), (self.is_denoised, Self::DENOISED)];
+        ends.into_iter().filter_map(|(is, end)| is.then_some(end)).collect()
+    }
+}
+
+/// A name without an end in any case; `None` where it has another.
+fn without_end<'n>(name: &'n str, end: &str) -> Option<&'n str> {
+    let (head, tail) = name.split_at_checked(name.len().checked_sub(end.len())?)?;
+    tail.eq_ignore_ascii_case(end).then_some(head)
 }
 
 impl TechniqueChoice {
@@ -55,7 +88,7 @@ impl TechniqueChoice {
 
     /// A technique that may spend so much.
     pub fn of_quality(kind: TechniqueKind, quality: Quality) -> Self {
-        Self { kind, quality, settings: Vec::new(), is_denoised: false }
+        Self { kind, quality, settings: Vec::new(), extras: Extras::default() }
     }
 
     /// A technique as it comes, with settings.
@@ -63,27 +96,27 @@ impl TechniqueChoice {
         Self { settings, ..Self::default_of(kind) }
     }
 
-    /// The same with masks that are made smooth, or not.
-    pub fn denoised(self, is_denoised: bool) -> Self {
-        Self { is_denoised, ..self }
+    /// The same with passes beside its own.
+    pub fn with_extras(self, extras: Extras) -> Self {
+        Self { extras, ..self }
     }
 
-    /// `pcss`, or `pcss:fast` where it is not as it comes; and whether its masks are made smooth: `pcss:fast+denoised`.
+    /// `pcss`, or `pcss:fast` where it is not as it comes; and its extras: `pcss:fast+half+denoised`.
     pub fn name(&self) -> String {
-        let denoised = if self.is_denoised { DENOISED } else { "" };
+        let extras = self.extras.suffix();
         match self.quality {
-            Quality::Balanced => format!("{}{denoised}", self.kind),
-            quality => format!("{}:{quality}{denoised}", self.kind),
+            Quality::Balanced => format!("{}{extras}", self.kind),
+            quality => format!("{}:{quality}{extras}", self.kind),
         }
     }
 
     /// The technique that [`name`](Self::name) names, in any case; `None` where there is none.
     pub fn from_name(name: &str) -> Option<Self> {
-        let (name, is_denoised) = without_denoised(name);
+        let (name, extras) = Extras::split(name);
         let (kind, quality) = name.split_once(':').map_or((name, None), |(kind, quality)| (kind, Some(quality)));
         let quality = quality.map_or(Some(Quality::default()), Quality::from_name)?;
         let kind = TechniqueKind::from_name(kind).filter(|kind| kind.has_quality(quality))?;
-        Some(Self::of_quality(kind, quality).denoised(is_denoised))
+        Some(Self::of_quality(kind, quality).with_extras(extras))
     }
 
     /// The same technique with exact comparisons under its own kernel in its basis's place: the truth of techniques with
@@ -96,7 +129,7 @@ impl TechniqueChoice {
             kind: self.kind,
             quality: self.quality,
             settings: self.settings.iter().cloned().chain(exact).collect(),
-            is_denoised: false,
+            extras: Extras::default(),
         })
     }
 
@@ -210,7 +243,8 @@ pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyShadow, Error> {
     for (key, value) in &choice.settings {
         technique.set(key, value)?;
     }
-    technique.set_denoise(choice.is_denoised.then(Denoise::default));
+    technique.set_denoise(choice.extras.is_denoised.then(Denoise::default));
+    technique.set_half_resolution(choice.extras.is_half);
     Ok(technique)
 }
 
@@ -586,16 +620,20 @@ mod tests {
     fn names_are_read_as_they_are_written() {
         for kind in TechniqueKind::ALL.iter().copied() {
             for quality in Quality::ALL.into_iter().filter(|quality| kind.has_quality(*quality)) {
-                for is_denoised in [false, true] {
-                    let choice = TechniqueChoice::of_quality(kind, quality).denoised(is_denoised);
+                for (is_half, is_denoised) in [(false, false), (true, false), (false, true), (true, true)] {
+                    let extras = Extras { is_half, is_denoised };
+                    let choice = TechniqueChoice::of_quality(kind, quality).with_extras(extras);
                     assert_eq!(TechniqueChoice::from_name(&choice.name()), Some(choice.clone()));
                     assert_eq!(TechniqueChoice::from_name(&choice.name().to_uppercase()), Some(choice));
                 }
             }
         }
+        let both = Extras { is_half: true, is_denoised: true };
+        assert_eq!(Extras::split("pcss+denoised+half"), ("pcss", both));
         assert_eq!(
-            ["pscs", "pcss:", "pcss:quick", "+denoised", "pcss:paper", ""].map(TechniqueChoice::from_name),
-            [const { None }; 6]
+            ["pscs", "pcss:", "pcss:quick", "+denoised", "+half", "pcss+half+half", "pcss:paper", ""]
+                .map(TechniqueChoice::from_name),
+            [const { None }; 8]
         );
     }
 

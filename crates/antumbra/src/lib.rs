@@ -40,6 +40,7 @@
 //! - [`AnyShadow`] is a light's state with a technique chosen at run time, [`Shadow`] with one known at compile time.
 //! - [`Shadow::prepare_points`] takes a buffer of points in place of a depth buffer (`examples/anywhere.rs`);
 //!   [`Shadow::shader_function`] returns a function for your own shaders.
+//! - [`LightSet`] holds many lights of one view, of which each frame redraws what a budget allows.
 //! - `examples/minimal.rs` is a complete small renderer around the lines above, `examples/many_lights` one with eight lights.
 //!
 //! Families of techniques are features of the crate, all on by default: `single_map`, `filterable`, `summed`, `multi_layer`,
@@ -80,6 +81,7 @@ mod cover;
 mod frame;
 pub mod gpu;
 mod light_map;
+pub mod light_set;
 mod primitives;
 mod shadow;
 mod technique_kind;
@@ -101,7 +103,8 @@ pub use gpu::programs;
 pub use gpu::{
     Gpu, MemoryBytes, MemoryPlan, ObjectCounts, PassTime, PassTimer, PlannedResource, Recorder, ShaderFunction,
 };
-pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp};
+pub use light_set::{Budget, LightId, LightSet, LightSetFrame, MaskState, PreparedLights, RangedLight};
+pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp, WarmUpSteps};
 pub use technique_kind::{TechniqueFacts, TechniqueKind};
 pub use techniques::Technique;
 

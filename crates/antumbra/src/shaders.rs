@@ -20,6 +20,10 @@ shaders! {
     DENOISE_OVER_PIXELS = "frame/denoise/over_pixels";
     /// Smoothing of noisy visibility over pixels.
     SMOOTHING_SMOOTH = "frame/smoothing/smooth";
+    /// Half resolution: receivers of half the size.
+    HALF_RESOLUTION_PICK = "frame/half_resolution/pick";
+    /// Half resolution: a mask of half the size at full size.
+    HALF_RESOLUTION_UPSAMPLE = "frame/half_resolution/upsample";
     /// Masks of fewer bits than techniques write.
     MASK_FORMAT_DRAW = "frame/mask_format/draw";
     /// Points as receivers: from a host's buffers to textures.

@@ -9,8 +9,9 @@
 
 use std::fmt;
 
-use crate::contract::{Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
+use crate::contract::{CastersKey, Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::frame::denoise::{Denoiser, PreparedDenoise};
+use crate::frame::half_resolution::{HalfResolution, PreparedHalf};
 use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
 
@@ -36,7 +37,7 @@ use validate::Validator;
 
 pub use any::AnyShadow;
 pub use frame::{Casters, Frame, PointFrame};
-pub use warm_up::WarmUp;
+pub use warm_up::{WarmUp, WarmUpSteps};
 
 /// State of one light's shadow, by a technique known at compile time.
 pub struct Shadow<T: Technique> {
@@ -47,12 +48,17 @@ pub struct Shadow<T: Technique> {
     /// How the next frame's mask is made smooth; `None`, as it comes, leaves it as the technique writes it. What the frames
     /// before had is kept as long as there is one.
     pub denoise: Option<Denoise>,
+    /// Whether the next frame's technique writes a mask of half the width and height, which is then interpolated within surfaces: any
+    /// technique. What it does for each pixel takes a quarter of the time; contact shadows a pixel or two wide are lost in part. Mask,
+    /// denoising and receivers are of full size all the same. Points have no neighbours, and ignore it.
+    pub half_resolution: bool,
     /// Of the light as it is.
     technique: T,
     /// Made where that does not cover what the light reaches, and kept.
     parted: Option<Parted<T>>,
     ends: KeptEnds,
     denoiser: Option<Denoiser>,
+    half: Option<HalfResolution>,
     keep: Keep,
     functions: ShaderFunctions,
     /// What the mask holds, where the last frame was recorded and no commands were dropped.
@@ -87,10 +93,12 @@ impl<T: Technique> Shadow<T> {
             validator: Validator::default(),
             params,
             denoise: None,
+            half_resolution: false,
             technique: T::new(gpu)?,
             parted: None,
             ends: KeptEnds::default(),
             denoiser: None,
+            half: None,
             keep: Keep::default(),
             functions: ShaderFunctions::default(),
             mask: Content::default(),
@@ -121,15 +129,12 @@ impl<T: Technique> Shadow<T> {
     fn prepare_asked<'a>(&'a mut self, asked: Asked<'a>) -> Result<Prepared<'a>, Error> {
         self.params.validate(T::NAME)?;
         self.validator.check(T::NAME, &self.gpu, &asked, self.denoise.as_ref())?;
-        let casters = match asked.casters() {
-            Casters::Set { set, layers } => Some(set.key(*layers)),
-            Casters::Meshes(_) | Casters::DepthMap(_) => None,
-        };
+        let casters = asked.casters().key();
         let is_lost = self.commands.take_dropped() || !self.is_recorded;
         if is_lost {
             self.mask = Content::default();
         }
-        let key = FrameKey::of(&self.params, self.denoise.as_ref(), &asked, casters);
+        let key = self.key_of(&asked, casters);
         let is_same = self.mask.is_of(key.as_ref());
         if is_same && self.is_settled() {
             return Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes: None }) });
@@ -143,6 +148,9 @@ impl<T: Technique> Shadow<T> {
         if self.denoise.is_none() {
             self.denoiser = None;
         }
+        if !self.half_resolution {
+            self.half = None;
+        }
         let gpu = self.gpu.clone();
         let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), casters)
             .anchored(anchor_of(&asked))
@@ -153,6 +161,28 @@ impl<T: Technique> Shadow<T> {
         let passes = Some((uploads, outcome?));
         self.mask.ask(key);
         Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes }) })
+    }
+
+    /// Whether the mask holds what a frame would draw, so that the frame would record nothing.
+    pub(crate) fn holds(&self, frame: &Frame<'_>) -> bool {
+        let asked = Asked::Mask(*frame);
+        let key = self.key_of(&asked, frame.casters.key());
+        self.is_intact() && self.mask.is_of(key.as_ref()) && self.is_settled()
+    }
+
+    fn key_of(&self, asked: &Asked<'_>, casters: Option<CastersKey>) -> Option<FrameKey<T::Params>> {
+        FrameKey::of(&self.params, (self.denoise.as_ref(), self.half_resolution), asked, casters)
+    }
+
+    /// Whether the frame prepared last was recorded and its commands were not dropped.
+    pub(crate) fn is_intact(&self) -> bool {
+        self.is_recorded && !self.commands.are_dropped()
+    }
+
+    /// Texels of the depth maps of the frame prepared last.
+    pub(crate) fn map_texels(&self) -> u64 {
+        let texels = |map: &DrawnMap| map.size_px.as_u64vec2().element_product() * (1 + map.layers_behind.len() as u64);
+        self.drawn_maps().iter().map(texels).sum()
     }
 
     /// Prepares a frame's stages, from the host's mask back to the light: each writes the mask that the one before it reads.
@@ -181,26 +211,39 @@ impl<T: Technique> Shadow<T> {
         });
         let noisy = PreparedFrame { mask: denoise.as_ref().map_or(wide.mask, |denoise| &denoise.noisy), ..wide };
 
-        let light = match Parted::prepare(&mut self.parted, stage, &noisy, meshes, &self.params)? {
+        // Points have no neighbours to interpolate between.
+        let is_half = self.half_resolution && noisy.receivers.have_neighbours();
+        let half = is_half.then(|| self.half.get_or_insert_with(|| HalfResolution::new(stage)).prepare(stage, &noisy));
+        let of_technique = half.as_ref().map_or(noisy, |half| half.frame_of(&noisy));
+
+        let light = match Parted::prepare(&mut self.parted, stage, &of_technique, meshes, &self.params)? {
             Some(parts) => LightPasses::Parts(Box::new(parts)),
-            None => LightPasses::Whole(self.technique.prepare(stage, &noisy, &self.params)?),
+            None => LightPasses::Whole(self.technique.prepare(stage, &of_technique, &self.params)?),
         };
-        Ok(Passes { casters, ends, light, denoise })
+        Ok(Passes { casters, ends, light, half, denoise })
     }
 
-    /// Records a frame's stages, in the order of the data: reading of points, the technique, denoising, conversion of the mask.
+    /// Records a frame's stages, in the order of the data: reading of points, halving of the receivers, the technique, doubling of its mask,
+    /// denoising, conversion of the mask.
     fn record_passes(&self, recorder: &mut Recorder<'_>, asked: &Asked<'_>, passes: Passes<'_, T::Prepared>) {
-        let Passes { casters, ends, light, denoise } = passes;
+        let Passes { casters, ends, light, half, denoise } = passes;
         let (receivers, smooth) = ends.inner();
         let mask = denoise.as_ref().map_or(smooth, |denoise| &denoise.noisy);
         let noisy = prepared(asked.light(), &casters, receivers, mask);
+        let of_technique = half.as_ref().map_or(noisy, |half| half.frame_of(&noisy));
         ends.record_read(recorder);
+        if let Some(half) = &half {
+            half.record_pick(recorder);
+        }
         match (light, &self.parted) {
-            (LightPasses::Whole(technique), _) => self.technique.record(recorder, &noisy, &technique),
+            (LightPasses::Whole(technique), _) => self.technique.record(recorder, &of_technique, &technique),
             (LightPasses::Parts(parts), Some(parted)) => {
-                parted.record(recorder, &noisy, *parts);
+                parted.record(recorder, &of_technique, *parts);
             }
             (LightPasses::Parts(_), None) => {}
+        }
+        if let Some(half) = &half {
+            half.record_upsample(recorder);
         }
         if let Some(denoise) = &denoise {
             denoise.record(recorder);
@@ -284,6 +327,8 @@ struct Passes<'a, P> {
     casters: FrameCasters<'a>,
     ends: Ends<'a>,
     light: LightPasses<'a, P>,
+    /// Where the technique writes a mask of half the size.
+    half: Option<PreparedHalf>,
     /// Where the mask is denoised.
     denoise: Option<PreparedDenoise>,
 }

@@ -9,8 +9,9 @@ mod start;
 use antumbra::casters::{Caster, Indices, Instances, Mesh, PositionFormat, Positions};
 use antumbra::light::{Aabb, Cone, Light, LightShape};
 use antumbra::{
-    AnyShadow, CasterSet, Casters, Denoise, Error, Frame, Gpu, Mask, MaskChannels, MemoryPlan, PointBuffer, PointFrame,
-    PointReceivers, Receivers, Recorder, SplitReceivers, TechniqueKind,
+    AnyShadow, Budget, CasterSet, Casters, Denoise, Error, Frame, Gpu, LightSet, LightSetFrame, Mask, MaskChannels,
+    MemoryPlan, PointBuffer, PointFrame, PointReceivers, RangedLight, Receivers, Recorder, SplitReceivers,
+    TechniqueKind,
 };
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
@@ -98,6 +99,31 @@ fn many_lights(
         work.record(&mut recorder);
     }
     Ok(())
+}
+
+/// docs/integrating.md, Within a budget.
+fn within_a_budget(
+    gpu: Gpu,
+    (casters, receivers): (CasterSet, Receivers<'_>),
+    (lamps, range_m): (Vec<Light>, f32),
+    size_px: UVec2,
+    mut recorder: Recorder<'_>,
+) -> Result<(), Error> {
+    let mut lights = LightSet::new();
+    let masks = Mask::packed(gpu.device(), size_px, MaskChannels::One, wgpu::TextureFormat::Rgba8Unorm, lamps.len());
+    for (lamp, mask) in lamps.iter().zip(masks) {
+        lights.add(RangedLight::new(lamp.clone(), range_m), TechniqueKind::Smrt.create(&gpu)?, mask)?;
+    }
+    // Each frame, after `casters.update`; `set_light` moves a light:
+    let frame = LightSetFrame { casters: &casters, receivers, budget: Budget::Lights(4) };
+    lights.prepare(&frame)?.record(&mut recorder);
+    let states: Vec<_> = lights.ids().map(|id| lights.mask_state(id)).collect();
+    Ok(())
+}
+
+/// docs/integrating.md, Half resolution.
+fn half_resolution(mut shadow: AnyShadow) {
+    shadow.set_half_resolution(true); // or the field Shadow::half_resolution
 }
 
 /// docs/integrating.md, Known before anything is allocated.

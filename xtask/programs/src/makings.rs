@@ -136,6 +136,7 @@ fn make(gpu: &Gpu, kind: TechniqueKind, settings: &Settings) -> Result<(), Strin
         }
     }
     shadow.set_denoise(Some(Denoise::default()));
+    shadow.set_half_resolution(true);
     match shadow.warm_up(WarmUp::default()) {
         // Maps that no browser can hold.
         Err(Error::Unsupported { .. }) | Ok(()) => Ok(()),

@@ -225,7 +225,7 @@ fn beside(path: &Path, name: &str, taken: &[PathBuf]) -> PathBuf {
 fn choices(techniques: &[Technique], settings: &[Setting]) -> Result<Vec<TechniqueChoice>, Failure> {
     let of = |named: &Technique| TechniqueChoice {
         settings: named.settings.clone(),
-        ..TechniqueChoice::of_quality(named.kind, named.quality).denoised(named.is_denoised)
+        ..TechniqueChoice::of_quality(named.kind, named.quality).with_extras(named.extras)
     };
     let mut choices: Vec<_> = techniques.iter().map(of).collect();
     for setting in settings {
@@ -303,8 +303,8 @@ mod tests {
 
     #[test]
     fn settings_are_read_in_any_case() {
-        let settings = Vec::new();
-        let pcss = Technique { kind: TechniqueKind::Pcss, quality: Quality::Balanced, is_denoised: false, settings };
+        let (extras, settings) = (antumbra_lab::technique_run::Extras::default(), Vec::new());
+        let pcss = Technique { kind: TechniqueKind::Pcss, quality: Quality::Balanced, extras, settings };
         let given = [("MAP_SIZE", "512"), ("Means", "RANGES"), ("rotate", "False")];
         let given = given.map(|(key, value)| Setting { technique: None, key: key.into(), value: value.into() });
         let read = choices(&[pcss], &given).unwrap().remove(0).settings;

@@ -3,6 +3,7 @@
 mod bounds;
 mod formats;
 mod invalid;
+mod light_set;
 mod many;
 mod memory;
 mod places;

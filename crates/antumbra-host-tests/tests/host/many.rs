@@ -11,7 +11,7 @@ use antumbra_host_tests::scene::{Camera, Mesh, Object, Scene};
 use glam::{Mat4, UVec2, Vec3};
 
 /// A ground and a hundred boxes above it.
-fn crowd() -> Scene {
+pub(crate) fn crowd() -> Scene {
     let mut scene = Scene { objects: vec![Object::of(Mesh::ground(10.0))] };
     let unit = Mesh::cuboid(Vec3::splat(-0.15), Vec3::splat(0.15));
     scene.objects.extend((0..100).map(|i| Object { mesh: unit.clone(), world_from_object: place(i, 0) }));
@@ -19,7 +19,7 @@ fn crowd() -> Scene {
 }
 
 /// Where a box is in a frame.
-fn place(i: usize, frame: u32) -> Mat4 {
+pub(crate) fn place(i: usize, frame: u32) -> Mat4 {
     let turn = frame as f32 * 0.05 + i as f32;
     let middle = Vec3::new((i % 10) as f32 - 4.5, 0.5, (i / 10) as f32 - 4.5);
     Mat4::from_translation(middle + 0.3 * Vec3::new(turn.cos(), 0.5 * turn.sin(), turn.sin()))

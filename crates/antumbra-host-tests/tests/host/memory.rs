@@ -89,6 +89,41 @@ fn a_light_takes_what_was_planned() {
     plans_are_kept(&Device::idle(), TechniqueKind::ALL);
 }
 
+/// Receivers and mask of half the size are what lights share, and planned, too.
+#[test]
+fn half_resolution_takes_what_was_planned() {
+    let device = Device::idle();
+    let size_px = UVec2::new(97, 54);
+    let scene = Scene::base(10.0);
+    let picture = Picture::draw(&device, &scene, &Camera { size_px, ..Camera::base() });
+    for name in ["pcss", "smrt", "sample_based"] {
+        for light in lights() {
+            let gpu = Gpu::new(device.wgpu(), device.queue());
+            let casters = HostCasters::for_gpu(&device, &gpu, &scene);
+            let mask = Mask::new(device.wgpu(), size_px);
+            let frame = Frame { light: &light, casters: casters.all(), receivers: picture.receivers(), mask: &mask };
+            let mut encoder = device.encoder();
+            let mut of = |gpu: &Gpu, is_half: bool| {
+                let mut shadow = shadow_of(gpu, kind_of(name), &[]);
+                shadow.set_half_resolution(is_half);
+                let taken = taken(&mut shadow, gpu, &frame, &mut encoder);
+                // What lights share goes with the last of them.
+                (taken, shadow)
+            };
+            let [full_plan, plan] = [(); 2].map(|()| MemoryPlan::new(&gpu));
+            let (planned_full, _full) = of(full_plan.gpu(), false);
+            let (planned, _planned) = of(plan.gpu(), true);
+            let (real, _real) = of(&gpu, true);
+            assert_eq!(planned, real, "{name}, {:?}", light.shape);
+            let label = "antumbra half resolution";
+            let half = plan.resources().into_iter().find(|found| found.label == label).expect("planned");
+            // Depth, normals, mask.
+            assert_eq!((half.count, half.bytes), (3, (4 + 16 + 4) * 49 * 27), "{name}");
+            assert!(full_plan.resources().iter().all(|found| found.label != label), "{name}: {planned_full:?}");
+        }
+    }
+}
+
 /// The same where limits, features and the driver's faults are those of the machine.
 #[test]
 fn a_light_takes_what_was_planned_on_the_machine_s_own_device() {

@@ -16,7 +16,7 @@ use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
 use antumbra_lab::picture::{Visibility, pixel_count};
-use antumbra_lab::technique_run::TechniqueChoice;
+use antumbra_lab::technique_run::{Extras, TechniqueChoice};
 use antumbra_lab::view::View;
 use antumbra_light::{Light, LightShape};
 use antumbra_scene::{AlphaMode, LoadOptions, Scene, Setup, load};
@@ -286,7 +286,8 @@ struct Mask {
 fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> Mask {
     let settings = small(kind).into_iter().chain(kept.settings.iter().cloned());
     let settings = settings.map(|(key, value)| (key.to_owned(), value)).collect();
-    let choice = TechniqueChoice::with_settings(kind, settings).denoised(kept.is_denoised);
+    let choice = TechniqueChoice::with_settings(kind, settings)
+        .with_extras(Extras { is_denoised: kept.is_denoised, ..Extras::default() });
     let frames = if kept.is_over_time() { FRAMES } else { 1 };
     let Stage { scene, setup, .. } = &stages()[kept.stage];
     let view = View::new(lab, scene, setup, MASK_PX).expect("built-in scenes can be seen");

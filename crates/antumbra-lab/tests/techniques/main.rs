@@ -9,6 +9,7 @@ mod edge_cases;
 mod enclosed;
 mod filterable;
 mod grounds;
+mod in_space;
 mod kept;
 mod many_lights;
 mod multi_layer;

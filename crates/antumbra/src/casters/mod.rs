@@ -26,10 +26,12 @@ use antumbra_light::Aabb;
 use glam::Mat4;
 use slotmap::SlotMap;
 
-use crate::contract::{CastersKey, Error, MaskChannels, MeshCaster, MeshVersion};
+use crate::contract::{Error, MeshVersion};
 use crate::gpu::{Commands, Gpu, Keep};
 
 mod arena;
+mod ball;
+mod drawn;
 mod mesh;
 pub(crate) mod pack;
 mod placed_instances;
@@ -39,14 +41,15 @@ pub(crate) mod tests;
 mod update;
 
 use arena::Arena;
+pub(crate) use ball::Ball;
 pub use mesh::{
     Indices, InstanceBuffer, InstanceLayout, Instances, Mesh, PositionFormat, Positions, TextureCoordinateFormat,
     TextureCoordinates,
 };
 use pack::{InstanceSource, MeshSource, Packer};
 use placed_instances::{PlacedInstances, world_bounds};
+use surface::check_surface;
 pub use surface::{Surface, Texture};
-use surface::{check_surface, opacity_of};
 
 slotmap::new_key_type! {
     /// Handle of a mesh in a [`CasterSet`].
@@ -131,6 +134,8 @@ struct CasterEntry {
     is_mirrored: bool,
     /// Matrices are to be brought to the GPU with the next update.
     is_moved: bool,
+    /// The set's version in which it was changed last.
+    version: u64,
 }
 
 /// What errors name in place of a technique.
@@ -275,6 +280,7 @@ impl CasterSet {
             bounds: Aabb::EMPTY,
             is_mirrored: false,
             is_moved: true,
+            version: self.version + 1,
         };
         entry.place(of_instances, &mut self.matrices);
         self.meshes[caster.mesh].users += 1;
@@ -298,6 +304,7 @@ impl CasterSet {
         }
         entry.place(of_instances, &mut self.matrices);
         self.version += 1;
+        entry.version = self.version;
         Ok(())
     }
 
@@ -310,6 +317,7 @@ impl CasterSet {
         check_surface(&self.gpu, &surface, &self.meshes[entry.mesh])?;
         entry.surface = surface;
         self.version += 1;
+        entry.version = self.version;
         Ok(())
     }
 
@@ -318,8 +326,10 @@ impl CasterSet {
     /// # Errors
     /// Where there is no such caster.
     pub fn set_layers(&mut self, id: CasterId, layers: u32) -> Result<(), Error> {
-        self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?.layers = layers;
+        let entry = self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?;
+        entry.layers = layers;
         self.version += 1;
+        entry.version = self.version;
         Ok(())
     }
 
@@ -349,56 +359,6 @@ impl CasterSet {
     /// World-space box of a caster's instances.
     pub fn bounds(&self, id: CasterId) -> Option<Aabb> {
         self.casters.get(id).map(|caster| caster.bounds)
-    }
-
-    /// The casters of some layers, as techniques take them.
-    pub(crate) fn meshes(&self, layers: u32) -> Result<Vec<MeshCaster<'_>>, Error> {
-        if self.updated != Some(self.version) {
-            return Err(bad(
-                "the set of casters",
-                "changed since its last update".into(),
-                "brought to the GPU by CasterSet::update before lights are prepared".into(),
-            ));
-        }
-        let Some(((indices, instances), plain)) =
-            self.indices.buffer().zip(self.instances.buffer()).zip(self.vertices[0].buffer())
-        else {
-            return Ok(Vec::new());
-        };
-        let casters = self.order.iter().map(|id| &self.casters[*id]).filter(|caster| caster.layers & layers != 0);
-        Ok(casters
-            .map(|caster| {
-                let mesh = &self.meshes[caster.mesh];
-                let arena = &self.vertices[usize::from(mesh.source.has_uvs())];
-                MeshCaster {
-                    positions: arena.buffer().unwrap_or(plain),
-                    indices,
-                    first_triangle: mesh.indices.start,
-                    index_count: mesh.source.index_count(),
-                    instances,
-                    first_instance: caster.places.start,
-                    instance_count: caster.places.end - caster.places.start,
-                    closed: mesh.closed && !caster.is_mirrored,
-                    opacity: opacity_of(&caster.surface, arena.column(1)),
-                    bounds: caster.bounds,
-                    version: Some(mesh.version),
-                }
-            })
-            .collect())
-    }
-
-    /// What tells the casters of some layers from others, and from what they were.
-    pub(crate) fn key(&self, layers: u32) -> CastersKey {
-        CastersKey::new(self.number, self.version, layers)
-    }
-
-    /// Number of mask channels that casters in these layers need: three if any tints, otherwise one.
-    pub fn mask_channels(&self, layers: u32) -> MaskChannels {
-        if self.casters.values().any(|caster| caster.layers & layers != 0 && caster.surface.tints()) {
-            MaskChannels::Three
-        } else {
-            MaskChannels::One
-        }
     }
 
     /// GPU memory of the set, bytes.

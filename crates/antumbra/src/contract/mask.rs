@@ -92,20 +92,7 @@ impl Mask {
         channels: MaskChannels,
         format: wgpu::TextureFormat,
     ) -> Self {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra mask"),
-            size: wgpu::Extent3d {
-                width: size_px.x,
-                height: size_px.y,
-                depth_or_array_layers: layers_of(format, channels),
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: Self::usages(format) | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let texture = texture_of_layers(device, size_px, format, layers_of(format, channels));
         Self::of_layers(&texture, 0, channels)
     }
 
@@ -147,6 +134,49 @@ impl Mask {
         let first_view = view(wgpu::TextureViewDimension::D2, 1);
         let layers_view = view(wgpu::TextureViewDimension::D2Array, count);
         Self { texture: texture.clone(), place, channels, first_view, layers_view }
+    }
+
+    /// Masks of so many lights in one texture array, so that a host's shader binds one texture. In formats of four components masks of one
+    /// channel lie in the components of a layer: that of light `i` is in component `i % 4` of layer `i / 4`. All others have layers of their
+    /// own, one after the other, as many as a mask takes.
+    ///
+    /// # Panics
+    /// Where the format is not one of the [`FORMATS`](Self::FORMATS), or the count is zero.
+    pub fn packed(
+        device: &wgpu::Device,
+        size_px: UVec2,
+        channels: MaskChannels,
+        format: wgpu::TextureFormat,
+        count: usize,
+    ) -> Vec<Self> {
+        assert!(count > 0, "masks of no light");
+        let in_layer = if channels == MaskChannels::One { u32::from(format.components()) } else { 1 };
+        let (count, layers_each) = (count as u32, layers_of(format, channels));
+        let texture = texture_of_layers(device, size_px, format, count.div_ceil(in_layer) * layers_each);
+        let of_light = |i: u32| {
+            let place = MaskPlace::layer(&texture, i / in_layer * layers_each);
+            Self::within(&texture, MaskPlace { component: i % in_layer, ..place }, channels)
+        };
+        (0..count).map(of_light).collect()
+    }
+
+    /// Whether both write some texel's component.
+    pub(crate) fn overlaps(&self, other: &Self) -> bool {
+        let layers = |mask: &Self| {
+            let first = mask.place.layer;
+            first..first + layers_of(mask.texture.format(), mask.channels)
+        };
+        let components = |mask: &Self| match mask.channels {
+            MaskChannels::Three if mask.texture.format().components() > 1 => 0..3,
+            MaskChannels::One | MaskChannels::Three => mask.place.component..mask.place.component + 1,
+        };
+        let meet = |a: std::ops::Range<u32>, b: std::ops::Range<u32>| a.start < b.end && b.start < a.end;
+        let is_before = |a: &MaskPlace, b: &MaskPlace| a.origin_px.cmplt(b.origin_px + b.size_px).all();
+        self.texture == other.texture
+            && meet(layers(self), layers(other))
+            && meet(components(self), components(other))
+            && is_before(&self.place, &other.place)
+            && is_before(&other.place, &self.place)
     }
 
     /// The usages that a mask's texture needs: to be read, and written by compute or drawn to.
@@ -193,4 +223,23 @@ impl Mask {
 /// The layers that a mask takes.
 fn layers_of(format: wgpu::TextureFormat, channels: MaskChannels) -> u32 {
     if format.components() == 1 { channels.count() } else { 1 }
+}
+
+/// A texture for masks, which may be copied from.
+fn texture_of_layers(
+    device: &wgpu::Device,
+    size_px: UVec2,
+    format: wgpu::TextureFormat,
+    depth_or_array_layers: u32,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("antumbra mask"),
+        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: Mask::usages(format) | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
 }

@@ -101,6 +101,11 @@ impl Camera {
         self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4()
     }
 
+    /// The planes between which it sees: `plane · (x, 1) ≥ 0`.
+    pub(crate) fn frustum_planes(&self) -> [DVec4; 5] {
+        frustum_planes(self.clip_from_world())
+    }
+
     /// World-space box of the near plane, as far as the camera sees of it.
     fn near_box(&self) -> Aabb {
         let world_from_clip = self.clip_from_world().inverse();
@@ -227,7 +232,7 @@ impl<'a> PreparedReceivers<'a> {
 
     /// The planes between which the camera sees: `plane · (x, 1) ≥ 0`; points are not seen by any.
     pub(crate) fn frustum_planes(&self) -> Option<[DVec4; 5]> {
-        self.camera().map(|camera| frustum_planes(camera.clip_from_world()))
+        self.camera().map(Camera::frustum_planes)
     }
 }
 

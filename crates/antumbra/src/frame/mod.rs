@@ -4,6 +4,7 @@
 pub(crate) mod accumulation;
 pub(crate) mod blue_noise;
 pub(crate) mod denoise;
+pub(crate) mod half_resolution;
 pub(crate) mod inputs;
 pub(crate) mod mask_format;
 pub(crate) mod points;

@@ -9,6 +9,12 @@ pub(crate) enum Scratch {
     NoisyMask,
     /// Visibility before it is made smooth over pixels.
     NoisyVisibility,
+    /// Depth of receivers of half the size.
+    HalfDepth,
+    /// Normals of receivers of half the size.
+    HalfNormals,
+    /// Mask of half the size.
+    HalfMask,
     /// Mask of one part of a light.
     PartMask,
     /// Depth of the receivers of one part.

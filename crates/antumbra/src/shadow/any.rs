@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Frame, PointFrame, Prepared, Shadow, WarmUp};
+use super::{Frame, PointFrame, Prepared, Shadow, WarmUp, WarmUpSteps};
 use crate::contract::{
     Denoise, DrawnLists, DrawnMap, Error, Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
 };
@@ -18,7 +18,10 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn set_quality(&mut self, quality: Quality);
     fn denoise(&self) -> Option<&Denoise>;
     fn set_denoise(&mut self, denoise: Option<Denoise>);
+    fn half_resolution(&self) -> bool;
+    fn set_half_resolution(&mut self, is_half: bool);
     fn warm_up(&self, what: WarmUp) -> Result<(), Error>;
+    fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps;
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error>;
     fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error>;
     fn shader_function(&mut self, group: u32, prefix: &str) -> Result<ShaderFunction, Error>;
@@ -27,9 +30,12 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn drawn_maps(&self) -> Vec<DrawnMap>;
     fn drawn_lists(&self) -> Vec<DrawnLists>;
     fn overflow(&self) -> Option<Overflow>;
+    fn holds(&self, frame: &Frame<'_>) -> bool;
+    fn is_intact(&self) -> bool;
+    fn map_texels(&self) -> u64;
 }
 
-impl<T: Technique> ErasedShadow for Shadow<T> {
+impl<T: Technique + 'static> ErasedShadow for Shadow<T> {
     fn param_specs(&self) -> &'static [ParamSpec] {
         T::Params::specs()
     }
@@ -51,8 +57,17 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     fn set_denoise(&mut self, denoise: Option<Denoise>) {
         self.denoise = denoise;
     }
+    fn half_resolution(&self) -> bool {
+        self.half_resolution
+    }
+    fn set_half_resolution(&mut self, is_half: bool) {
+        self.half_resolution = is_half;
+    }
     fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
         Shadow::warm_up(self, what)
+    }
+    fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps {
+        Shadow::warm_up_steps(self, what)
     }
     fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
         Shadow::prepare(self, frame)
@@ -77,6 +92,15 @@ impl<T: Technique> ErasedShadow for Shadow<T> {
     }
     fn overflow(&self) -> Option<Overflow> {
         Shadow::overflow(self)
+    }
+    fn holds(&self, frame: &Frame<'_>) -> bool {
+        Shadow::holds(self, frame)
+    }
+    fn is_intact(&self) -> bool {
+        Shadow::is_intact(self)
+    }
+    fn map_texels(&self) -> u64 {
+        Shadow::map_texels(self)
     }
 }
 
@@ -140,12 +164,27 @@ impl AnyShadow {
         self.inner.set_denoise(denoise);
     }
 
+    /// Whether the next frame's technique writes a mask of half the width and height: [`Shadow::half_resolution`].
+    pub fn half_resolution(&self) -> bool {
+        self.inner.half_resolution()
+    }
+
+    /// Sets [`Shadow::half_resolution`] of the next frame.
+    pub fn set_half_resolution(&mut self, is_half: bool) {
+        self.inner.set_half_resolution(is_half);
+    }
+
     /// [`Shadow::warm_up`].
     ///
     /// # Errors
     /// As [`Shadow::warm_up`].
     pub fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
         self.inner.warm_up(what)
+    }
+
+    /// [`Shadow::warm_up_steps`].
+    pub fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps {
+        self.inner.warm_up_steps(what)
     }
 
     /// [`Shadow::prepare`].
@@ -195,5 +234,20 @@ impl AnyShadow {
     /// [`Shadow::overflow`].
     pub fn overflow(&self) -> Option<Overflow> {
         self.inner.overflow()
+    }
+
+    /// [`Shadow::holds`].
+    pub(crate) fn holds(&self, frame: &Frame<'_>) -> bool {
+        self.inner.holds(frame)
+    }
+
+    /// [`Shadow::is_intact`].
+    pub(crate) fn is_intact(&self) -> bool {
+        self.inner.is_intact()
+    }
+
+    /// [`Shadow::map_texels`].
+    pub(crate) fn map_texels(&self) -> u64 {
+        self.inner.map_texels()
     }
 }

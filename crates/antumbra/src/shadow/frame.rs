@@ -1,10 +1,11 @@
 //! One light's work for one frame, as a host hands it over, and what of it is drawn.
 
 use antumbra_light::Light;
+use glam::Vec3;
 
-use crate::casters::CasterSet;
+use crate::casters::{Ball, CasterSet};
 use crate::contract::{
-    DepthMapCaster, Error, Mask, MaskChannels, MeshCaster, PointReceivers, PreparedCasters, PreparedFrame,
+    CastersKey, DepthMapCaster, Error, Mask, MaskChannels, MeshCaster, PointReceivers, PreparedCasters, PreparedFrame,
     PreparedReceivers, Receivers,
 };
 
@@ -62,7 +63,7 @@ impl<'a> Asked<'a> {
     }
 }
 
-/// Casters in one of three forms.
+/// Casters in one of four forms.
 #[derive(Clone, Copy, Debug)]
 pub enum Casters<'a> {
     /// A set of casters that lights share; every technique takes it.
@@ -71,6 +72,18 @@ pub enum Casters<'a> {
         set: &'a CasterSet,
         /// A bit for each layer whose casters the light sees; `u32::MAX` for all.
         layers: u32,
+    },
+    /// The same of the casters that reach into a ball, such as a light's range: no others are drawn, and what changes outside of the ball
+    /// redraws nothing. Visibility is right within it if it holds the light; every technique takes it.
+    Within {
+        /// The casters, brought to the GPU by [`CasterSet::update`].
+        set: &'a CasterSet,
+        /// A bit for each layer whose casters the light sees; `u32::MAX` for all.
+        layers: u32,
+        /// Centre of the ball, world space.
+        center: Vec3,
+        /// Radius of the ball, metres; may be infinite.
+        radius_m: f32,
     },
     /// Geometry in the host's own buffers, for those that have it in just this form; every technique takes it.
     Meshes(&'a [MeshCaster<'a>]),
@@ -83,9 +96,18 @@ impl Casters<'_> {
     /// Number of mask channels that these casters need: three if any tints, otherwise one.
     pub fn mask_channels(&self) -> MaskChannels {
         match self {
-            Self::Set { set, layers } => set.mask_channels(*layers),
+            Self::Set { set, layers } | Self::Within { set, layers, .. } => set.mask_channels(*layers),
             Self::Meshes(meshes) => PreparedCasters::Draws(meshes).mask_channels(),
             Self::DepthMap(map) => PreparedCasters::HostDepthMap(*map).mask_channels(),
+        }
+    }
+
+    /// Key of the casters; `None` where nothing tells when they change.
+    pub(crate) fn key(&self) -> Option<CastersKey> {
+        match *self {
+            Self::Set { set, layers } => Some(set.key(layers, None)),
+            Self::Within { set, layers, center, radius_m } => Some(set.key(layers, Some(Ball { center, radius_m }))),
+            Self::Meshes(_) | Self::DepthMap(_) => None,
         }
     }
 }
@@ -104,10 +126,13 @@ impl<'a> FrameCasters<'a> {
     /// # Errors
     /// Where a set has changes that were not brought to the GPU.
     pub(super) fn of(casters: &Casters<'a>) -> Result<Self, Error> {
-        Ok(match casters {
-            Casters::Set { set, layers } => Self::Set(set.meshes(*layers)?),
+        Ok(match *casters {
+            Casters::Set { set, layers } => Self::Set(set.meshes(layers, None)?),
+            Casters::Within { set, layers, center, radius_m } => {
+                Self::Set(set.meshes(layers, Some(Ball { center, radius_m }))?)
+            }
             Casters::Meshes(meshes) => Self::Host(PreparedCasters::Draws(meshes)),
-            Casters::DepthMap(map) => Self::Host(PreparedCasters::HostDepthMap(*map)),
+            Casters::DepthMap(map) => Self::Host(PreparedCasters::HostDepthMap(map)),
         })
     }
 

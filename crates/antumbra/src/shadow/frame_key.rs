@@ -12,6 +12,7 @@ use crate::contract::{Camera, CastersKey, Denoise, MaskChannels, MaskPlace, Para
 pub(super) struct FrameKey<P> {
     params: P,
     denoise: Option<Denoise>,
+    is_half_resolution: bool,
     light: Light,
     casters: CastersKey,
     receivers: ReceiversKey,
@@ -80,7 +81,7 @@ impl<P: Params> FrameKey<P> {
     /// `None` where the host does not say when receivers or casters change.
     pub(super) fn of(
         params: &P,
-        denoise: Option<&Denoise>,
+        (denoise, is_half_resolution): (Option<&Denoise>, bool),
         asked: &Asked<'_>,
         casters: Option<CastersKey>,
     ) -> Option<Self> {
@@ -96,6 +97,7 @@ impl<P: Params> FrameKey<P> {
             version,
             params: params.clone(),
             denoise: denoise.cloned(),
+            is_half_resolution,
             light: asked.light().for_shadows(),
             receivers: match asked {
                 Asked::Mask(frame) => ReceiversKey::of_mask(frame),

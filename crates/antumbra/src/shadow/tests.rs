@@ -384,6 +384,41 @@ fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueK
     assert!(after.draws && after.mask != first.mask, "{kind}: the frame before was never submitted");
 }
 
+/// Steps compile what a warm-up does at once, each a part of it, and say how many are left.
+#[test]
+fn warm_up_steps_compile_a_part_each() {
+    let Some(shared) = gpu() else { return };
+    let gpu = || Gpu::new(shared.device(), shared.queue());
+    let (at_once, in_steps) = (gpu(), gpu());
+    for (kind, what) in [
+        (TechniqueKind::Pcss, WarmUp::default()),
+        (TechniqueKind::MultiLayer, WarmUp { masked: true, tinted: false }),
+        (TechniqueKind::RayTraced, WarmUp { masked: false, tinted: false }),
+    ] {
+        let of = |gpu: &Gpu| {
+            let mut shadow = small(gpu, kind);
+            shadow.set_half_resolution(true);
+            shadow
+        };
+        of(&at_once).warm_up(what).expect("any device");
+        let mut steps = of(&in_steps).warm_up_steps(what);
+        let all = steps.len();
+        let made = || in_steps.objects_made().programs;
+        let (first, mut parts) = (made(), 0);
+        for left in (0..all).rev() {
+            let before = made();
+            steps.next().expect("some are left").expect("any device");
+            assert_eq!(steps.len(), left, "{kind}");
+            parts += u32::from(made() > before);
+        }
+        assert!(steps.next().is_none() && made() > first, "{kind}");
+        // What passes share is there from the first technique on.
+        let least = if kind == TechniqueKind::Pcss { 3 } else { 1 };
+        assert!(parts >= least, "{kind}: {parts} of {all} steps compile anything");
+        assert_eq!(made(), at_once.objects_made().programs, "{kind}");
+    }
+}
+
 /// After a warm-up the first frame finds its programs, whatever its casters.
 fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     // Programs of its own.

@@ -116,12 +116,16 @@ impl<F> Check<'_, F> {
 
     fn casters(&self, casters: &Casters<'_>) -> Result<(), Error> {
         match casters {
-            Casters::Set { set, .. } if !self.gpu.reads_of(set.gpu()) => self.bad(
+            Casters::Set { set, .. } | Casters::Within { set, .. } if !self.gpu.reads_of(set.gpu()) => self.bad(
                 "the set of casters",
                 "of another device or another `Gpu`",
                 "made with a clone of the light's `Gpu`: one serves a device",
             ),
-            Casters::Set { .. } | Casters::DepthMap(_) => Ok(()),
+            Casters::Within { center, radius_m, .. } if !center.is_finite() || radius_m.is_nan() || *radius_m < 0.0 => {
+                let had = format!("of {radius_m} m about {center}");
+                self.bad("the casters' ball", had, "about a finite centre, of 0 m or more")
+            }
+            Casters::Set { .. } | Casters::Within { .. } | Casters::DepthMap(_) => Ok(()),
             Casters::Meshes(meshes) => meshes.iter().enumerate().try_for_each(|(i, mesh)| self.mesh(i, mesh)),
         }
     }

@@ -1,6 +1,9 @@
 //! Compiling before the first frame: a frame of a dummy scene is prepared on a state that is dropped, and what it compiled
 //! stays with the device.
 
+use std::collections::VecDeque;
+use std::fmt;
+
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Affine2, Mat4, UVec2, Vec2, Vec3};
 
@@ -13,6 +16,7 @@ use crate::casters::{
 use crate::contract::{DepthConvention, Error, Mask, MaskChannels, Receivers, SurfaceCoverage};
 use crate::cover::pictures::PartPictures;
 use crate::frame::denoise::Denoiser;
+use crate::frame::half_resolution::HalfResolution;
 use crate::frame::points::PointTextures;
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{Coverage, Technique};
@@ -33,39 +37,118 @@ impl Default for WarmUp {
     }
 }
 
-impl<T: Technique> Shadow<T> {
+/// Steps of compiling before the first frame, for hosts that show progress: each item compiles part of it, at most what one frame of a
+/// light needs. Its length is the number of steps that are left. A browser, which has no threads to spare, takes one a frame.
+#[must_use = "nothing is compiled before a step is taken"]
+pub struct WarmUpSteps {
+    steps: VecDeque<Box<dyn Step>>,
+}
+
+impl fmt::Debug for WarmUpSteps {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "WarmUpSteps({} left)", self.steps.len())
+    }
+}
+
+impl Iterator for WarmUpSteps {
+    /// What [`Shadow::warm_up`] returns.
+    type Item = Result<(), Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.steps.pop_front().map(|step| step.run())
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.steps.len(), Some(self.steps.len()))
+    }
+}
+
+impl ExactSizeIterator for WarmUpSteps {}
+
+/// A part of what is compiled.
+trait Step: wgpu::WasmNotSendSync {
+    fn run(self: Box<Self>) -> Result<(), Error>;
+}
+
+/// Passes about a technique.
+struct PassesStep {
+    gpu: Gpu,
+    compile: fn(&Gpu),
+}
+
+impl Step for PassesStep {
+    fn run(self: Box<Self>) -> Result<(), Error> {
+        (self.compile)(&self.gpu);
+        Ok(())
+    }
+}
+
+/// A frame of a technique under a light over a dummy scene.
+struct FrameStep<T: Technique> {
+    gpu: Gpu,
+    params: T::Params,
+    scene: WarmUp,
+    shape: LightShape,
+    /// Whether what no frame can do is an error: of the first light of a scene. Of the others it is said when it is asked for.
+    is_asked: bool,
+}
+
+impl<T: Technique> Step for FrameStep<T> {
+    fn run(self: Box<Self>) -> Result<(), Error> {
+        let dummy = DummyScene::new(&self.gpu, self.scene)?;
+        let mut shadow = Shadow::<T>::with_params(&self.gpu, self.params)?;
+        let outcome = shadow.prepare(&dummy.frame(&light_of(self.shape))).map(drop);
+        if self.is_asked { outcome } else { Ok(()) }
+    }
+}
+
+impl<T: Technique + 'static> Shadow<T> {
     /// Compiles what frames with the present parameters need, so that no frame does: while a host loads, be it on another
     /// thread with a state of its own. What is compiled stays with the device and serves every light.
     ///
     /// # Errors
     /// As [`new`](Shadow::new) and [`prepare`](Shadow::prepare).
     pub fn warm_up(&self, what: WarmUp) -> Result<(), Error> {
-        // Some techniques compile otherwise where any caster is not opaque.
-        let mut scenes = vec![WarmUp { masked: false, tinted: false }];
-        scenes.extend(
-            [(what.masked, false), (false, what.tinted), (what.masked, what.tinted)]
-                .map(|(masked, tinted)| WarmUp { masked, tinted }),
-        );
-        scenes.dedup();
-        PointTextures::compile_ahead(&self.gpu);
+        self.warm_up_steps(what).collect()
+    }
+
+    /// The same in steps, a few a frame, for hosts that must not wait: a loading screen with progress, a browser.
+    pub fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps {
+        let mut compile: Vec<fn(&Gpu)> = vec![PointTextures::compile_ahead];
         if T::coverage(&self.params) != Coverage::Everything {
-            drop(PartPictures::new(&self.gpu));
+            compile.push(|gpu| drop(PartPictures::new(gpu)));
         }
         if self.denoise.is_some() {
-            drop(Denoiser::new(&self.gpu));
+            compile.push(|gpu| drop(Denoiser::new(gpu)));
         }
-        for scene in scenes {
-            let dummy = DummyScene::new(&self.gpu, scene)?;
-            let mut shadow = Self::with_params(&self.gpu, self.params.clone())?;
-            drop(shadow.prepare(&dummy.frame(&light_of(LightShape::Disk { radius_m: 0.1 })))?);
-            // Some compile for the light's kind, and once more for each kind of caster; what none can do is said when it is
-            // asked for.
-            for shape in other_shapes() {
-                drop(shadow.prepare(&dummy.frame(&light_of(shape))));
-            }
+        if self.half_resolution {
+            compile.push(|gpu| drop(HalfResolution::new(gpu)));
         }
-        Ok(())
+        let passes = compile.into_iter().map(|compile| {
+            let step: Box<dyn Step> = Box::new(PassesStep { gpu: self.gpu.clone(), compile });
+            step
+        });
+        let frames = scenes_of(what).into_iter().flat_map(|scene| {
+            // Some compile for the light's kind, and once more for each kind of caster.
+            shapes().into_iter().enumerate().map(move |(i, shape)| {
+                let (gpu, params) = (self.gpu.clone(), self.params.clone());
+                let step: Box<dyn Step> = Box::new(FrameStep::<T> { gpu, params, scene, shape, is_asked: i == 0 });
+                step
+            })
+        });
+        WarmUpSteps { steps: passes.chain(frames).collect() }
     }
+}
+
+/// Scenes that need pipelines of their own: some techniques compile otherwise where any caster is not opaque.
+fn scenes_of(what: WarmUp) -> Vec<WarmUp> {
+    let mut scenes = vec![WarmUp { masked: false, tinted: false }];
+    scenes.extend(
+        [(what.masked, false), (false, what.tinted), (what.masked, what.tinted)]
+            .map(|(masked, tinted)| WarmUp { masked, tinted }),
+    );
+    scenes.dedup();
+    scenes
 }
 
 /// A light of a shape, above the scene.
@@ -73,9 +156,10 @@ fn light_of(shape: LightShape) -> Light {
     Light::new(shape, Vec3::new(0.3, 4.0, 0.2), Vec3::ZERO)
 }
 
-/// One of every kind but a disk.
-fn other_shapes() -> [LightShape; 5] {
+/// One of every kind.
+fn shapes() -> [LightShape; 6] {
     [
+        LightShape::Disk { radius_m: 0.1 },
         LightShape::Rectangle { size_m: Vec2::splat(0.1) },
         LightShape::Sphere { radius_m: 0.1 },
         LightShape::Ellipsoid { radii_m: Vec3::splat(0.1) },
