@@ -18,6 +18,7 @@ use crate::testing::{
     Case, Mesh, RECTANGLE, View, empty_depth, gpu, half_plane_visibility, read_storage, test_ground, test_receivers,
 };
 
+mod levels_shown;
 mod seen_from_the_side;
 
 #[test]
