@@ -148,7 +148,7 @@ fn lights() -> [Light; 8] {
     };
     // A window of four panes.
     let pane = |i: u32| if i % 9 == 4 || i / 9 == 4 { 0.0 } else { 1.0 };
-    let panes = EmissionTexture { width: 9, height: 9, luminance: (0..81).map(pane).collect() };
+    let panes = EmissionTexture::gray(9, 9, (0..81).map(pane).collect());
     let window = LightShape::Rectangle { size_m: Vec2::splat(0.8) };
     let mut lights = [
         light("panel", LightShape::Rectangle { size_m: Vec2::new(1.0, 0.5) }, [2.6, 4.2, 2.4], [15.0, 12.5, 10.0]),

@@ -476,9 +476,7 @@ fn kinds_of(casters: &Casters<'_>) -> WarmUp {
 
 /// A mask of as many channels as a technique writes of these casters.
 pub(crate) fn mask_for(lab: &LabDevice, technique: &AnyShadow, casters: &Casters<'_>, size_px: UVec2) -> Mask {
-    // Debug views are in colour.
-    let is_colored =
-        technique.params().any(|(spec, value)| spec.key == "show" && value == ParamValue::Choice("layers"));
+    let is_colored = technique.params().any(|(spec, value)| spec.colors_mask(value));
     let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
     Mask::with_channels(&lab.device, size_px, channels)
 }

@@ -195,7 +195,7 @@ fn lights(first: &Light) -> Vec<Light> {
     let at = |i: usize| first.center + Vec3::new(0.4 * i as f32 - 1.4, 0.1 * i as f32, 0.0);
     let of = |i: usize, shape: LightShape| Light { shape, center: at(i), ..first.clone() };
     let positions_m = (0..6).map(|i| at(5) + 0.1 * i as f32 * Vec3::X).collect();
-    let checks = EmissionTexture { width: 2, height: 2, luminance: vec![1.0, 0.25, 0.25, 1.0] };
+    let checks = EmissionTexture::gray(2, 2, vec![1.0, 0.25, 0.25, 1.0]);
     vec![
         of(0, LightShape::Rectangle { size_m: Vec2::new(1.0, 0.5) }),
         of(1, LightShape::Disk { radius_m: 0.4 }),

@@ -8,6 +8,7 @@
 
 mod aabb;
 mod anchor;
+mod emission;
 mod hull;
 mod light;
 mod moments;
@@ -16,10 +17,9 @@ mod shadow_distance;
 
 pub use aabb::Aabb;
 pub use anchor::anchor_near;
+pub use emission::{EmissionTexture, LUMINANCE};
 pub use hull::{Polytope, enclosing_corners, enclosing_planes, polytope_corners};
-pub use light::{
-    Cone, EmissionTexture, Light, LightError, LightFrame, LightPoint, LightShape, ball_from_cube, disk_from_square,
-};
+pub use light::{Cone, Light, LightError, LightFrame, LightPoint, LightShape, ball_from_cube, disk_from_square};
 pub use moments::{EquivalentRectangle, LightMoments};
 pub use sample_set::{SampleSet, hash_u32, unit_f32};
 pub use shadow_distance::ShadowDistance;

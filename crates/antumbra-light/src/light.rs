@@ -4,6 +4,8 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
 use glam::{Vec2, Vec3};
 
+use crate::emission::EmissionTexture;
+
 /// The shape of an emitter, and how its area is weighted.
 ///
 /// The size is physical and the only setting of softness: the penumbra's width follows from geometry.
@@ -39,26 +41,6 @@ pub enum LightShape {
         /// World positions, metres.
         positions_m: Vec<Vec3>,
     },
-}
-
-/// Emission that varies over a rectangle light; its luminance weights the area.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EmissionTexture {
-    /// Texels along the light's right axis.
-    pub width: u32,
-    /// Texels along the light's up axis.
-    pub height: u32,
-    /// `width · height` linear luminances ≥ 0; the first row is the top (+up), the first column is −right.
-    pub luminance: Vec<f32>,
-}
-
-impl EmissionTexture {
-    /// The luminance of the texel at `u` in the unit square, where `u.x` runs along right and `u.y` along up.
-    pub fn luminance_at(&self, u: Vec2) -> f32 {
-        let column = ((u.x * self.width as f32) as u32).min(self.width - 1);
-        let row = (((1.0 - u.y) * self.height as f32) as u32).min(self.height - 1);
-        self.luminance[(row * self.width + column) as usize]
-    }
 }
 
 impl LightShape {
@@ -274,13 +256,7 @@ impl Light {
                 out("positions", "a list with a number that is not finite".into(), "finite positions in metres")
             }
             _ => match &self.emission {
-                Some(texture)
-                    if texture.width == 0
-                        || texture.height == 0
-                        || texture.luminance.len() != (texture.width * texture.height) as usize
-                        || !texture.luminance.iter().all(|l| l.is_finite() && *l >= 0.0)
-                        || texture.luminance.iter().all(|l| *l == 0.0) =>
-                {
+                Some(texture) if !texture.is_usable() => {
                     out("texture", "unusable".into(), "an image with finite luminances, not all zero")
                 }
                 _ => Ok(()),

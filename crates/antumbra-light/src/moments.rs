@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn sampled_points_have_these_moments_and_lie_within_these_bounds() {
-        let spot = EmissionTexture { width: 3, height: 2, luminance: vec![0.0, 1.0, 4.0, 0.0, 0.5, 0.0] };
+        let spot = EmissionTexture::gray(3, 2, vec![0.0, 1.0, 4.0, 0.0, 0.5, 0.0]);
         let size_m = Vec2::new(0.6, 0.8);
         let textured = Light { emission: Some(spot), ..light(LightShape::Rectangle { size_m }) };
         let offsets = [Vec3::new(0.2, -0.1, 0.4), Vec3::new(-0.5, 0.3, 0.0), Vec3::new(0.9, 0.2, 0.1)];
@@ -297,7 +297,7 @@ mod tests {
     fn a_texture_lit_in_part_is_the_rectangle_of_that_part() {
         let size_m = Vec2::new(0.8, 0.4);
         let with = |luminance: [f32; 8]| {
-            let emission = EmissionTexture { width: 4, height: 2, luminance: luminance.to_vec() };
+            let emission = EmissionTexture::gray(4, 2, luminance.to_vec());
             Light { emission: Some(emission), ..light(LightShape::Rectangle { size_m }) }.moments()
         };
         let whole = with([2.0; 8]);

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::f32::consts::FRAC_PI_2;
 use std::io::{Cursor, Write};
 
-use antumbra_light::{Light, LightShape};
+use antumbra_light::{EmissionTexture, Light, LightShape};
 use glam::{Mat3, Mat4, Quat, Vec3, Vec4};
 use serde_json::{Map, Value, json};
 
@@ -437,10 +437,9 @@ fn light(light: &Light) -> Value {
         extra("fov", fov_rad.to_degrees().into());
     }
     if let Some(emission) = &light.emission {
-        extra(
-            "emission",
-            json!({ "width": emission.width, "height": emission.height, "luminance": emission.luminance }),
-        );
+        let tint = emission.tint.as_ref().map(|tint| tint.iter().map(|c| c.to_array()).collect::<Vec<_>>());
+        let EmissionTexture { width, height, luminance, .. } = emission;
+        extra("emission", object(json!({ "width": width, "height": height, "luminance": luminance, "tint": tint })));
     }
     let spot = if kind == "spot" {
         let (inner, outer) = light.cone.map_or((0.0, FRAC_PI_2), |cone| (cone.inner_rad, cone.outer_rad));
@@ -470,7 +469,7 @@ fn light_node(light: &Light, index: usize) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use antumbra_light::{Cone, EmissionTexture};
+    use antumbra_light::Cone;
     use glam::Vec2;
 
     use super::*;
@@ -565,7 +564,8 @@ mod tests {
             light.cone = (k % 3 == 0).then_some(Cone { inner_rad: 0.2, outer_rad: 0.6 });
             scene.lights.push(light);
         }
-        scene.lights[0].emission = Some(EmissionTexture { width: 2, height: 1, luminance: vec![0.5, 3.0] });
+        scene.lights[0].emission =
+            Some(EmissionTexture::from_rgb(2, 1, &[Vec3::splat(0.5), Vec3::new(3.0, 0.25, 1.0)]));
         let glow = Vec3::new(4.0, 2.0, 0.0);
         scene.materials = vec![
             Material {

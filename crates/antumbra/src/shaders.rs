@@ -172,6 +172,10 @@ shaders! {
     VIEW_SAMPLES_CHOOSE = "techniques/receiver_lists/lists/choose";
     /// View-samples: stores receivers in lists.
     VIEW_SAMPLES_SCATTER = "techniques/receiver_lists/lists/scatter";
+    /// Pixels between every other one that interpolation left missing, for a second round of lists.
+    VIEW_SAMPLES_MARK_MISSING = "techniques/receiver_lists/lists/mark_missing";
+    /// Irradiance from the bits of light points.
+    VIEW_SAMPLES_IRRADIANCE = "techniques/receiver_lists/light_bits/irradiance";
     /// View-samples: sizes of dispatches.
     VIEW_SAMPLES_ARGUMENTS = "techniques/receiver_lists/lists/arguments";
     /// View-samples: before the first pass over the groups.

@@ -11,11 +11,13 @@ mod glossary;
 mod html;
 mod index;
 mod json;
+mod lines;
 mod model;
 mod motion;
 mod page;
 mod paths;
 mod reproduced;
+mod reproduced_plots;
 mod resume;
 mod scatter;
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::html::{escape, grouped, three_figures};
 use super::page::{ICON, STYLE, software_notice};
+use super::reproduced_plots::plots;
 use crate::adapter_info::AdapterInfo;
 use crate::output_files::{FileError, write_atomically};
 use crate::reproduce::{
@@ -166,6 +167,7 @@ fn section(result: &ExhibitResult, info: &ReproductionInfo) -> String {
     }
     html += &claims(&result.judged);
     html += &table(result, info);
+    html += &plots(result);
     html += &pictures(&result.rows);
     let _ = write!(
         html,
@@ -348,6 +350,8 @@ mod tests {
             frames: 1,
             measure: Measure::Fps { paper: Reported::Number(100.0) },
             is_dear: false,
+            is_timed_too: false,
+            plotted: None,
         },
         Row {
             what: "second",
@@ -362,6 +366,8 @@ mod tests {
             frames: 1,
             measure: Measure::Error,
             is_dear: false,
+            is_timed_too: false,
+            plotted: None,
         },
     ];
     static EXHIBIT: Exhibit = Exhibit {

@@ -45,14 +45,17 @@ const LABEL_ADVANCE: f64 = 7.2;
 const MARGIN: f64 = 1.6;
 
 /// Logarithmic scales: cost to the right, error upwards. An error of zero lies on the lower edge.
-struct Scale {
+pub(super) struct Scale {
     costs: (f64, f64),
     errors: (f64, f64),
 }
 
 impl Scale {
+    /// Of the drawing.
+    pub(super) const VIEW_BOX: &'static str = "0 0 640 380";
+
     /// Scale that shows every point.
-    fn of(points: &[&Point]) -> Self {
+    pub(super) fn of(points: &[&Point]) -> Self {
         let range = |values: &dyn Fn(&Point) -> f64| {
             let positive = points.iter().map(|point| values(point)).filter(|value| *value > 0.0);
             let (least, most) = positive.fold((f64::INFINITY, 0.0_f64), |(a, b), value| (a.min(value), b.max(value)));
@@ -61,11 +64,11 @@ impl Scale {
         Self { costs: range(&|point| point.cost), errors: range(&|point| point.error) }
     }
 
-    fn x_of(&self, cost: f64) -> f64 {
+    pub(super) fn x_of(&self, cost: f64) -> f64 {
         LEFT + share(self.costs, cost) * (WIDTH - LEFT - RIGHT)
     }
 
-    fn y_of(&self, error: f64) -> f64 {
+    pub(super) fn y_of(&self, error: f64) -> f64 {
         HEIGHT - BOTTOM - share(self.errors, error) * (HEIGHT - TOP - BOTTOM)
     }
 }
@@ -84,9 +87,11 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
     }
     let scale = Scale::of(&points);
     let mut svg = format!(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0} against {1}\"><svg class=\"scatter\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{0} against {1}, both \
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0} against {1}\"><svg class=\"scatter\" viewBox=\"{2}\" role=\"img\"><title>{0} against {1}, both \
          logarithmic, one point for each technique; lower left is better</title>",
-        axes.error, axes.cost
+        axes.error,
+        axes.cost,
+        Scale::VIEW_BOX
     );
     draw_grid(&mut svg, &scale);
     draw_axes(&mut svg, &axes);
@@ -101,7 +106,7 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
 }
 
 /// Lines at round errors and costs, with their numbers.
-fn draw_grid(svg: &mut String, scale: &Scale) {
+pub(super) fn draw_grid(svg: &mut String, scale: &Scale) {
     let (floor, ceiling) = (HEIGHT - BOTTOM, TOP);
     for error in log_ticks(scale.errors) {
         let y = scale.y_of(error);
@@ -128,7 +133,7 @@ fn draw_grid(svg: &mut String, scale: &Scale) {
 }
 
 /// What the axes mean.
-fn draw_axes(svg: &mut String, axes: &Axes) {
+pub(super) fn draw_axes(svg: &mut String, axes: &Axes) {
     let _ = write!(
         svg,
         "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{} →</text>\
@@ -141,6 +146,22 @@ fn draw_axes(svg: &mut String, axes: &Axes) {
         14.0,
         axes.error
     );
+}
+
+/// A name beside each point.
+pub(super) fn name_points(svg: &mut String, scale: &Scale, points: &[&Point]) {
+    let centers: Vec<(f64, f64)> =
+        points.iter().map(|point| (scale.x_of(point.cost), scale.y_of(point.error))).collect();
+    let widths: Vec<f64> = points.iter().map(|point| point.name.chars().count() as f64 * LABEL_ADVANCE).collect();
+    for ((point, label), (x, _)) in points.iter().zip(place_labels(&centers, &widths)).zip(&centers) {
+        let (label_x, anchor) = if label.left > *x { (label.left, "start") } else { (label.right, "end") };
+        let _ = write!(
+            svg,
+            "<text class=\"label\" x=\"{label_x:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
+            label.baseline,
+            escape(&point.name)
+        );
+    }
 }
 
 /// A circle and a name for each point.

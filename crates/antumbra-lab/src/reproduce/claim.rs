@@ -33,6 +33,11 @@ impl Claim {
         Self { because, ..self }
     }
 
+    /// Why it was found contradicted by both forms.
+    pub(super) const fn because_both(self, because: &'static str) -> Self {
+        Self { because, because_ours: because, ..self }
+    }
+
     /// Why it was found contradicted by our form.
     pub(super) const fn because_ours(self, because_ours: &'static str) -> Self {
         Self { because_ours, ..self }

@@ -2,6 +2,7 @@
 //! paper claims by it.
 
 use super::claim::Claim;
+use crate::motion::Motion;
 
 /// A paper that this project implements.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +64,21 @@ pub struct Row {
     pub measure: Measure,
     /// Whether a software renderer takes too long over it to be asked for it in passing.
     pub is_dear: bool,
+    /// Whether a row about errors is timed too, so that the page draws its error over its time.
+    pub is_timed_too: bool,
+    /// Where it stands in a plot of its exhibit's errors over a number.
+    pub plotted: Option<Plotted>,
+}
+
+/// A point of a plot of errors over a number that rows differ in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plotted {
+    /// What the number is, for the axis; one for all of an exhibit.
+    pub axis: &'static str,
+    /// The line that the point is on.
+    pub line: &'static str,
+    /// The number, above zero.
+    pub at: f64,
 }
 
 /// A technique's parameters.
@@ -99,6 +115,8 @@ pub enum Measure {
         /// Its parameters.
         settings: Settings,
     },
+    /// Flicker against the truth's own change, frame by frame, while something moves; a strip of frames is its picture.
+    Motion(Motion),
     /// No number: a debug view in colours, as the technique paints it.
     Colors,
 }
@@ -123,6 +141,7 @@ impl Measure {
             Self::Ms { paper, .. } | Self::SceneMs { paper } => text(paper, "ms"),
             Self::Fps { paper } => text(paper, "fps"),
             Self::Error | Self::FilteredError | Self::Difference { .. } | Self::Colors => "a picture".to_owned(),
+            Self::Motion(_) => "words".to_owned(),
         }
     }
 
@@ -182,6 +201,16 @@ impl Row {
         Self { is_published_alone: true, ..self }
     }
 
+    /// Timed too.
+    pub(super) const fn timed(self) -> Self {
+        Self { is_timed_too: true, ..self }
+    }
+
+    /// A point of the exhibit's plot.
+    pub(super) const fn plotted(self, axis: &'static str, line: &'static str, at: f64) -> Self {
+        Self { plotted: Some(Plotted { axis, line, at }), ..self }
+    }
+
     /// Too dear for a software renderer, unless it is asked for.
     pub(super) const fn dear(self) -> Self {
         self.dear_where(true)
@@ -207,6 +236,8 @@ const fn row(what: &'static str, scene: &'static str, technique: &'static str, m
         frames: 1,
         measure,
         is_dear: false,
+        is_timed_too: false,
+        plotted: None,
     }
 }
 
@@ -228,6 +259,11 @@ pub(super) const fn difference(
     (from, settings): (&'static str, Settings),
 ) -> Row {
     row(what, scene, technique, Measure::Difference { from, settings })
+}
+
+/// A row that looks at frames while something moves.
+pub(super) const fn in_motion(what: &'static str, scene: &'static str, technique: &'static str, motion: Motion) -> Row {
+    row(what, scene, technique, Measure::Motion(motion))
 }
 
 /// A row that shows a debug view.

@@ -15,6 +15,8 @@ pub enum Figure {
     LitLoss,
     /// Rms of the error's detail where the reference is smooth: noise, bands, texels, seams.
     Noise,
+    /// Rms of the mask's change from frame to frame less the truth's.
+    Flicker,
     /// Memory, MiB.
     MemoryMib,
 }
@@ -22,14 +24,14 @@ pub enum Figure {
 impl Figure {
     /// Whether images are compared for it.
     pub fn is_of_images(self) -> bool {
-        matches!(self, Self::Rmse | Self::UmbraLeak | Self::LitLoss | Self::Noise)
+        matches!(self, Self::Rmse | Self::UmbraLeak | Self::LitLoss | Self::Noise | Self::Flicker)
     }
 
     /// A value for readers.
     pub fn text(self, value: f64) -> String {
         match self {
             Self::Ms => format!("{value:.3} ms"),
-            Self::Rmse | Self::UmbraLeak | Self::LitLoss | Self::Noise => format!("{value:.4}"),
+            Self::Rmse | Self::UmbraLeak | Self::LitLoss | Self::Noise | Self::Flicker => format!("{value:.4}"),
             Self::MemoryMib => format!("{value:.1} MiB"),
         }
     }
@@ -43,6 +45,7 @@ impl fmt::Display for Figure {
             Self::UmbraLeak => "umbra leak",
             Self::LitLoss => "lit loss",
             Self::Noise => "noise",
+            Self::Flicker => "flicker",
             Self::MemoryMib => "memory",
         })
     }

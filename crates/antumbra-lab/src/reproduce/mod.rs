@@ -9,6 +9,7 @@ mod claim;
 mod exhibit;
 mod figure;
 mod form;
+mod motion_row;
 mod outcome;
 mod papers;
 mod preset;
@@ -18,7 +19,7 @@ mod verdict;
 mod views;
 
 pub use claim::{Claim, Rule};
-pub use exhibit::{Exhibit, Measure, Paper, Reported, Row, Settings};
+pub use exhibit::{Exhibit, Measure, Paper, Plotted, Reported, Row, Settings};
 pub use figure::Figure;
 pub use form::Form;
 pub use outcome::{Measured, Outcome};
@@ -143,10 +144,11 @@ mod tests {
                     for what in rule.rows() {
                         let row = exhibit.rows.iter().find(|row| row.what == what);
                         let row = row.unwrap_or_else(|| panic!("{name}: a rule speaks of {what}"));
-                        let is_error = rule.figure().is_of_images();
-                        let is_time = rule.figure() == Figure::Ms;
-                        let is_measured =
-                            if is_error { row.measure.is_error() } else { !is_time || !row.measure.is_error() };
+                        let is_measured = match rule.figure() {
+                            Figure::Flicker => matches!(row.measure, Measure::Motion(_)),
+                            Figure::Ms => row.measure.is_timed() || matches!(row.measure, Measure::SceneMs { .. }),
+                            figure => !figure.is_of_images() || row.measure.is_error(),
+                        };
                         assert!(is_measured, "{name}: {what} has no {}", rule.figure());
                     }
                 }
@@ -155,6 +157,22 @@ mod tests {
                 exhibit.rows.is_empty() || !exhibit.claims.is_empty() || !exhibit.note.is_empty(),
                 "{name} claims nothing and says not why"
             );
+        }
+    }
+
+    /// What is timed is one frame, and plots have one axis and lines of several points.
+    #[test]
+    fn rows_of_plots_can_be_drawn() {
+        for (name, _, exhibit) in exhibits() {
+            for row in exhibit.rows {
+                assert!(!row.is_timed_too || (row.measure.is_error() && row.frames == 1), "{name}: {}", row.what);
+            }
+            let points: Vec<Plotted> = exhibit.rows.iter().filter_map(|row| row.plotted).collect();
+            assert!(points.iter().all(|point| point.axis == points[0].axis && point.at > 0.0), "{name}");
+            for point in &points {
+                let of_line = points.iter().filter(|other| other.line == point.line).count();
+                assert!(of_line > 1, "{name}: {} has one point", point.line);
+            }
         }
     }
 

@@ -49,6 +49,12 @@ pub struct Measured {
     /// Rms of the error's detail where the reference is smooth.
     #[serde(default)]
     pub noise: Option<f64>,
+    /// Rms of the mask's change from frame to frame less the truth's.
+    #[serde(default)]
+    pub flicker: Option<f64>,
+    /// The truth's own change: what a mask that never changes would flicker.
+    #[serde(default)]
+    pub still_flicker: Option<f64>,
     /// Light points a pixel of the reference, where it was traced.
     #[serde(default)]
     pub truth_samples: Option<u32>,
@@ -72,6 +78,7 @@ impl Measured {
             Figure::UmbraLeak => self.umbra_leak,
             Figure::LitLoss => self.lit_loss,
             Figure::Noise => self.noise,
+            Figure::Flicker => self.flicker,
             Figure::MemoryMib => self.memory_bytes.map(|bytes| bytes as f64 / (1 << 20) as f64),
         }
     }
@@ -82,9 +89,14 @@ impl Measured {
         let fps = |ms: f64| 1e3 / ms.max(f64::MIN_POSITIVE);
         match (measure, self.ms) {
             (Measure::Colors, _) => "a picture".to_owned(),
+            (Measure::Motion(_), _) => {
+                let [flicker, still] = [self.flicker, self.still_flicker].map(number);
+                format!("flicker {flicker} where the truth changes by {still}")
+            }
             (measure, _) if measure.is_error() => {
                 let [rmse, leak, loss, noise] = [self.rmse, self.umbra_leak, self.lit_loss, self.noise].map(number);
-                format!("rmse {rmse}, umbra leak {leak}, lit loss {loss}, noise {noise}")
+                let time = self.ms.map_or_else(String::new, |ms| format!(", {ms:.3} ms{}", counted(self.count)));
+                format!("rmse {rmse}, umbra leak {leak}, lit loss {loss}, noise {noise}{time}")
             }
             (_, None) => "–".to_owned(),
             (Measure::Fps { .. }, Some(ms)) => {

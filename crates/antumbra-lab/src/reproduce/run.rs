@@ -24,6 +24,7 @@ use crate::error::LabError;
 use crate::gpu_scene::GpuScene;
 use crate::limits::End;
 use crate::metrics::compare_visibility;
+use crate::motion::MotionTruth;
 use crate::picture::Visibility;
 use crate::progress::Silent;
 use crate::technique_run::{Drawn, TechniqueChoice, TechniqueRun, Timing, Timings};
@@ -89,8 +90,10 @@ impl RunOptions {
 pub struct Pictures {
     /// Shaded with the technique's mask; a debug view as it is.
     pub picture: RgbImage,
-    /// Shaded with what it is held against, and the signed error; where it is held against something.
-    pub beside: Option<[RgbImage; 2]>,
+    /// Shaded with what it is held against, where it is held against something.
+    pub reference: Option<RgbImage>,
+    /// The signed error, where it is of one frame.
+    pub error: Option<RgbImage>,
 }
 
 /// A row that was run.
@@ -116,20 +119,21 @@ const KEPT_SCENES: usize = 3;
 /// What rows share: scenes, and their truths.
 #[derive(Debug)]
 pub struct Bench<'a> {
-    lab: &'a LabDevice,
-    options: RunOptions,
+    pub(super) lab: &'a LabDevice,
+    pub(super) options: RunOptions,
     /// By what was loaded, the latest used last.
     scenes: Vec<(String, Rc<Loaded>)>,
     truths: HashMap<String, Rc<LightTruth>>,
+    pub(super) motion_truths: HashMap<String, Rc<MotionTruth>>,
     /// Of the row that runs.
-    end: Option<End>,
+    pub(super) end: Option<End>,
     /// Of all rows.
-    deadline: Option<Instant>,
+    pub(super) deadline: Option<Instant>,
 }
 
 #[derive(Debug)]
-struct Loaded {
-    scene: Scene,
+pub(super) struct Loaded {
+    pub(super) scene: Scene,
     uploaded: Rc<GpuScene>,
     tracer: OnceCell<Tracer>,
 }
@@ -149,7 +153,15 @@ impl Loaded {
 impl<'a> Bench<'a> {
     /// Rows will be run on this device.
     pub fn new(lab: &'a LabDevice, options: RunOptions) -> Self {
-        Self { lab, options, scenes: Vec::new(), truths: HashMap::new(), end: None, deadline: None }
+        Self {
+            lab,
+            options,
+            scenes: Vec::new(),
+            truths: HashMap::new(),
+            motion_truths: HashMap::new(),
+            end: None,
+            deadline: None,
+        }
     }
 
     /// The same, whose truths are given up at a deadline.
@@ -243,21 +255,24 @@ impl Loaded {
 }
 
 /// A row where it is run.
-struct Site<'a, 'b> {
-    bench: &'a mut Bench<'b>,
-    row: &'a Row,
-    form: Form,
-    loaded: &'a Loaded,
-    setup: &'a Setup,
-    view: &'a View<'a>,
+pub(super) struct Site<'a, 'b> {
+    pub(super) bench: &'a mut Bench<'b>,
+    pub(super) row: &'a Row,
+    pub(super) form: Form,
+    pub(super) loaded: &'a Loaded,
+    pub(super) setup: &'a Setup,
+    pub(super) view: &'a View<'a>,
 }
 
 impl Site<'_, '_> {
     fn run(mut self, about: Measured, with_pictures: bool) -> Result<Ran, LabError> {
         let (row, view) = (self.row, self.view);
         let choice = row.choice(self.form)?;
+        if let Measure::Motion(motion) = row.measure {
+            return self.look_at_motion(motion, &choice, about, with_pictures);
+        }
         let mut cut_short_s = None;
-        let (drawn, mut measured) = if row.measure.is_timed() {
+        let (drawn, mut measured) = if row.measure.is_timed() || row.is_timed_too {
             let run = self.time(&choice)?;
             cut_short_s = run.cut_short_s;
             let TechniqueRun { visibility, timings, memory_bytes, auto_map_sizes, .. } = run;
@@ -283,7 +298,7 @@ impl Site<'_, '_> {
             _ => Some(view.shade(&[&visibility])?.to_srgb8()),
         };
         if !row.measure.is_error() {
-            let pictures = picture.map(|picture| Pictures { picture, beside: None });
+            let pictures = picture.map(|picture| Pictures { picture, reference: None, error: None });
             return Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s });
         }
         let (reference, judged) = self.reference(&choice)?;
@@ -295,8 +310,8 @@ impl Site<'_, '_> {
         let pictures = match picture {
             None => None,
             Some(picture) => {
-                let error = signed_error_map(&reference, &visibility, &judged);
-                Some(Pictures { picture, beside: Some([view.shade(&[&reference])?.to_srgb8(), error]) })
+                let error = Some(signed_error_map(&reference, &visibility, &judged));
+                Some(Pictures { picture, reference: Some(view.shade(&[&reference])?.to_srgb8()), error })
             }
         };
         Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s })

@@ -303,13 +303,11 @@ fn write(dir: &Path, pictures: &Pictures, own: &str, row: &Row) -> Result<Pictur
         Ok(path)
     };
     let picture = put(own.to_owned(), &pictures.picture)?;
-    let Some([reference, error]) = &pictures.beside else {
-        return Ok(PictureFiles { picture, reference: None, error: None });
-    };
     // Rows that look at one truth share its picture.
     let named = if row.measure == Measure::Error { truth_name(row) } else { format!("{own}-reference") };
-    let (reference, error) = (put(named, reference)?, put(format!("{own}-error"), error)?);
-    Ok(PictureFiles { picture, reference: Some(reference), error: Some(error) })
+    let reference = pictures.reference.as_ref().map(|reference| put(named, reference)).transpose()?;
+    let error = pictures.error.as_ref().map(|error| put(format!("{own}-error"), error)).transpose()?;
+    Ok(PictureFiles { picture, reference, error })
 }
 
 fn make(dir: &Path) -> Result<(), LabError> {
@@ -322,7 +320,7 @@ fn key(name: &str, row: &Row, form: Form) -> String {
 
 /// All that a row's result hangs on.
 fn described(row: &Row, form: Form, options: &RunOptions) -> Value {
-    let Row { scene, view, technique, light_scale, frames, measure, .. } = row;
+    let Row { scene, view, technique, light_scale, frames, measure, is_timed_too, .. } = row;
     let settings: Vec<String> = row.settings_of(form).map(|(key, value)| format!("{key}={value}")).collect();
     json!({
         "scene": scene,
@@ -334,6 +332,7 @@ fn described(row: &Row, form: Form, options: &RunOptions) -> Value {
         "light_scale": light_scale.to_string(),
         "frames": frames,
         "measure": format!("{measure:?}"),
+        "is_timed_too": is_timed_too,
     })
 }
 
@@ -348,7 +347,9 @@ fn truth_name(row: &Row) -> String {
 fn shows_picture(exhibit: &Exhibit, i: usize) -> bool {
     let row = &exhibit.rows[i];
     let is_same = |other: &Row| (other.scene, other.view) == (row.scene, row.view) && !other.technique.is_empty();
-    row.measure.is_error() || row.measure == Measure::Colors || !exhibit.rows[..i].iter().any(is_same)
+    row.measure.is_error()
+        || matches!(row.measure, Measure::Colors | Measure::Motion(_))
+        || !exhibit.rows[..i].iter().any(is_same)
 }
 
 #[cfg(test)]
@@ -386,7 +387,7 @@ mod tests {
     /// Whatever a row measures, it runs without a folder, and its pictures are kept where there is one.
     #[test]
     fn every_kind_of_row_runs_with_and_without_a_folder() {
-        use super::super::exhibit::{colors, difference, filtered_error, fps, scene_ms};
+        use super::super::exhibit::{colors, difference, filtered_error, fps, in_motion, scene_ms};
         const SMALL: super::super::exhibit::Settings = &[("map_size", "64")];
         const ROWS: &[Row] = &[
             ms("time", "builtin:overlap", "hard", "", Reported::Drawn).with(SMALL),
@@ -396,6 +397,8 @@ mod tests {
             filtered_error("filtered error", "builtin:overlap", "vsm").with(SMALL),
             difference("difference", "builtin:overlap", "hard", ("pcf", SMALL)).with(SMALL),
             colors("colours", "builtin:overlap", "lvsm").with(&[("show", "layers"), ("map_size", "64")]),
+            error("error and time", "builtin:overlap", "hard").with(SMALL).timed(),
+            in_motion("motion", "builtin:overlap", "hard", crate::motion::Motion::Light).with(SMALL),
         ];
         const KINDS: Exhibit = Exhibit { rows: ROWS, ..EXHIBIT };
         static PAPER: Paper =
@@ -409,7 +412,11 @@ mod tests {
             let result = session.run(&PAPER, &PAPER.exhibits[0], &Silent, rows, &mut |_| Ok(())).unwrap();
             for RowResult { row, outcome, pictures, .. } in &result.rows {
                 let Outcome::Measured(measured) = outcome else { panic!("{}: {outcome:?}", row.what) };
-                let is_timed = row.measure.is_timed() || matches!(row.measure, Measure::SceneMs { .. });
+                let is_timed =
+                    row.measure.is_timed() || row.is_timed_too || matches!(row.measure, Measure::SceneMs { .. });
+                let moves = matches!(row.measure, Measure::Motion(_));
+                assert_eq!(measured.flicker.is_some_and(|flicker| flicker > 0.0), moves, "{}", row.what);
+                assert_eq!(measured.still_flicker.is_some_and(|change| change > 0.0), moves, "{}", row.what);
                 assert_eq!((measured.ms.is_some(), measured.count.is_some()), (is_timed, is_timed), "{}", row.what);
                 // The very first frame never counts.
                 assert!(measured.count.is_none_or(|count| count.frames >= 1 && count.warm_up >= 1), "{measured:?}");

@@ -214,6 +214,11 @@ impl Bench<'_> {
     /// Why an image is none: it errs no less than one without any shadow in it.
     fn is_flat(&self, row: &str, form: Form) -> Option<String> {
         let measured = self.measured(row, form)?;
+        if let (Some(flicker), Some(still)) = (measured.flicker, measured.still_flicker) {
+            return (flicker >= still).then(|| {
+                format!("‘{row}’ flickers no less than a mask that never changes ({flicker:.4} and {still:.4})")
+            });
+        }
         let (rmse, flat) = (measured.rmse?, measured.flat_rmse?);
         (rmse >= flat).then(|| format!("‘{row}’ errs no less than one grey (rmse {rmse:.4} and {flat:.4})"))
     }
@@ -269,6 +274,9 @@ const UNSEEN: f64 = 0.0002;
 /// By such a part figures of an image change where its size does by one pixel.
 const IMAGE_SPREAD: f64 = 0.01;
 
+/// By such a part flicker differs from run to run, where threads race for what they store.
+const FLICKER_SPREAD: f64 = 0.05;
+
 /// By such a part medians of a row's time differ from run to run: on a graphics card, and on a processor that has other work.
 const TIME_SPREAD: f64 = 0.03;
 const SOFTWARE_TIME_SPREAD: f64 = 0.1;
@@ -290,6 +298,7 @@ impl Range {
             Figure::Ms => within(if is_software { SOFTWARE_TIME_SPREAD } else { TIME_SPREAD }, 0.0),
             Figure::MemoryMib => within(0.0, 0.0),
             Figure::UmbraLeak | Figure::LitLoss | Figure::Noise => within(IMAGE_SPREAD, UNSEEN),
+            Figure::Flicker => within(FLICKER_SPREAD, UNSEEN),
             Figure::Rmse => {
                 // The reference's noise adds to the square of what an image errs.
                 let noise = truth_samples.map_or(0.0, |samples| TRUTH_NOISE / f64::from(samples.max(1)).sqrt());

@@ -117,7 +117,7 @@ fn every_light_is_as_the_ray_tracer_has_it() {
         ("picture", &|light| {
             light.shape = LightShape::Rectangle { size_m: Vec2::new(0.8, 0.5) };
             let luminance = (0..12).map(|i| (i % 5) as f32).collect();
-            light.emission = Some(EmissionTexture { width: 4, height: 3, luminance });
+            light.emission = Some(EmissionTexture::gray(4, 3, luminance));
         }),
     ];
     let mut far = Vec::new();

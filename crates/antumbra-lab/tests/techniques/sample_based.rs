@@ -562,7 +562,7 @@ fn every_shape_of_light_has_the_tracer_s_bits() {
             let from_middle = (UVec2::new(i % 16, i / 16).as_vec2() - 7.5).length();
             f32::from(u8::from((3.0..8.0).contains(&from_middle)))
         };
-        EmissionTexture { width: 16, height: 16, luminance: (0..256).map(luminance).collect() }
+        EmissionTexture::gray(16, 16, (0..256).map(luminance).collect())
     };
     // Each with its bound on rmse.
     let lights: [(&str, f64, Change<'_>); 6] = [

@@ -173,7 +173,7 @@ fn texture_weights_its_area() {
     let (height, edge_height, side) = (4.0, 1.5, 1.2);
     let tracer = half_plane(0.1, edge_height);
     let mut light = down(square(side), height);
-    light.emission = Some(EmissionTexture { width: n, height: n, luminance });
+    light.emission = Some(EmissionTexture::gray(n, n, luminance));
     let points: Vec<Vec3> = offsets(31, -0.6, 0.8).map(|x| Vec3::new(x, 0.0, 0.3)).collect();
     let (outer, inner) = (0.5 * side, 0.25 * side);
     let differences = visibility_on_floor(&tracer, &light, &points).into_iter().zip(&points).map(|(v, p)| {
@@ -195,7 +195,7 @@ fn one_lit_texel_is_a_small_light() {
     let mut luminance = vec![0.0; 16];
     // Row 1 from the top, column 3 from −right: x from 0.25 to 0.5.
     luminance[7] = 3.0;
-    light.emission = Some(EmissionTexture { width: 4, height: 4, luminance });
+    light.emission = Some(EmissionTexture::gray(4, 4, luminance));
     let right = light.frame().right.x;
     for x in [-0.6, -0.45, -0.3, -0.2, 0.0, 0.2] {
         let v = visibility_on_floor(&tracer, &light, &[Vec3::new(x, 0.0, 0.0)])[0];

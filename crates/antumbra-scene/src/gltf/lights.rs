@@ -14,7 +14,7 @@
 //! | `shape` | `rectangle`, `disk`, `sphere`, `ellipsoid`, `sun` or `points`, where the others leave it open |
 //! | `fov` | of a square frustum that the light is held to, degrees |
 //! | `intensity`, `candela`, `lux` | as in a setup file; where any is given, or `shape` makes a lamp a sun or a sun a lamp, the extension's own number is not taken |
-//! | `emission` | `{width, height, luminance}`: a rectangle's texture |
+//! | `emission` | `{width, height, luminance, tint}`: a rectangle's texture; `tint`, RGB of each texel, where it is coloured |
 //!
 //! A spot keeps its cone; a point light shines all around.
 //!
@@ -131,12 +131,17 @@ fn emission(value: &Value) -> Option<EmissionTexture> {
     let side = |key: &str| value.get(key)?.as_u64().and_then(|v| u32::try_from(v).ok());
     let luminance: Option<Vec<f32>> =
         value.get("luminance")?.as_array()?.iter().map(|v| v.as_f64().map(|v| v as f32)).collect();
+    let tint: Option<Vec<Vec3>> = value
+        .get("tint")
+        .and_then(Value::as_array)
+        .and_then(|list| list.iter().map(|color| floats(Some(color)).map(Vec3::from_array)).collect());
     let (width, height, luminance) = (side("width")?, side("height")?, luminance?);
     // Checked here because the product may exceed what a u32 holds.
     (u64::from(width) * u64::from(height) == luminance.len() as u64).then_some(EmissionTexture {
         width,
         height,
         luminance,
+        tint,
     })
 }
 

@@ -1,15 +1,14 @@
-//! A rectangle light's texture: an image file or a data URI, read as luminance.
+//! A rectangle light's texture: an image file or a data URI.
 
 use std::io::Cursor;
 use std::path::Path;
 
 use antumbra_light::EmissionTexture;
-use image::{DynamicImage, ImageReader};
+use glam::Vec3;
+use image::{DynamicImage, ImageBuffer, ImageReader};
 
 use crate::{base64, srgb_from_linear};
 
-/// Luminance of linear RGB (Rec. ITU-R BT.709, whose primaries sRGB shares).
-const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 /// More than a light needs; keeps a mistaken path from filling the memory.
 const LARGEST_SIDE: u32 = 4096;
 const DATA_URI_HEAD: &str = "data:image/png;base64,";
@@ -35,20 +34,25 @@ pub(super) fn read(texture: &str, folder: &Path) -> Result<EmissionTexture, Stri
     reader.limits(limits);
     let picture = reader.decode().map_err(|e| e.to_string().replace('\n', " "))?.into_rgb32f();
     let (width, height) = picture.dimensions();
-    let luminance =
-        picture.pixels().map(|p| (0..3).map(|k| LUMINANCE[k] * linear_from_encoded(p.0[k])).sum()).collect();
-    Ok(EmissionTexture { width, height, luminance })
+    let rgb: Vec<Vec3> = picture.pixels().map(|p| Vec3::from(p.0.map(linear_from_encoded))).collect();
+    Ok(EmissionTexture::from_rgb(width, height, &rgb))
 }
 
-/// A data URI that [`read`] reads back to within 16 bits. Only ratios count, so the brightest texel becomes white
+/// A data URI that [`read`] reads back to within 16 bits. Only ratios count, so the brightest channel of any texel becomes 1
 /// where it is brighter than that.
 pub(super) fn data_uri(emission: &EmissionTexture) -> Option<String> {
-    let scale = emission.luminance.iter().copied().fold(1.0, f32::max).recip();
-    let texel = |l: &f32| (srgb_from_linear(l * scale) * 65535.0).round() as u16;
-    let texels = emission.luminance.iter().map(texel).collect();
-    let picture = image::ImageBuffer::from_raw(emission.width, emission.height, texels)?;
+    let EmissionTexture { width, height, .. } = *emission;
+    let scale = emission.colors().map(Vec3::max_element).fold(1.0, f32::max).recip();
+    let encoded = |v: f32| (srgb_from_linear(v * scale) * 65535.0).round() as u16;
+    let picture = if emission.tint.is_some() {
+        let texels = emission.colors().flat_map(|color| color.to_array().map(encoded)).collect();
+        DynamicImage::ImageRgb16(ImageBuffer::from_raw(width, height, texels)?)
+    } else {
+        let texels = emission.luminance.iter().copied().map(encoded).collect();
+        DynamicImage::ImageLuma16(ImageBuffer::from_raw(width, height, texels)?)
+    };
     let mut png = Cursor::new(Vec::new());
-    DynamicImage::ImageLuma16(picture).write_to(&mut png, image::ImageFormat::Png).ok()?;
+    picture.write_to(&mut png, image::ImageFormat::Png).ok()?;
     Some(format!("{DATA_URI_HEAD}{}", base64::encode(png.get_ref())))
 }
 

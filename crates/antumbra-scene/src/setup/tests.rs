@@ -129,7 +129,7 @@ fn writing_and_reading_keeps_everything() {
         lights.push(light);
     }
     let luminance: Vec<f32> = (0..12).map(|k| k as f32 / 11.0).collect();
-    lights[0].emission = Some(EmissionTexture { width: 4, height: 3, luminance: luminance.clone() });
+    lights[0].emission = Some(EmissionTexture::gray(4, 3, luminance.clone()));
     let camera = Setup::for_scene(&Scene::default()).camera;
     let setup = Setup { camera, lights };
     let back = read(&setup.to_toml()).unwrap();
@@ -174,6 +174,12 @@ fn a_texture_is_luminance_with_its_first_row_on_top() {
     assert!((emission.luminance_at(Vec2::new(0.75, 0.75)) - 1.0).abs() < 1e-5);
     assert!((emission.luminance_at(Vec2::new(0.25, 0.25)) - 0.7152).abs() < 1e-5);
     assert_eq!(emission.luminance_at(Vec2::new(0.25, 0.75)), 0.0);
+    // Its colours are kept beside, through a file too.
+    let written = read(&setup.to_toml()).unwrap();
+    for emission in [emission, written.lights[0].emission.as_ref().unwrap()] {
+        assert!(emission.color_at(Vec2::new(0.25, 0.25)).abs_diff_eq(Vec3::Y, 1e-4), "{emission:?}");
+        assert!(emission.color_at(Vec2::new(0.75, 0.75)).abs_diff_eq(Vec3::ONE, 1e-4), "{emission:?}");
+    }
 }
 
 #[test]

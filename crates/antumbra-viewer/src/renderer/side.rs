@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use antumbra::contract::ParamValue;
 use antumbra::{
     AnyShadow, Casters, DrawnLists, DrawnMap, Frame, Gpu, Mask, MaskChannels, Recorder, TechniqueKind, WarmUp,
 };
@@ -418,8 +417,7 @@ impl SideWork {
 
     /// Masks of the right size and number of channels, one for each light.
     fn fit_masks(&mut self, gpu: &Gpu, side: &Side, frame: &SideFrame<'_>) {
-        // Debug views are in colour.
-        let is_colored = side.params().any(|(spec, value)| spec.key == "show" && value == ParamValue::Choice("layers"));
+        let is_colored = side.params().any(|(spec, value)| spec.colors_mask(value));
         let casters = frame.scene.casters();
         let casters = Casters::Meshes(&casters);
         let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };

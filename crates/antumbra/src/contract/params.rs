@@ -129,6 +129,15 @@ impl ParamSpec {
         }
     }
 
+    /// Whether a mask is in colour at this value, whatever the casters: a debug view that paints layers or levels, or light that
+    /// is weighted by channel.
+    pub fn colors_mask(&self, value: ParamValue) -> bool {
+        matches!(
+            (self.key, value),
+            ("show", ParamValue::Choice("layers" | "levels")) | ("weights", ParamValue::Choice("irradiance"))
+        )
+    }
+
     /// Whether it takes whole numbers, be it with names in place of some.
     pub fn is_whole(&self) -> bool {
         self.range.is_some() && !matches!(self.default, ParamValue::F32(_))

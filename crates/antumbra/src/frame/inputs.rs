@@ -86,7 +86,7 @@ bindings! {
     }
 
     /// For entry points that write the pixels that interpolation left missing.
-    struct MissingInputs = "frame inputs of missing pixels", COMPUTE, group 0 of [PCSS_RESOLVE], with inputs: Inputs {
+    struct MissingInputs = "frame inputs of missing pixels", COMPUTE, group 0 of [PCSS_RESOLVE, VIEW_SAMPLES_MARK_MISSING], with inputs: Inputs {
         /// Their count, then each as x | y << 16.
         7 missing: Storage,
     }

@@ -5,10 +5,11 @@
 //! where it behaves as the paper says; see docs/limits.md for the world's axis. What bleeds is judged by the light in umbrae, what
 //! shows at layers' edges by noise.
 
+use crate::motion::Motion;
 use crate::reproduce::claim::{Rule, claim};
 use crate::reproduce::exhibit::Reported::Drawn;
-use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, colors, drawing, filtered_error, fps, ms};
-use crate::reproduce::figure::Figure::{Ms, Noise, Rmse, UmbraLeak};
+use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, colors, drawing, filtered_error, fps, in_motion, ms};
+use crate::reproduce::figure::Figure::{Flicker, Ms, Noise, Rmse, UmbraLeak};
 
 const OVERLAP: &str = "builtin:overlap";
 const BENCH: &str = "builtin:bench-under-tree";
@@ -216,19 +217,22 @@ pub const PAPER: Paper = Paper {
             rows: &[
                 filtered_error("CSM, M = 4", OVERLAP, "convolution")
                     .with(along_the_light!(("terms", "4")))
+                    .timed()
                     .at(640, 360),
-                layered("LVSM-2, uniform", wide!(("layers", "2"), UNIFORM, SHORT)),
-                layered("LVSM-2, Lloyd", wide!(("layers", "2"), LLOYD, SHORT)),
+                layered("LVSM-2, uniform", wide!(("layers", "2"), UNIFORM, SHORT)).timed(),
+                layered("LVSM-2, Lloyd", wide!(("layers", "2"), LLOYD, SHORT)).timed(),
                 filtered_error("CSM, M = 8", OVERLAP, "convolution")
                     .with(along_the_light!(("terms", "8")))
+                    .timed()
                     .at(640, 360),
-                layered("LVSM-4, uniform", wide!(("layers", "4"), UNIFORM, SHORT)),
-                layered("LVSM-4, Lloyd", wide!(("layers", "4"), LLOYD, SHORT)),
+                layered("LVSM-4, uniform", wide!(("layers", "4"), UNIFORM, SHORT)).timed(),
+                layered("LVSM-4, Lloyd", wide!(("layers", "4"), LLOYD, SHORT)).timed(),
                 filtered_error("CSM, M = 14", OVERLAP, "convolution")
                     .with(along_the_light!(("terms", "14")))
+                    .timed()
                     .at(640, 360),
-                layered("LVSM-7, uniform", wide!(("layers", "7"), UNIFORM, SHORT)),
-                layered("LVSM-7, Lloyd", wide!(("layers", "7"), LLOYD, SHORT)),
+                layered("LVSM-7, uniform", wide!(("layers", "7"), UNIFORM, SHORT)).timed(),
+                layered("LVSM-7, Lloyd", wide!(("layers", "7"), LLOYD, SHORT)).timed(),
                 timed("CSM, M = 4: time", "convolution", &[("map_size", "1024"), ("terms", "4")]),
                 timed("LVSM-2, Lloyd: time", "lvsm", &[("map_size", "1024"), ("layers", "2"), LLOYD]),
                 timed("CSM, M = 8: time", "convolution", &[("map_size", "1024"), ("terms", "8")]),
@@ -325,6 +329,23 @@ pub const PAPER: Paper = Paper {
             )
             .because_ours("our layers are placed where receivers see light bleed, and leave less of it than EVSM."),
             ],
+            note: "",
+        },
+        Exhibit {
+            id: "section5",
+            shows: "Splits while a light moves, two in each frame and all of them",
+            rows: &[
+                in_motion("two splits a frame", OVERLAP, "lvsm", Motion::Light)
+                    .with(wide!(("layers", "8"), ("splits_per_frame", "2")))
+                    .at(640, 360),
+                in_motion("all splits a frame", OVERLAP, "lvsm", Motion::Light)
+                    .with(wide!(("layers", "8"), ("splits_per_frame", "15")))
+                    .at(640, 360),
+            ],
+            claims: &[claim(
+                "Convergence is very fast in dynamic scenes, even when two splits are moved in a frame.",
+                &[Rule::RatioAtMost(Flicker, "two splits a frame", "all splits a frame", 1.25)],
+            )],
             note: "",
         },
         Exhibit {

@@ -6,7 +6,7 @@
 use super::SKETCHED_PCSS;
 use crate::reproduce::claim::{Claim, Rule, claim};
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
-use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, drawing, error, fps, ms, scene_ms};
+use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, colors, drawing, error, fps, ms, scene_ms};
 use crate::reproduce::figure::Figure::{Ms, Noise, Rmse, UmbraLeak};
 
 const SPONZA: &str = "sponza.glb";
@@ -340,6 +340,9 @@ pub const PAPER: Paper = Paper {
                 error("additive", "builtin:leaning-plank", "multi_layer").at(640, 360),
                 error("multiplicative", "builtin:leaning-plank", "multi_layer").with(MULTIPLIED).at(640, 360),
                 error("ESSM", "builtin:leaning-plank", "essm").at(640, 360),
+                colors("the levels and their weights", "builtin:leaning-plank", "multi_layer")
+                    .with(&[("show", "levels")])
+                    .at(640, 360),
             ],
             claims: &[
                 claim(
@@ -352,7 +355,7 @@ pub const PAPER: Paper = Paper {
                     &[Rule::RatioAtMost(UmbraLeak, "additive", "ESSM", 0.75)],
                 ),
             ],
-            note: "the colours of levels, because the technique has no such view; figure 5 shows levels one by one",
+            note: "",
         },
         Exhibit {
             id: "figure15",
@@ -574,10 +577,11 @@ pub const PAPER: Paper = Paper {
             id: "figure18",
             shows: "Thin geometry with maps of 1024² and 2048²",
             rows: &[
-                error("1024²", "builtin:fence-geometry", "multi_layer").with(&[("map_size", "1024")]).at(640, 360),
-                error("2048²", "builtin:fence-geometry", "multi_layer").with(&[("map_size", "2048")]).at(640, 360),
+                error("1024²", "builtin:fence-geometry", "multi_layer").with(&[("map_size", "1024")]).timed().at(640, 360),
+                error("2048²", "builtin:fence-geometry", "multi_layer").with(&[("map_size", "2048")]).timed().at(640, 360),
                 error("2048², sub-sampled", "builtin:fence-geometry", "multi_layer")
                     .with(&[("map_size", "2048"), ("subsampled_steps", "1")])
+                    .timed()
                     .at(640, 360),
                 ms("filtering, 2048²", "builtin:fence-geometry", "multi_layer", "filter", Drawn)
                     .with(&[("map_size", "2048")]),

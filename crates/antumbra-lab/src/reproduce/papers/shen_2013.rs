@@ -55,6 +55,24 @@ const fn stage(
     ms(what, scene, "essm", passes, Number(paper_ms)).with(settings).at(1280, 960).dear_where(is_dear).alone()
 }
 
+/// Errors over the exponent c, each with several numbers of bits μ, of the published form alone.
+macro_rules! over_exponents {
+    ($($c:literal)+) => {
+        &[$(
+            over_exponents!(row $c, "16"),
+            over_exponents!(row $c, "20"),
+            over_exponents!(row $c, "24"),
+        )+]
+    };
+    (row $c:literal, $bits:literal) => {
+        error(concat!("c = ", $c, ", μ = ", $bits), "builtin:leaning-plank", "essm")
+            .with(&[("exponent", stringify!($c)), ("precision_bits", $bits)])
+            .plotted("exponent c", concat!("μ = ", $bits), $c)
+            .at(640, 480)
+            .alone()
+    };
+}
+
 /// One size of map: the paper's one table and its tile grids, by its recursive doubling, then by our passes. In our form tile grids are
 /// the tiles that hold at any depth. Milliseconds of table and shadow as printed.
 macro_rules! table2 {
@@ -85,6 +103,10 @@ const EDGE: &str = "builtin:leaning-plank";
 /// The shadow pass under a light of another size. The paper has no numbers for it, only the word.
 const fn over_light(what: &'static str, technique: &'static str, light_scale: f32) -> Row {
     ms(what, EDGE, technique, "resolve", Drawn).seen("all-penumbra").light_scaled(light_scale).at(640, 360)
+}
+
+const fn over_range(what: &'static str, scene: &'static str) -> Row {
+    error(what, scene, "essm").at(640, 480)
 }
 
 pub const PAPER: Paper = Paper {
@@ -211,11 +233,12 @@ pub const PAPER: Paper = Paper {
             id: "figure6",
             shows: "CSSM, VSSM and ESSM at a map of 512²",
             rows: &[
-                error("CSSM", "builtin:fence-geometry", "cssm").with(MAP_512).at(640, 480),
-                error("VSSM", "builtin:fence-geometry", "vssm").with(MAP_512).at(640, 480),
-                error("ESSM", "builtin:fence-geometry", "essm").with(MAP_512).at(640, 480),
+                error("CSSM", "builtin:fence-geometry", "cssm").with(MAP_512).timed().at(640, 480),
+                error("VSSM", "builtin:fence-geometry", "vssm").with(MAP_512).timed().at(640, 480),
+                error("ESSM", "builtin:fence-geometry", "essm").with(MAP_512).timed().at(640, 480),
                 error("analytic", "builtin:fence-geometry", "pcss_anisotropic")
                     .with(&[("map_size", "512"), ("samples", "256")])
+                    .timed()
                     .at(640, 480),
                 ms("ESSM: time", "builtin:fence-geometry", "essm", "", Drawn).with(MAP_512).at(640, 480),
                 ms("analytic: time", "builtin:fence-geometry", "pcss_anisotropic", "", Drawn)
@@ -240,7 +263,7 @@ pub const PAPER: Paper = Paper {
                     "VSSM is noisy at contacts; ESSM is not.",
                     &[Rule::RatioAtMost(Noise, "ESSM", "VSSM", 0.9)],
                 )
-                .because(
+                .because_both(
                     "most of the noise is of the fence's bars, which are finer than texels of 512², and alike by both; what sums lose \
                      is less.",
                 ),
@@ -276,8 +299,37 @@ pub const PAPER: Paper = Paper {
                 claim(
                     "Both underestimate the umbra where blockers of several depths are averaged.",
                     &[Rule::AtLeast(UmbraLeak, "ESSM", 0.005), Rule::AtLeast(UmbraLeak, "PCSS", 0.005)],
-                ),
+                )
+                .because_ours("blockers that hide another part of the light than their mean are looked at one by one (`second_look`)."),
             ],
+            note: "",
+        },
+        Exhibit {
+            id: "section6",
+            shows: "Errors over the exponent c, for 16, 20 and 24 bits of precision μ",
+            rows: over_exponents![3.0 6.0 10.0 13.86 17.0 24.0 40.0 80.0],
+            claims: &[claim(
+                "The optimal parameter c is as large as a float's exponent holds (section 7), with μ = 20 (section 8).",
+                &[Rule::RatioAtMost(Rmse, "c = 80.0, μ = 20", "c = 13.86, μ = 20", 1.0)],
+            )
+            .because(R_AND_MU)],
+            note: "",
+        },
+        Exhibit {
+            id: "section7",
+            shows: "One scene under a light straight above it, which sees a shallow range of depth, and under lower ones, which see \
+                    deeper ranges",
+            rows: &[
+                over_range("light at 90°: a shallow range", "builtin:tilted-planes?light_elevation_deg=90"),
+                over_range("light at 60°", "builtin:tilted-planes?light_elevation_deg=60"),
+                over_range("light at 30°", "builtin:tilted-planes?light_elevation_deg=30"),
+                over_range("light at 10°: a deep range", "builtin:tilted-planes?light_elevation_deg=10"),
+            ],
+            claims: &[claim(
+                "The narrower the effective range of depth, the nearer to the shadow test, and the less contacts leak.",
+                &[Rule::RatioAtMost(UmbraLeak, "light at 90°: a shallow range", "light at 10°: a deep range", 0.75)],
+            )
+            .because_ours("each tile has a range of its own, so contacts under a light that sees a deep one leak no more.")],
             note: "",
         },
         Exhibit {

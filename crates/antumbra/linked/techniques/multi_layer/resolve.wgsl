@@ -26,6 +26,8 @@ fn footprint_texels(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     return settings_multi_layer.footprint_px * width_m / space_texel_width_m(map_light_view, receiver.pos_in_world);
 }
 
+var<private> shown: vec4f;
+
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
     if receiver.is_background {
         return vec3f(1.0);
@@ -41,7 +43,11 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
     let lookup = filter_size_Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), settings_multi_layer.filter_per_g, footprint * footprint);
-    return above * (1.0 - occluded_share(lookup, plane));
+    let seen = above * (1.0 - occluded_share(lookup, plane));
+    if settings_SHOWS_LEVELS && shown.w > 0.0 {
+        return hues_shaded_hue(shown.rgb / shown.w, seen);
+    }
+    return seen;
 }
 
 fn occluded_share(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> vec3f {
@@ -64,6 +70,9 @@ fn occluded_share(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> vec
         }
         else {
             shares = level_level_shares(lookup, plane, settings_ladder.rungs[rung], part);
+        }
+        if settings_SHOWS_LEVELS {
+            shown += occluders_own_strength(shares) * vec4f(hues_hue_of(rung), 1.0);
         }
         if rung != before + 1u {
             so_far = occluders_accumulated(so_far, finer, occluders_NO_SHARE);
@@ -106,6 +115,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
 fn resolve_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
     for (var i = id.x; i < missing_missing_count(); i += 64u * workgroups.x) {
         let pixel = missing_missing_pixel(i);
+        shown = vec4f();
         inputs_write_visibility_rgb(pixel, visibility(inputs_load_receiver(pixel), pixel));
     }
 }
@@ -584,6 +594,15 @@ fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
     }
 }
 
+fn hues_hue_of(number: u32) -> vec3f {
+    let hue = fract(f32(number) * 0.381966);
+    return 0.25 + 0.75 * saturate(abs(fract(hue + vec3f(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0);
+}
+
+fn hues_shaded_hue(hue: vec3f, lit: vec3f) -> vec3f {
+    return hue * (0.2 + 0.8 * lit);
+}
+
 struct filter_size_Lookup {
     z_m: f32,
     filter_per_g: f32,
@@ -911,6 +930,13 @@ fn occluders_add_to_level(shares: occluders_LevelShares, lookup: filter_size_Loo
     return sum;
 }
 
+fn occluders_own_strength(shares: occluders_LevelShares) -> f32 {
+    if settings_WEIGHTS_FRAGMENTS {
+        return shares.finer.strength;
+    }
+    return shares.finer.place_sum + shares.coarser.strength - shares.coarser.place_sum;
+}
+
 fn occluders_of_list(share: occluders_Share, list: occluders_Share, weight: f32, change: vec2f) -> occluders_Share {
     return occluders_Share(occluders_Occluder(share.occluder.opacity + weight * list.occluder.opacity, share.occluder.edge + change * occluders_largest(list.occluder.opacity)), share.place_sum + weight * list.place_sum, share.strength + weight * list.strength);
 }
@@ -1112,6 +1138,8 @@ override settings_WEIGHTS_FRAGMENTS: bool = false;
 override settings_LISTS_APART: u32 = 0u;
 
 override settings_HAS_PLANES: bool = true;
+
+override settings_SHOWS_LEVELS: bool = false;
 
 const settings_CORRELATED = 0u;
 

@@ -137,6 +137,7 @@ pub use params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
     MultiLayerHat, MultiLayerHierarchy, MultiLayerLevelAccumulation, MultiLayerLevelWeights, MultiLayerLightParts,
     MultiLayerListAccumulation, MultiLayerLists, MultiLayerMapShape, MultiLayerParams, MultiLayerSamples,
+    MultiLayerShow,
 };
 use plan::FramePlan;
 
@@ -209,11 +210,12 @@ struct LookupDesign {
     hat: MultiLayerHat,
     lists: MultiLayerLists,
     planes: bool,
+    shows_levels: bool,
 }
 
 impl LookupDesign {
     /// By their names.
-    fn constants(self) -> [(&'static str, f64); 8] {
+    fn constants(self) -> [(&'static str, f64); 9] {
         [
             ("COLORED", f64::from(u8::from(self.colored))),
             ("LIST_ACCUMULATION", f64::from(self.list_accumulation as u32)),
@@ -223,6 +225,7 @@ impl LookupDesign {
             ("WEIGHTS_FRAGMENTS", f64::from(u8::from(self.hat == MultiLayerHat::Fragments))),
             ("LISTS_APART", f64::from(self.lists as u32)),
             ("HAS_PLANES", f64::from(u8::from(self.planes))),
+            ("SHOWS_LEVELS", f64::from(u8::from(self.shows_levels))),
         ]
     }
 }

@@ -174,6 +174,17 @@ param_choice! {
     }
 }
 
+param_choice! {
+    /// What [`MultiLayer`](super::MultiLayer) writes into the mask.
+    pub enum MultiLayerShow {
+        /// Visibility.
+        Visibility = "visibility",
+        /// The levels that hide the light from each receiver in colours, mixed by the hat's weights and darker in shadow; a mask of
+        /// one channel gets their luminance.
+        Levels = "levels",
+    }
+}
+
 params! {
     /// Parameters of [`MultiLayer`](super::MultiLayer).
     pub struct MultiLayerParams {
@@ -257,6 +268,9 @@ params! {
         footprint: f32 = 0.0, in 0.0..=4.0, unit "pixels",
             more "Smoother shadow edges that are finer than pixels.";
         shared bias_scale;
+        /// What goes into the mask.
+        show: MultiLayerShow = MultiLayerShow::Visibility,
+            more "levels colours each receiver by the levels that hide the light from it, as the paper's figure 14.";
     }
     Fast { map_size: MapSize::Texels(512), light_parts: MultiLayerLightParts::One, gather: MultiLayerGather::Linked, sub: true, }
     High { map_size: MapSize::Texels(2048), }

@@ -10,7 +10,7 @@ use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, keep_what_is_lo
 use super::nearest::{NearestSquares, Squares, squares_for};
 use super::params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
-    MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams,
+    MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams, MultiLayerShow,
 };
 use super::{FilterDesign, LookupDesign, STEP_STRIDE};
 use crate::contract::{MaskChannels, MeshCaster, PreparedFrame};
@@ -218,6 +218,7 @@ impl<'a> FramePlan<'a> {
             hat: self.params.hat,
             lists: self.params.lists,
             planes: self.params.planes,
+            shows_levels: self.params.show == MultiLayerShow::Levels,
         }
     }
 

@@ -18,6 +18,7 @@ use crate::testing::{
     Case, Mesh, RECTANGLE, View, empty_depth, gpu, half_plane_visibility, read_storage, test_ground, test_receivers,
 };
 
+mod levels_shown;
 mod seen_from_the_side;
 
 #[test]
@@ -379,7 +380,7 @@ fn emission_counts_by_its_mean_and_variance() {
     let size_m = Vec2::new(1.2, 0.6);
     let whole = Case::half_plane(gpu, LightShape::Rectangle { size_m });
     let frame = whole.light.frame();
-    let half_dark = antumbra_light::EmissionTexture { width: 2, height: 1, luminance: vec![1.0, 0.0] };
+    let half_dark = antumbra_light::EmissionTexture::gray(2, 1, vec![1.0, 0.0]);
     let mut half_lit = Case::half_plane(gpu, LightShape::Rectangle { size_m });
     half_lit.light.emission = Some(half_dark);
     let mut half = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::new(0.5 * size_m.x, size_m.y) });

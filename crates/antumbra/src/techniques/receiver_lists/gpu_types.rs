@@ -36,7 +36,7 @@ gpu_structs! {
         window: u32,
         window_side: u32,
         receivers_per_instance: u32,
-        padding_0: u32,
+        subset: u32,
         window_right: Vec3,
         region_corners: u32,
         window_up: Vec3,

@@ -25,8 +25,17 @@ shared_constants! {
 pub(crate) struct LocalPoint {
     pub(crate) at: Vec3,
     pub(crate) weight: f32,
+    /// Linear RGB emission, of which `weight` is the luminance.
+    pub(crate) emission: Vec3,
     /// In the order of the sample set, or of the light's own list.
     pub(crate) index: u32,
+}
+
+impl LocalPoint {
+    /// The first point of a light that emits the same everywhere.
+    pub(crate) fn white(at: Vec3) -> Self {
+        Self { at, weight: 1.0, emission: Vec3::ONE, index: 0 }
+    }
 }
 
 /// The light's points for points of the unit cube, sorted so that each 32 of them lie close together. A light that is a
@@ -39,19 +48,22 @@ pub(crate) fn local_points(light: &Light, unit_points: &[Vec3]) -> Vec<LocalPoin
             let offset = p.as_dvec3() - frame.center.as_dvec3();
             DVec3::from_array(axes.map(|axis| offset.dot(axis))).as_vec3()
         };
-        (0..).zip(positions_m).map(|(index, p)| LocalPoint { at: local(p), weight: 1.0, index }).collect()
+        (0..).zip(positions_m).map(|(index, p)| LocalPoint { index, ..LocalPoint::white(local(p)) }).collect()
     } else {
         // With the identity for a frame a light point is its own coordinates. A sphere's disc faces the receiver: seen
         // from +z its right is −x.
         let identity = LightFrame { center: Vec3::ZERO, right: Vec3::X, up: Vec3::Y, axis: Vec3::Z };
         let flip = if matches!(light.shape, LightShape::Sphere { .. }) { -1.0 } else { 1.0 };
         let has_volume = matches!(light.shape, LightShape::Ellipsoid { .. });
+        let picture = light.emission.as_ref().filter(|_| matches!(light.shape, LightShape::Rectangle { .. }));
         (0..)
             .zip(unit_points)
             .map(|(index, u)| {
                 let point = light.point(&identity, *u, Vec3::Z);
                 let z = if has_volume { point.xyz.z } else { 0.0 };
-                LocalPoint { at: Vec3::new(flip * point.xyz.x, point.xyz.y, z), weight: point.weight, index }
+                let at = Vec3::new(flip * point.xyz.x, point.xyz.y, z);
+                let emission = picture.map_or(Vec3::ONE, |picture| picture.color_at(u.truncate()));
+                LocalPoint { at, weight: point.weight, emission, index }
             })
             .collect()
     };
@@ -136,7 +148,7 @@ pub(crate) fn packed_words(points: &[LocalPoint]) -> Vec<Vec4> {
     let mut packed = packed_box(points).to_vec();
     packed.extend(points.chunks(WORD).flat_map(|word| entry(box_of(word))));
     packed.resize(FIRST_POINT as usize, Vec4::ZERO);
-    let none = LocalPoint { at: Vec3::ZERO, weight: 0.0, index: 0 };
+    let none = LocalPoint { weight: 0.0, ..LocalPoint::white(Vec3::ZERO) };
     for word in points.chunks(WORD) {
         for four in 0..WORD / 4 {
             let value = |of: fn(&LocalPoint) -> f32| {

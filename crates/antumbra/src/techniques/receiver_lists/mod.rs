@@ -64,10 +64,10 @@
 use std::collections::HashMap;
 
 use antumbra_light::{Light, LightShape};
-use glam::UVec2;
 
-use crate::contract::{DrawnLists, Error, ListLengths, ListLevel, ListOrder, PreparedFrame, param_choice};
+use crate::contract::{Error, PreparedFrame, param_choice};
 use crate::frame::inputs::{FrameInputs, PreparedInputs, clip_depth_rows, matrix_rounding_m};
+use crate::frame::sparse_upsample::SparseUpsample;
 use crate::gpu::{Gpu, Stage, white_texture};
 use crate::light_map::readable_meshes::readable_meshes;
 use crate::primitives::prefix_scan::PrefixScan;
@@ -76,9 +76,11 @@ pub mod alias_free;
 mod batches;
 mod buffers;
 mod caster_groups;
+mod drawn_lists;
 mod evaluation;
 pub(crate) mod gpu_types;
 mod groups;
+mod irradiance;
 mod light_points;
 mod lookup_table;
 mod pipelines;
@@ -88,6 +90,7 @@ mod record;
 mod region;
 pub mod sample_based;
 mod settings;
+mod subset;
 #[cfg(test)]
 mod tests;
 mod windows;
@@ -95,9 +98,11 @@ mod windows;
 use batches::{Batch, Surfaces};
 use buffers::{BufferSet, Buffers};
 use caster_groups::{RunGroup, run_groups, surface_group};
+use drawn_lists::ListWindows;
 use evaluation::{Evaluation, Evaluations, PointBatch};
 use gpu_types::SampleSettings;
 use groups::{FrameGroups, Layouts, TABLE_FORMAT};
+use irradiance::{Irradiance, PreparedIrradiance};
 use light_points::WORD;
 pub(crate) use light_points::{LocalPoint, local_points};
 use lookup_table::Table;
@@ -106,8 +111,9 @@ use plan::FramePlan;
 pub(crate) use raster::Drawn;
 use raster::Raster;
 pub(crate) use region::Region;
-use settings::CELL_COUNT;
+use settings::{CELL_COUNT, SUBSET_ALL, SUBSET_KNOWN, SUBSET_MISSING};
 pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
+use subset::{PreparedSubset, Subset};
 
 param_choice! {
     /// How triangles find the receivers that they may hide the light from.
@@ -147,6 +153,10 @@ pub(crate) struct Options {
     pub(crate) keep_bits: bool,
     /// Counts tests.
     pub(crate) counts: bool,
+    /// Lists every other pixel in both directions, and interpolates.
+    pub(crate) is_sparse: bool,
+    /// Weights light points by what they give each receiver; every pixel's bits are kept.
+    pub(crate) weighs_irradiance: bool,
 }
 
 /// The passes, and what they keep.
@@ -166,18 +176,12 @@ pub(crate) struct ViewSamples {
     no_texture: (wgpu::TextureView, wgpu::Sampler),
     table: Option<Table>,
     no_table: wgpu::TextureView,
+    /// Made when a frame first needs it.
+    irradiance: Option<Irradiance>,
+    /// Made when a frame first needs it.
+    subset: Option<Subset>,
     /// Of the frame prepared last.
     windows: Option<ListWindows>,
-}
-
-/// Layout of a frame's lists.
-#[derive(Clone, Copy, Debug)]
-struct ListWindows {
-    /// `None` where receivers are sorted into cells: see [`FramePlan`].
-    count: Option<u32>,
-    side: u32,
-    /// The device chooses between windows and cells.
-    are_chosen: bool,
 }
 
 /// The passes of one frame.
@@ -195,6 +199,8 @@ pub struct PreparedSamples {
     edges: wgpu::BindGroup,
     passes: wgpu::BindGroup,
     batches: Vec<PreparedBatch>,
+    irradiance: Option<PreparedIrradiance>,
+    subset: Option<PreparedSubset>,
 }
 
 #[derive(Debug)]
@@ -256,6 +262,8 @@ impl ViewSamples {
             no_texture: (white_texture(gpu), gpu.device.create_sampler(&wgpu::SamplerDescriptor::default())),
             table: None,
             no_table: gpu.device.create_view(&no_table, &wgpu::TextureViewDescriptor::default()),
+            irradiance: None,
+            subset: None,
             windows: None,
         }
     }
@@ -269,7 +277,9 @@ impl ViewSamples {
     ) -> Result<PreparedSamples, Error> {
         let technique = self.technique;
         let meshes = readable_meshes(technique, frame, None)?;
-        let inputs = self.inputs.prepare(stage, frame);
+        // Nothing can be interpolated between points in any order.
+        let is_sparse = options.is_sparse && frame.receivers.have_neighbours();
+        let inputs = self.inputs.prepare_known(stage, frame, if is_sparse { SparseUpsample::STRIDE_PX } else { 1 });
         let plan =
             FramePlan::new(technique, frame, meshes, options, stage.device.limits().max_storage_buffer_binding_size)?;
         let point_batches: Vec<&[LocalPoint]> = options.points.chunks(plan.words * WORD).collect();
@@ -288,6 +298,7 @@ impl ViewSamples {
             clip_z_row,
             clip_w_row,
             matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
+            subset: if is_sparse { SUBSET_KNOWN } else { SUBSET_ALL },
             ..plan.settings(frame, meshes, options)
         };
         let base_uniform = settings_uniform(stage, &base);
@@ -320,7 +331,18 @@ impl ViewSamples {
                 clusters: if plan.is_drawn(batch) && !plan.chooses() { 0 } else { batch.triangles().div_ceil(64) },
             }
         };
+        let irradiance = options.weighs_irradiance.then(|| {
+            let irradiance = self.irradiance.get_or_insert_with(|| Irradiance::new(stage, &self.inputs));
+            irradiance.prepare(stage, buffers, &base_uniform, &options.points)
+        });
+        let subset = is_sparse.then(|| {
+            let missing = settings_uniform(stage, &SampleSettings { subset: SUBSET_MISSING, ..base });
+            let subset = self.subset.get_or_insert_with(|| Subset::new(stage, &self.inputs));
+            subset.prepare(stage, &self.inputs, frame, &inputs, (buffers, groups.lists(&missing)))
+        });
         let prepared = PreparedSamples {
+            irradiance,
+            subset,
             inputs,
             dispatches: buffers.dispatches.clone(),
             clears: Clears::new(&groups),
@@ -368,26 +390,6 @@ impl ViewSamples {
         &self.inputs
     }
 
-    /// The lists of each window that receivers are seen through, or those of the cells that they are sorted into.
-    pub(crate) fn drawn_lists(&self) -> Vec<DrawnLists> {
-        let (Some(windows), Some(counts)) = (self.windows, &self.buffers.counts) else { return Vec::new() };
-        let side = windows.side;
-        let of_window = |window: u32| DrawnLists {
-            words: counts.clone(),
-            // The scan has made places of counts.
-            lengths: ListLengths::Between,
-            listed: "receivers",
-            order: match windows.count {
-                // Behind the total of all windows' lists.
-                Some(_) if windows.are_chosen => ListOrder::Told { word: side * side + 1 },
-                Some(_) => ListOrder::Rows,
-                None => ListOrder::Halvings,
-            },
-            levels: vec![ListLevel { first: window * side * side, size_texels: UVec2::splat(side) }],
-        };
-        (0..windows.count.unwrap_or(1)).map(of_window).collect()
-    }
-
     /// The bits of every pixel, where they are kept: words of pixel after pixel, row after row.
     pub(crate) fn bits(&self) -> Option<&wgpu::Buffer> {
         self.buffers.bits.as_ref()
@@ -405,6 +407,7 @@ impl ViewSamples {
             + self.cell_scan.memory_bytes()
             + self.table.as_ref().map_or(0, |table| table.bytes)
             + self.raster.as_ref().map_or(0, Raster::memory_bytes)
+            + self.irradiance.as_ref().map_or(0, Irradiance::memory_bytes)
     }
 }
 

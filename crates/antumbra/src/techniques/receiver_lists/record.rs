@@ -9,11 +9,23 @@ use crate::gpu::{Recorder, Span};
 /// Workgroups that clear a buffer between them.
 const CLEAR_GROUPS: u32 = 64;
 
+/// What a round lists: group 1 of the passes that do, and whether it is the frame's first.
+type Listed<'a> = (&'a wgpu::BindGroup, bool);
+
 impl ViewSamples {
     /// Records every pass of a frame.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedSamples) {
         self.record_table(recorder);
-        self.record_lists(recorder, frame);
+        self.record_round(recorder, frame, (&frame.lists, true));
+        if let Some(subset) = &frame.subset {
+            subset.record(recorder, &frame.inputs);
+            self.record_round(recorder, frame, (&subset.lists, false));
+        }
+    }
+
+    /// Records the passes for the receivers that these lists take.
+    fn record_round(&self, recorder: &mut Recorder<'_>, frame: &PreparedSamples, listed: Listed<'_>) {
+        self.record_lists(recorder, frame, listed);
         if !frame.edge_runs.is_empty() {
             recorder.compute("silhouettes", Span::Only, |pass| {
                 clear(pass, &self.pipelines, &frame.clears.edges);
@@ -29,6 +41,9 @@ impl ViewSamples {
                 }
                 self.record_evaluation(recorder, &batch.evaluate[step], &batch.surface, frame);
             }
+        }
+        if let Some(irradiance) = &frame.irradiance {
+            irradiance.record(recorder, &frame.inputs);
         }
     }
 
@@ -46,18 +61,21 @@ impl ViewSamples {
     }
 
     /// Sorts receivers into lists (section 3.1).
-    fn record_lists(&self, recorder: &mut Recorder<'_>, frame: &PreparedSamples) {
+    fn record_lists(&self, recorder: &mut Recorder<'_>, frame: &PreparedSamples, (lists, is_first): Listed<'_>) {
         let pipelines = &self.pipelines;
         let over_pixels = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline| {
             pass.set_pipeline(pipeline);
             frame.inputs.bind(pass);
-            pass.set_bind_group(1, &frame.lists, &[]);
+            pass.set_bind_group(1, lists, &[]);
             frame.inputs.dispatch(pass);
         };
         recorder.compute("view-sample lists", Span::Only, |pass| {
             clear(pass, pipelines, &frame.clears.state);
             clear(pass, pipelines, &frame.clears.counts);
-            clear(pass, pipelines, &frame.clears.work);
+            if is_first {
+                // Counts of tests go on from round to round.
+                clear(pass, pipelines, &frame.clears.work);
+            }
             over_pixels(pass, &pipelines.bounds);
             over_pixels(pass, &pipelines.count);
             if let Some(choice) = pipelines.choice.as_ref().filter(|_| frame.chooses) {

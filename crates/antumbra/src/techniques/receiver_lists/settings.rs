@@ -16,6 +16,10 @@ shared_constants! {
     pub(crate) const FIRST_POINTS: u32 = 128, as in VIEW_SAMPLES_EVALUATE;
     pub(crate) const CHOOSES: u32 = 256, as in VIEW_SAMPLES_BOUNDS;
 
+    pub(crate) const SUBSET_ALL: u32 = 0, as in VIEW_SAMPLES_BOUNDS;
+    pub(crate) const SUBSET_KNOWN: u32 = 1, as in VIEW_SAMPLES_BOUNDS;
+    pub(crate) const SUBSET_MISSING: u32 = 2, as in VIEW_SAMPLES_BOUNDS;
+
     pub(crate) const FLAG_CLOSED: u32 = 1, as in VIEW_SAMPLES_TRIANGLE_COUNT;
     pub(crate) const FLAG_MASKED: u32 = 4, as in VIEW_SAMPLES_EVALUATE;
     pub(crate) const FLAG_TINTED: u32 = 8, as in VIEW_SAMPLES_EVALUATE;

@@ -71,18 +71,13 @@ fn visibility(found: lookup_MapReceiver) -> f32 {
     return own;
 }
 
-fn color_of(layer: u32) -> vec3f {
-    let hue = fract(f32(layer) * 0.381966);
-    return 0.25 + 0.75 * saturate(abs(fract(hue + vec3f(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0);
-}
-
 @compute @workgroup_size(8, 8)
 fn resolve(@builtin(global_invocation_id) id: vec3u) {
     if inputs_is_inside(id.xy) {
         let found = lookup_map_receiver(id.xy);
         let lit = visibility(found);
         if lvsm.shows_layers == 1u && found.known < 0.0 {
-            inputs_write_visibility_rgb(id.xy, color_of(layer_of(found.t)) * (0.2 + 0.8 * lit));
+            inputs_write_visibility_rgb(id.xy, hues_shaded_hue(hues_hue_of(layer_of(found.t)), vec3f(lit)));
         }
         else {
             inputs_write_visibility(id.xy, lit);
@@ -526,6 +521,15 @@ fn variance_bounded_visibility(filtered: vec2f, t: f32, least_variance: f32) -> 
         return variance_chebyshev(mean, variance, t);
     }
     return saturate(mean + (mean - mean * mean - variance) / t);
+}
+
+fn hues_hue_of(number: u32) -> vec3f {
+    let hue = fract(f32(number) * 0.381966);
+    return 0.25 + 0.75 * saturate(abs(fract(hue + vec3f(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0);
+}
+
+fn hues_shaded_hue(hue: vec3f, lit: vec3f) -> vec3f {
+    return hue * (0.2 + 0.8 * lit);
 }
 
 const packing_PACKING_FLOAT32 = 0u;

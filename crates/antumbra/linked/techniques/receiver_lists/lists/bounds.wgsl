@@ -23,7 +23,7 @@ fn bounds(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_in
         atomicStore(&group_state[lane], 0u);
     }
     workgroupBarrier();
-    if inputs_is_inside(id.xy) {
+    if inputs_is_inside(id.xy) && bindings_is_asked(id.xy) {
         let receiver = inputs_load_receiver(id.xy);
         if bindings_is_listed(receiver) {
             let x = receiver.pos_in_world;
@@ -331,8 +331,28 @@ var<uniform> bindings_settings: settings_SampleSettings;
 @group(1) @binding(1)
 var<storage, read_write> bindings_state: array<atomic<u32>>;
 
+@group(1) @binding(3)
+var<storage, read_write> bindings_places: array<vec2u>;
+
 @group(1) @binding(6)
 var<storage, read> bindings_light_points: array<vec4f>;
+
+fn bindings_is_asked(pixel: vec2u) -> bool {
+    switch bindings_settings.subset {
+        case settings_SUBSET_ALL {
+            return true;
+        }
+        case settings_SUBSET_KNOWN {
+            return all(pixel % vec2u(inputs_receiver_view.pixel_stride) == vec2u(0u));
+        }
+        case settings_SUBSET_MISSING {
+            return bindings_places[pixel.y * inputs_receiver_view.size_px.x + pixel.x].x == settings_MISSING;
+        }
+        case default {
+            return false;
+        }
+    }
+}
 
 fn bindings_is_listed(receiver: inputs_Receiver) -> bool {
     if receiver.is_background || !receiver.is_reached {
@@ -436,7 +456,7 @@ struct settings_SampleSettings {
     window: u32,
     window_side: u32,
     receivers_per_instance: u32,
-    padding_0: u32,
+    subset: u32,
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
@@ -476,6 +496,14 @@ const settings_STATE_WINDOW_LENGTH = 6u;
 const settings_STATE_LISTED = 49u;
 
 const settings_STATE_LENGTH = 51u;
+
+const settings_SUBSET_ALL = 0u;
+
+const settings_SUBSET_KNOWN = 1u;
+
+const settings_SUBSET_MISSING = 2u;
+
+const settings_MISSING = 4294967294u;
 
 fn settings_sortable(value: f32) -> u32 {
     let bits = bitcast<u32>(value);

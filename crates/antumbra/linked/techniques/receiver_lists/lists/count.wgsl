@@ -47,7 +47,8 @@ fn count(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel_index = id.y * inputs_receiver_view.size_px.x + id.x;
     let receiver = inputs_load_receiver(id.xy);
-    if !bindings_is_listed(receiver) {
+    let is_among = select(bindings_is_asked(id.xy), bindings_places[pixel_index].x != settings_NOWHERE, IS_AGAIN);
+    if !is_among || !bindings_is_listed(receiver) {
         bindings_places[pixel_index] = vec2u(settings_NOWHERE, 0u);
         return;
     }
@@ -330,6 +331,23 @@ var<storage, read_write> bindings_shaft: array<vec4f>;
 @group(1) @binding(6)
 var<storage, read> bindings_light_points: array<vec4f>;
 
+fn bindings_is_asked(pixel: vec2u) -> bool {
+    switch bindings_settings.subset {
+        case settings_SUBSET_ALL {
+            return true;
+        }
+        case settings_SUBSET_KNOWN {
+            return all(pixel % vec2u(inputs_receiver_view.pixel_stride) == vec2u(0u));
+        }
+        case settings_SUBSET_MISSING {
+            return bindings_places[pixel.y * inputs_receiver_view.size_px.x + pixel.x].x == settings_MISSING;
+        }
+        case default {
+            return false;
+        }
+    }
+}
+
 fn bindings_is_listed(receiver: inputs_Receiver) -> bool {
     if receiver.is_background || !receiver.is_reached {
         return false;
@@ -495,7 +513,7 @@ struct settings_SampleSettings {
     window: u32,
     window_side: u32,
     receivers_per_instance: u32,
-    padding_0: u32,
+    subset: u32,
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,
@@ -538,7 +556,15 @@ const settings_STATE_CROWDED = 50u;
 
 const settings_CROWD = 64u;
 
+const settings_SUBSET_ALL = 0u;
+
+const settings_SUBSET_KNOWN = 1u;
+
+const settings_SUBSET_MISSING = 2u;
+
 const settings_NOWHERE = 4294967295u;
+
+const settings_MISSING = 4294967294u;
 
 fn settings_unsortable(bits: u32) -> f32 {
     return bitcast<f32>(select(~bits, bits & 2147483647u, bits >= 2147483648u));

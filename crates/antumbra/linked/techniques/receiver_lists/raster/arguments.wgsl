@@ -53,7 +53,7 @@ struct settings_SampleSettings {
     window: u32,
     window_side: u32,
     receivers_per_instance: u32,
-    padding_0: u32,
+    subset: u32,
     window_right: vec3f,
     region_corners: u32,
     window_up: vec3f,

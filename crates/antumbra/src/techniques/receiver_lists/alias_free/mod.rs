@@ -57,7 +57,7 @@ impl Technique for AliasFree {
         params: &AliasFreeParams,
     ) -> Result<PreparedSamples, Error> {
         let options = Options {
-            points: vec![LocalPoint { at: Vec3::ZERO, weight: 1.0, index: 0 }],
+            points: vec![LocalPoint::white(Vec3::ZERO)],
             map_size: params.map_size,
             traversal: params.traversal,
             drawn: Drawn {
@@ -76,6 +76,8 @@ impl Technique for AliasFree {
             hair_scale: params.bias_scale,
             keep_bits: false,
             counts: false,
+            is_sparse: false,
+            weighs_irradiance: false,
         };
         self.passes.prepare(stage, frame, &options)
     }

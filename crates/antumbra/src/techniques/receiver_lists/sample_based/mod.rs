@@ -20,6 +20,14 @@
 //! the same points at other angles, which evens out angles alone), and gives the mean of the frames since something last
 //! moved (figure 7); `frame/accumulation` says what counts as moving. The first frame after a change is as without it.
 //!
+//! **Lighting and visibility** are apart, as in the paper: a light point counts by its luminance, and the host shades.
+//! `weights=irradiance` is equation 1 instead: each point gives a receiver its emission, in colour, times both cosines over the
+//! squared distance, and the mask is what arrives of the irradiance without casters, channel by channel. The host multiplies an
+//! area light's own irradiance by it. Where the light is small beside its distance both are the same.
+//!
+//! `sub` lists every other pixel in both directions, interpolates within surfaces, and lists what it would get wrong in a
+//! second round (section 4.3, which proposes "a view-sample subset" and "a reconstruction step").
+//!
 //! # Limits
 //! While things move, few points show as bands or noise; `accumulate` helps only when all is still. Several
 //! layers of casters that cover in part have noise, less the more points there are. Tinted casters that
@@ -46,7 +54,7 @@ mod params;
 mod tests;
 
 pub use crate::techniques::receiver_lists::Traversal;
-pub use params::{RegionOfInfluence, SampleBasedParams, SampleEvaluation};
+pub use params::{RegionOfInfluence, SampleBasedParams, SampleEvaluation, SampleWeights};
 
 /// Exact soft shadows.
 #[derive(Debug)]
@@ -137,6 +145,7 @@ impl Technique for SampleBased {
             (params.cut_by_plane, CUT_BY_PLANE),
             (params.cull_facing, CULL_FACING),
         ];
+        let weighs_irradiance = params.weights == SampleWeights::Irradiance;
         let options = Options {
             points,
             map_size: params.map_size,
@@ -155,8 +164,10 @@ impl Technique for SampleBased {
             rotations,
             turn: (f64::from(run_of_turns) * TURN_OF_FRAME).fract() as f32,
             hair_scale: params.bias_scale,
-            keep_bits: params.keep_bits,
+            keep_bits: params.keep_bits || weighs_irradiance,
             counts: params.count_tests,
+            is_sparse: params.sub,
+            weighs_irradiance,
         };
         let samples = self.passes.prepare(stage, frame, &options)?;
         let accumulation = self.accumulation.as_mut().map(|accumulation| accumulation.prepare(stage, technique, frame));
@@ -186,7 +197,8 @@ impl Technique for SampleBased {
 impl SampleBased {
     /// The bits of the last frame where [`keep_bits`](SampleBasedParams::keep_bits) is set: for each pixel, row after
     /// row, `⌈points / 32⌉` words of `u32`, 1 where the light point is seen; usage `COPY_SRC`. Pixels without geometry,
-    /// out of the light's reach or turned away from all of it hold anything. [`Self::bit_order`] says which bit is
+    /// out of the light's reach or turned away from all of it hold anything, and those that
+    /// [`sub`](SampleBasedParams::sub) interpolates. [`Self::bit_order`] says which bit is
     /// which point.
     pub fn bits(&self) -> Option<&wgpu::Buffer> {
         self.passes.bits().filter(|_| self.keeps_bits)

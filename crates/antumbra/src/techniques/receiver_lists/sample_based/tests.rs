@@ -12,6 +12,9 @@ use crate::shadow::AnyShadow;
 use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, RECTANGLE, gpu, half_plane_visibility, rmse, run, test_ground};
 
+mod irradiance;
+mod subset;
+
 const SAMPLES: usize = 16;
 
 fn sample_based(gpu: &Gpu, settings: &[(&str, &str)]) -> AnyShadow {

@@ -606,7 +606,8 @@ struct space_ReceiverPlane {
     depth_per_uv: vec2f,
     farthest_depth: f32,
     surface_step: f32,
-    bias: f32
+    bias: f32,
+    faces_away: bool
 }
 
 const space_SURFACE_SLOPE = 8.0;
@@ -668,6 +669,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
     var plane: vec2f;
     var biased_z: f32;
     var depth_per_plane: vec2f;
+    var faces_away: bool;
     if view.perspective == 1u {
         let distance = length(p);
         plane = p.xy / p.z;
@@ -676,12 +678,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let k = dot(n, p) * toward;
         let k_min = least_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+        faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
         let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
+        faces_away = n.z > 0.0;
     }
     let from_center = plane - view.plane_center;
     let divisor = 1.0 + dot(view.warp, from_center);
@@ -691,7 +695,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
     let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
     depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
     let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias);
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
 }
 
 fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
@@ -937,7 +941,9 @@ struct map_receiver_MapReceiver {
     depth_at_origin: f32,
     slope: vec2f,
     g_per_depth: f32,
-    edge_g: f32
+    edge_g: f32,
+    faces_away: bool,
+    away_margin: f32
 }
 
 fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiver_MapReceiver {
@@ -945,7 +951,7 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m));
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), plane.faces_away, 2.0 * abs(plane.bias));
 }
 
 fn map_receiver_least_depth() -> f32 {

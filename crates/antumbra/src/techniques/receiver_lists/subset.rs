@@ -1,0 +1,68 @@
+//! A subset of the view-samples with reconstruction (section 4.3): every other pixel in both directions, interpolation within a
+//! surface, and a second round of the same passes for the pixels that it would get wrong.
+
+use super::buffers::BufferSet;
+use crate::contract::PreparedFrame;
+use crate::frame::inputs::{FrameInputs, PreparedInputs};
+use crate::frame::sparse_upsample::{PreparedUpsample, SparseUpsample};
+use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline};
+use crate::shaders;
+
+bindings! {
+    struct Marked = "view-sample missing", COMPUTE, group 1 of [VIEW_SAMPLES_MARK_MISSING] {
+        /// As the lists have them.
+        3 places: ReadWrite,
+    }
+}
+
+/// What reconstructs.
+#[derive(Debug)]
+pub(super) struct Subset {
+    upsample: SparseUpsample,
+    layout: wgpu::BindGroupLayout,
+    mark: wgpu::ComputePipeline,
+}
+
+/// The passes of one frame.
+#[derive(Debug)]
+pub(super) struct PreparedSubset {
+    upsample: PreparedUpsample,
+    mark: wgpu::ComputePipeline,
+    marked: wgpu::BindGroup,
+    /// Group 1 of the passes that list the missing pixels.
+    pub(super) lists: wgpu::BindGroup,
+}
+
+impl Subset {
+    pub(super) fn new(gpu: &Gpu, inputs: &FrameInputs) -> Self {
+        let layout = Marked::layout(gpu);
+        let layouts = [&FrameInputs::missing_layout(gpu), &layout];
+        let mark = compute_pipeline(gpu, "view-sample missing", shaders::VIEW_SAMPLES_MARK_MISSING, &layouts);
+        Self { upsample: SparseUpsample::new(gpu, inputs), layout, mark }
+    }
+
+    pub(super) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        inputs: &FrameInputs,
+        frame: &PreparedFrame<'_>,
+        of_frame: &PreparedInputs,
+        (buffers, lists): (BufferSet<'_>, wgpu::BindGroup),
+    ) -> PreparedSubset {
+        let upsample = self.upsample.prepare(stage, inputs, frame, of_frame);
+        let marked = Marked { places: buffers.places }.group(stage, &self.layout);
+        PreparedSubset { upsample, mark: self.mark.clone(), marked, lists }
+    }
+}
+
+impl PreparedSubset {
+    /// Reconstructs what is between the listed pixels, and marks those that the second round lists.
+    pub(super) fn record(&self, recorder: &mut Recorder<'_>, inputs: &PreparedInputs) {
+        self.upsample.record(recorder, inputs);
+        recorder.compute("missing view-samples", Span::Only, |pass| {
+            pass.set_pipeline(&self.mark);
+            pass.set_bind_group(1, &self.marked, &[]);
+            self.upsample.dispatch_missing(pass);
+        });
+    }
+}
