@@ -36,7 +36,8 @@
 //! Silhouettes are staircases of texels, and no penumbra is narrower than a texel. Nothing is known behind the last layer, nor behind
 //! a host's own depth map: light leaks in below stacked occluders. Micro-patches are parallel to the map: the paper's micro-quads, between
 //! texels' centres, are not here. Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide
-//! penumbrae. Loops are bounded by the counts of patches, layers and points.
+//! penumbrae. On a software renderer it takes 7 times as long as `smrt` on `columns` and `overlap`, 12 times on `tree` (320 × 180).
+//! Loops are bounded by the counts of patches, layers and points.
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
