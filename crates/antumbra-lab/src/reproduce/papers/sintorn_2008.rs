@@ -133,6 +133,10 @@ pub const PAPER: Paper = Paper {
                 claim(
                     "A reconstruction step yields the final image from a subset of the view-samples.",
                     &[Rule::AtMost(Rmse, "a subset, reconstructed", 0.03)],
+                )
+                .because_both(
+                    "the smaller the image the more of it lies at edges, where neighbours that differ by less than a quarter are \
+                     interpolated: of columns .0225 at the paper's 512² and .034 at 320 × 180.",
                 ),
                 claim(
                     "A subset restricts computations.",
