@@ -63,7 +63,7 @@ fn every_kind_of_light_is_known() {
         ("picture", 0.0201, &|light| {
             light.shape = LightShape::Rectangle { size_m: Vec2::new(0.8, 0.5) };
             let luminance = (0..12).map(|i| (i % 5) as f32).collect();
-            light.emission = Some(EmissionTexture { width: 4, height: 3, luminance });
+            light.emission = Some(EmissionTexture::gray(4, 3, luminance));
         }),
     ];
     for (name, bound, change) in lights {
