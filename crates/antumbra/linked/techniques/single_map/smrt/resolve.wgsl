@@ -1138,42 +1138,48 @@ fn fan_stored_depth(texel: vec2f, layer: u32) -> f32 {
     return map_light_view.depth_sign * textureLoad(behind_further_layers, vec2i(texel), layer - 1u, 0);
 }
 
-const fan_BEHIND_PLANE_G = 2e20;
+struct fan_Found {
+    g: f32,
+    behind_g: f32
+}
 
-fn fan_blocker_g_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> f32 {
+fn fan_found_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> fan_Found {
+    var found = fan_Found(map_receiver_NO_G, map_receiver_NO_G);
     if !map_receiver_is_texel(texel) {
-        return map_receiver_NO_G;
+        return found;
     }
     let begin = max(fan.at.depth, fan_depth_at_g(fan.at, begin_g));
     let depths = max(map_receiver_blocking_depths(fan.at, texel), vec2f(begin));
-    var found = map_receiver_NO_G;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(texel, layer);
-        if depth <= depths.x {
-            return select(found, fan_BEHIND_PLANE_G, depth > begin);
-        }
         let g = fan_g_of(fan.at, depth);
+        if depth <= depths.x {
+            found.behind_g = select(found.behind_g, g, depth > begin);
+            break;
+        }
         if fan_far_side(fan, g, layer) <= end_g {
             if depth < depths.y {
-                return g;
+                found.g = g;
+                break;
             }
-            found = fan_BEHIND_PLANE_G;
+            found.behind_g = g;
         }
     }
     return found;
 }
 
 fn fan_blocker_g_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: f32) -> f32 {
-    let blocker_g = fan_blocker_g_in(fan, texel, begin_g, end_g);
-    if blocker_g != fan_BEHIND_PLANE_G {
-        return blocker_g;
+    let found = fan_found_in(fan, texel, begin_g, end_g);
+    if found.g != map_receiver_NO_G || found.behind_g == map_receiver_NO_G {
+        return found.g;
     }
     let steepness = max(length(fan.at.slope), 1e-30);
     let towards_light = select(1.0, -1.0, fan.at.faces_away);
     let forward = -towards_light * fan.at.slope / steepness;
-    let behind = max(towards_light * (map_receiver_plane_depth_at(fan.at, texel) - fan_depth_at_g(fan.at, g)), 0.0) / steepness;
+    let passed_depth = fan_depth_at_g(fan.at, select(g, found.behind_g, fan.at.faces_away));
+    let behind = max(towards_light * (map_receiver_plane_depth_at(fan.at, texel) - passed_depth), 0.0) / steepness;
     let in_front = texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y)));
-    return min(fan_blocker_g_in(fan, floor(in_front), begin_g, end_g), map_receiver_NO_G);
+    return fan_found_in(fan, floor(in_front), begin_g, end_g).g;
 }
 
 fn fan_far_side(fan: fan_Fan, g: f32, layer: u32) -> f32 {
