@@ -130,8 +130,9 @@ fn follow(open: Open, steps: bins_Steps, before: Rays, begin: u32, end: u32) -> 
     for (var i = begin; i < min(end, smrt.ray_count); i++) {
         let place = end_of(open.light, light_taps_taps[smrt.tile_search_count + i].xyz);
         let weight = light_taps_weight_of(place);
-        sums.weight += weight;
-        if light_taps_is_above_horizon(open.light, place) {
+        let is_above = light_taps_is_above_horizon(open.light, place);
+        sums.weight += select(0.0, weight, is_above || !horizon_has_horizon_share());
+        if is_above {
             let jitter = fract(first + f32(i) * R3);
             let g = blocker_g(open.fan, light_taps_texels_of(open.light, place), steps, jitter);
             sums.free += select(0.0, weight, g == map_receiver_NO_G);
@@ -229,7 +230,8 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
         }
     }
     if is_pixel {
-        let visibility = select(open.visibility, sums.free / max(sums.weight, 1e-20), has_rays);
+        let share = select(1.0, open.visibility, horizon_has_horizon_share());
+        let visibility = select(open.visibility, share * sums.free / max(sums.weight, 1e-20), has_rays);
         write_pixel(pixel, visibility, magnification(open, sums.least_g));
     }
 }
@@ -1038,13 +1040,13 @@ fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane,
 }
 
 fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) {
-    let depths = map_receiver_blocking_depths(receiver, look.texel);
+    let least = map_receiver_blocking_depths(receiver, look.texel).x;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = fan_stored_depth(look.texel, layer);
-        if depth <= depths.x {
+        if depth <= least {
             break;
         }
-        if depth < depths.y && fan_g_of(receiver, depth) >= look.hiding_g {
+        if fan_g_of(receiver, depth) >= look.hiding_g {
             let place = bins_place_among(bins, depth);
             let bin = bins_bin_at(place);
             let beside = (1u << bins_bin_at(place - bins_ROOM)) | (1u << bins_bin_at(place + bins_ROOM));

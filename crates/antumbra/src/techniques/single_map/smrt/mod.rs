@@ -27,6 +27,8 @@
 //!    blockers found there. A surface of that texel in the bin blocks it, if the ray is within a texel where it crosses the
 //!    surface's depth; else the texel that it crosses there decides: a wall that rises through a whole bin would darken receivers
 //!    that face it. Gaps between occluders cost nothing; if there are more bins than `steps`, neighbours are joined.
+//!    Of a receiver whose plane runs through the light the part above it is known exactly: rays that end below it have no weight,
+//!    and what the others find is a share of that part.
 //! 3. **Early end.** Where the first quarter of the rays of all 64 pixels are free, or all blocked, so are the others; without
 //!    `smooth` likewise those of a pixel whose first half are.
 //! 4. **Means over pixels** (`smooth`; [`frame/smoothing`](crate::frame)). In penumbrae wider than eight pixels the first quarter of
