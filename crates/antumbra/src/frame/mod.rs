@@ -12,7 +12,7 @@ pub(crate) mod points;
 pub(crate) mod resolve;
 #[cfg(feature = "single_map")]
 pub(crate) mod smoothing;
-#[cfg(any(feature = "multi_layer", feature = "single_map", feature = "summed"))]
+#[cfg(any(feature = "multi_layer", feature = "receiver_lists", feature = "single_map", feature = "summed"))]
 pub(crate) mod sparse_upsample;
 pub(crate) mod split_receivers;
 
