@@ -23,8 +23,6 @@ override IS_SMOOTHED: bool = false;
 @group(3) @binding(0)
 var noisy: texture_storage_2d<r32uint, write>;
 
-const TEXEL_BIAS = 2.0;
-
 const TILE_PROBES = 16u;
 
 const PIXEL_PROBES = 32u;
@@ -65,7 +63,7 @@ fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
     if !receiver.is_reached || (horizon_has_horizon_share() && share <= 0.0) {
         return known(0.0);
     }
-    let plane = receiver_light_biased_plane(receiver, TEXEL_BIAS * smrt.bias_scale);
+    let plane = receiver_light_biased_plane(receiver, map_receiver_TEXEL_BIAS * smrt.bias_scale);
     let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
     let extent = blocker_range_seen_extent(smrt.light_extent, smrt.light_extent_axis, receiver_in_light);
     let shift = shift_of(pixel);
@@ -771,6 +769,14 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
+fn bits_even_bits(number: u32) -> u32 {
+    var x = number & 1431655765u;
+    x = (x | (x >> 1u)) & 858993459u;
+    x = (x | (x >> 2u)) & 252645135u;
+    x = (x | (x >> 4u)) & 16711935u;
+    return (x | (x >> 8u)) & 65535u;
+}
+
 override light_taps_LIGHT_KIND: u32 = 0u;
 
 override light_taps_HAS_EMISSION: bool = false;
@@ -898,6 +904,8 @@ fn light_taps_weight_of(place: vec3f) -> f32 {
     return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
 }
 
+const map_receiver_TEXEL_BIAS = 2.0;
+
 const map_receiver_NO_G = 1e20;
 
 struct map_receiver_MapReceiver {
@@ -917,6 +925,13 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
     return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), plane.faces_away, 2.0 * abs(plane.bias));
+}
+
+fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
+    if layer == 0u {
+        return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
+    }
+    return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
 }
 
 fn map_receiver_least_depth() -> f32 {
@@ -1042,7 +1057,7 @@ fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane,
 fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) {
     let least = map_receiver_blocking_depths(receiver, look.texel).x;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
-        let depth = fan_stored_depth(look.texel, layer);
+        let depth = map_receiver_stored_depth(vec2u(look.texel), layer);
         if depth <= least {
             break;
         }
@@ -1102,11 +1117,7 @@ fn bins_g_in_step(receiver: map_receiver_MapReceiver, steps: bins_Steps, step: u
 }
 
 fn bins_of_pairs(bits: u32) -> u32 {
-    var x = (bits | (bits >> 1u)) & 1431655765u;
-    x = (x | (x >> 1u)) & 858993459u;
-    x = (x | (x >> 2u)) & 252645135u;
-    x = (x | (x >> 4u)) & 16711935u;
-    return (x | (x >> 8u)) & 65535u;
+    return bits_even_bits(bits | (bits >> 1u));
 }
 
 struct fan_Fan {
@@ -1133,13 +1144,6 @@ fn fan_depth_at_g(receiver: map_receiver_MapReceiver, g: f32) -> f32 {
     return receiver.depth + g / receiver.g_per_depth;
 }
 
-fn fan_stored_depth(texel: vec2f, layer: u32) -> f32 {
-    if layer == 0u {
-        return map_light_view.depth_sign * textureLoad(map_light_map, vec2i(texel), 0);
-    }
-    return map_light_view.depth_sign * textureLoad(behind_further_layers, vec2i(texel), layer - 1u, 0);
-}
-
 struct fan_Found {
     g: f32,
     behind_g: f32
@@ -1153,7 +1157,7 @@ fn fan_found_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> fan_Fou
     let begin = max(fan.at.depth, fan_depth_at_g(fan.at, begin_g));
     let depths = max(map_receiver_blocking_depths(fan.at, texel), vec2f(begin));
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
-        let depth = fan_stored_depth(texel, layer);
+        let depth = map_receiver_stored_depth(vec2u(texel), layer);
         let g = fan_g_of(fan.at, depth);
         if depth <= depths.x {
             found.behind_g = select(found.behind_g, g, depth > begin);

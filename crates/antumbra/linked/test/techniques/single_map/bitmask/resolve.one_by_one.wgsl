@@ -1,7 +1,5 @@
 // Linked from src/techniques/single_map/bitmask/resolve.wesl with one_by_one by `cargo xtask shaders`: edit that, not this.
 
-const TEXEL_BIAS = 2.0;
-
 const LEVELS = 13u;
 
 const R2 = vec2f(0.754877666, 0.569840291);
@@ -169,7 +167,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if !receiver.is_reached || (horizon_has_horizon_share() && share <= 0.0) {
         return 0.0;
     }
-    let plane = receiver_light_biased_plane(receiver, TEXEL_BIAS * settings_bitmask.bias_scale);
+    let plane = receiver_light_biased_plane(receiver, map_receiver_TEXEL_BIAS * settings_bitmask.bias_scale);
     let pos_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
     let extent = blocker_range_seen_extent(settings_bitmask.light_extent, settings_bitmask.light_extent_axis, pos_in_light);
     let most_g = blocker_range_largest_g(plane, extent);
@@ -721,6 +719,14 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
+fn bits_even_bits(number: u32) -> u32 {
+    var x = number & 1431655765u;
+    x = (x | (x >> 1u)) & 858993459u;
+    x = (x | (x >> 2u)) & 252645135u;
+    x = (x | (x >> 4u)) & 16711935u;
+    return (x | (x >> 8u)) & 65535u;
+}
+
 const light_bits_BINS = 32u;
 
 const light_bits_PREFIXES = 33u;
@@ -935,6 +941,8 @@ fn light_taps_weight_of(place: vec3f) -> f32 {
     return inputs_light_data[light_emission_index(inputs_light_source, 0.5 * place.xy + 0.5)].x;
 }
 
+const map_receiver_TEXEL_BIAS = 2.0;
+
 struct map_receiver_MapReceiver {
     center: vec2f,
     depth: f32,
@@ -952,6 +960,13 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
     return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), plane.faces_away, 2.0 * abs(plane.bias));
+}
+
+fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
+    if layer == 0u {
+        return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
+    }
+    return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
 }
 
 fn map_receiver_least_depth() -> f32 {
@@ -1059,16 +1074,8 @@ fn window_window_of(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, most_
     return window_Window(at, 1.0 / z_m, patch_Patch(-extent, extent), widest, level, first, (high >> vec2u(level)) - first + 1u, share);
 }
 
-fn window_even_bits(number: u32) -> u32 {
-    var x = number & 1431655765u;
-    x = (x | (x >> 1u)) & 858993459u;
-    x = (x | (x >> 2u)) & 252645135u;
-    x = (x | (x >> 4u)) & 16711935u;
-    return (x | (x >> 8u)) & 65535u;
-}
-
 fn window_square_at(window: window_Window, root: vec2u, code: u32, level: u32) -> window_Square {
-    let texel = (root << vec2u(window.level)) + vec2u(window_even_bits(code), window_even_bits(code >> 1u));
+    let texel = (root << vec2u(window.level)) + vec2u(bits_even_bits(code), bits_even_bits(code >> 1u));
     return window_Square(texel >> vec2u(level), level);
 }
 
@@ -1112,16 +1119,9 @@ fn window_shown_texel(window: window_Window, square: window_Square) -> vec2u {
     return min(texel, vec2u(map_light_view.map_size) - 1u);
 }
 
-fn window_stored_depth(texel: vec2u, layer: u32) -> f32 {
-    if layer == 0u {
-        return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
-    }
-    return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
-}
-
 fn window_scale_in(window: window_Window, square: window_Square, layer: u32) -> f32 {
     let texel = window_shown_texel(window, square);
-    let depth = window_stored_depth(texel, layer);
+    let depth = map_receiver_stored_depth(texel, layer);
     let g = (depth - window.at.depth) * window.at.g_per_depth;
     return select(0.0, 1.0 / max(g, 1e-20), depth > map_receiver_plane_depth(window.at, vec2f(texel)));
 }
