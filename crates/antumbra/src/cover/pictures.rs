@@ -12,7 +12,9 @@ use super::region::RegionGpu;
 use crate::contract::{Mask, MaskChannels, PreparedFrame, PreparedReceivers, Surfaces};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::frame::{DEPTH_FORMAT, NORMAL_FORMAT};
-use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
+use crate::gpu::{
+    Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, passed_texture, texels,
+};
 use crate::shaders;
 
 bindings! {
@@ -86,7 +88,7 @@ impl PartPictures {
         let inputs = FrameInputs::new(gpu);
         let layouts = [Picked::layout(gpu), Joined::layout(gpu)];
         let one_texel = |format| {
-            let texture = gpu.device.create_texture(&written(format, UVec2::ONE));
+            let texture = gpu.device.create_texture(&receivers_of(format, UVec2::ONE));
             gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
         };
         Self {
@@ -185,7 +187,7 @@ impl Picture {
         // The host's normals are read where they are, and depth beside them.
         let size_px = receivers.origin_px + receivers.size_px;
         let texture = |scratch, format| {
-            let texture = stage.device.scratch_texture(scratch, &written(format, size_px));
+            let texture = stage.device.scratch_texture(scratch, &receivers_of(format, size_px));
             let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
             (texture, view)
         };
@@ -215,25 +217,14 @@ fn places_of_parts(stage: &Stage<'_>, frame: &PreparedFrame<'_>, parts: &[Part])
     stage.storage("antumbra places of parts", &bytes)
 }
 
-fn written(format: wgpu::TextureFormat, size_px: UVec2) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: Some("antumbra receivers of a part"),
-        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    }
+fn receivers_of(format: wgpu::TextureFormat, size_px: UVec2) -> wgpu::TextureDescriptor<'static> {
+    passed_texture("antumbra receivers of a part", format, size_px, 1)
 }
 
 fn part_mask(stage: &Stage<'_>, size_px: UVec2, channels: MaskChannels) -> Arc<wgpu::Texture> {
     let descriptor = wgpu::TextureDescriptor {
-        label: Some("antumbra mask of a part"),
-        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: channels.count() },
         usage: Mask::usages(Mask::FORMAT),
-        ..written(Mask::FORMAT, size_px)
+        ..passed_texture("antumbra mask of a part", Mask::FORMAT, size_px, channels.count())
     };
     stage.device.scratch_texture(Scratch::PartMask, &descriptor)
 }

@@ -51,7 +51,7 @@ pub(crate) use lease::{Lease, LeasedBuffer};
 pub(crate) use no_depth::NoDepth;
 pub use plan::{MemoryPlan, PlannedResource};
 pub use recorder::{Pass, PassTime, PassTimer, Recorder, Span};
-pub(crate) use scratch::Scratch;
+pub(crate) use scratch::{Scratch, passed_texture};
 pub(crate) use shared_constants::shared_constants;
 pub(crate) use shared_values::SharedValues;
 pub use stage::Stage;

@@ -1,5 +1,7 @@
 //! Uses of scratch resources, which one light's commands fill and read before another's do: lights share one for each use and size.
 
+use glam::UVec2;
+
 /// Use of a scratch resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scratch {
@@ -106,6 +108,25 @@ impl ScratchTextureKey {
             format: descriptor.format,
             usage: descriptor.usage,
         }
+    }
+}
+
+/// Texture of so many layers that one pass writes as storage and another reads.
+pub(crate) fn passed_texture(
+    label: &'static str,
+    format: wgpu::TextureFormat,
+    size_px: UVec2,
+    layers: u32,
+) -> wgpu::TextureDescriptor<'static> {
+    wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
     }
 }
 

@@ -24,7 +24,7 @@ use glam::{Mat4, UVec2, Vec2};
 use super::inputs::{FrameInputs, PreparedInputs};
 use super::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::contract::{Camera, Mask, MaskChannels, PreparedFrame, PreparedReceivers, Surfaces};
-use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, texels};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, passed_texture, texels};
 use crate::shaders;
 
 #[cfg(test)]
@@ -153,11 +153,12 @@ impl HalfImage {
     /// With the textures of an earlier one, where they do.
     fn prepare(stage: &Stage<'_>, size_px: UVec2, channels: MaskChannels, earlier: Option<&Self>) -> Self {
         let texture = |scratch, format| {
-            let texture = stage.device.scratch_texture(scratch, &texels_of(format, size_px, 1));
+            let texture =
+                stage.device.scratch_texture(scratch, &passed_texture("antumbra half resolution", format, size_px, 1));
             let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
             (texture, view)
         };
-        let of_mask = texels_of(Mask::FORMAT, size_px, channels.count());
+        let of_mask = passed_texture("antumbra half resolution", Mask::FORMAT, size_px, channels.count());
         let scratch = stage.device.scratch_texture(Scratch::HalfMask, &of_mask);
         let mask = earlier
             .filter(|earlier| earlier.scratch == scratch)
@@ -186,17 +187,4 @@ fn half_clip(size_px: UVec2) -> Mat4 {
     let scale = size / doubled;
     let offset = ((size + 1.0) / doubled - 1.0) * Vec2::new(1.0, -1.0);
     Mat4::from_translation(offset.extend(0.0)) * Mat4::from_scale(scale.extend(1.0))
-}
-
-fn texels_of(format: wgpu::TextureFormat, size_px: UVec2, layers: u32) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: Some("antumbra half resolution"),
-        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: layers },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    }
 }

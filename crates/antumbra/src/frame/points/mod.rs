@@ -11,7 +11,9 @@ use glam::{UVec2, Vec3};
 
 use crate::contract::{Mask, MaskChannels, PointBuffer, PointReceivers, PointWidths, PreparedReceivers, Surfaces};
 use crate::frame::NORMAL_FORMAT;
-use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, texels};
+use crate::gpu::{
+    Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, gpu_structs, passed_texture, texels,
+};
 use crate::shaders;
 
 #[cfg(test)]
@@ -91,13 +93,16 @@ impl PointTextures {
     ) -> Self {
         let size_px = size_of_points(receivers.count, receivers.row_length);
         let texture = |scratch| {
-            let texture = stage.device.scratch_texture(scratch, &texels_of(NORMAL_FORMAT, size_px, 1));
+            let texture =
+                stage.device.scratch_texture(scratch, &passed_texture("antumbra points", NORMAL_FORMAT, size_px, 1));
             let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
             (texture, view)
         };
         let (positions, normals) = (texture(Scratch::PointPositions), texture(Scratch::PointNormals));
-        let scratch =
-            stage.device.scratch_texture(Scratch::PointMask, &texels_of(Mask::FORMAT, size_px, channels.count()));
+        let scratch = stage.device.scratch_texture(
+            Scratch::PointMask,
+            &passed_texture("antumbra points", Mask::FORMAT, size_px, channels.count()),
+        );
         let mask = earlier
             .filter(|earlier| earlier.scratch == scratch)
             .map_or_else(|| Mask::of_layers(&scratch, 0, channels), |earlier| earlier.mask);
@@ -205,18 +210,5 @@ impl PointLayout {
             width_m,
             channels: channels.count(),
         }
-    }
-}
-
-fn texels_of(format: wgpu::TextureFormat, size_px: UVec2, layers: u32) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: Some("antumbra points"),
-        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: layers },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
     }
 }

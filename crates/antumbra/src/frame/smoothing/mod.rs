@@ -18,7 +18,7 @@ use std::sync::Arc;
 use glam::UVec2;
 
 use super::inputs::{FrameInputs, PreparedInputs};
-use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, texels};
+use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Span, Stage, bindings, compute_pipeline, passed_texture, texels};
 use crate::shaders;
 
 #[cfg(test)]
@@ -76,7 +76,10 @@ impl Smoothing {
     /// Makes ready for a frame of so many pixels; where it `is_on`, the technique's pass writes noisy visibility, else the mask.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, size_px: UVec2, is_on: bool) -> PreparedSmoothing {
         let size_px = if is_on { size_px } else { UVec2::ONE };
-        let scratch = stage.device.scratch_texture(Scratch::NoisyVisibility, &descriptor(size_px));
+        let scratch = stage.device.scratch_texture(
+            Scratch::NoisyVisibility,
+            &passed_texture("antumbra noisy visibility", NOISY_FORMAT, size_px, 1),
+        );
         let made = self.noisy.take().filter(|(texture, _)| *texture == scratch);
         let (_, noisy) = self.noisy.insert(made.unwrap_or_else(|| {
             let view = stage.create_view(&scratch, &wgpu::TextureViewDescriptor::default());
@@ -99,18 +102,5 @@ impl PreparedSmoothing {
             pass.set_bind_group(1, read, &[]);
             inputs.dispatch(pass);
         });
-    }
-}
-
-fn descriptor(size_px: UVec2) -> wgpu::TextureDescriptor<'static> {
-    wgpu::TextureDescriptor {
-        label: Some("antumbra noisy visibility"),
-        size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: NOISY_FORMAT,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
     }
 }
