@@ -163,10 +163,9 @@ impl<T: Technique> Shadow<T> {
         Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes }) })
     }
 
-    /// Whether the mask holds what a frame would draw, so that the frame would record nothing.
-    pub(crate) fn holds(&self, frame: &Frame<'_>) -> bool {
-        let asked = Asked::Mask(*frame);
-        let key = self.key_of(&asked, frame.casters.key());
+    /// Whether the mask holds what a frame of casters with a key would draw, so that the frame would record nothing.
+    pub(crate) fn holds(&self, frame: &Frame<'_>, casters: Option<CastersKey>) -> bool {
+        let key = self.key_of(&Asked::Mask(*frame), casters);
         self.is_intact() && self.mask.is_of(key.as_ref()) && self.is_settled()
     }
 

@@ -27,7 +27,7 @@
 //!
 //! # Limits
 //! A mask that is kept is an image of the frame that drew it. Where the camera has moved since, its shadows lag behind the surfaces that
-//! they lie on by as much as these have moved in the image; [`MaskState::Kept`] tells for how many frames. Give a light whose shadows
+//! they lie on by as much as these have moved in the image; [`MaskState::Kept`] has the number of frames. Give a light whose shadows
 //! must never lag a state of its own beside the set.
 
 use antumbra_light::Light;
@@ -147,14 +147,18 @@ struct Entry {
     shadow: AnyShadow,
     mask: Mask,
     state: MaskState,
-    /// Light and casters that the mask was drawn with, where it is of this view.
-    drawn: Option<(Light, Option<CastersKey>)>,
+    /// What the mask was drawn with, where it is of this view.
+    drawn: Option<Drawing>,
     /// Frames for which the mask was not theirs.
     waits: u32,
     /// Pixels and texels of the frame that was drawn last.
     texels: Option<u64>,
-    is_chosen: bool,
+    /// What the mask is to be drawn with, where the frame redraws it.
+    chosen: Option<Drawing>,
 }
+
+/// Light and casters of a mask.
+type Drawing = (Light, Option<CastersKey>);
 
 /// Prepared frame of a light set.
 #[must_use = "nothing is drawn before it is recorded"]
@@ -187,7 +191,7 @@ impl LightSet {
             drawn: None,
             waits: 0,
             texels: None,
-            is_chosen: false,
+            chosen: None,
         }))
     }
 
@@ -275,8 +279,8 @@ impl LightSet {
         self.choose(frame);
         let mut works = Vec::new();
         for (id, entry) in &mut self.lights {
-            if std::mem::take(&mut entry.is_chosen) {
-                works.push((id, entry.prepare(frame)?));
+            if let Some(drawing) = entry.chosen.take() {
+                works.push((id, entry.prepare(frame, drawing)?));
             }
         }
         Ok(PreparedLights { works })
@@ -286,13 +290,13 @@ impl LightSet {
     fn choose(&mut self, frame: &LightSetFrame<'_>) {
         let seen = SeenSpace::of(&frame.receivers);
         let largest = self.lights.values_mut().map(Entry::known_texels).max().flatten();
-        let mut ids = Vec::new();
+        let mut drawings = Vec::new();
         let mut candidates = Vec::new();
         for (id, entry) in &mut self.lights {
-            entry.is_chosen = false;
-            if let Some(candidate) = entry.candidate(frame, &seen, largest) {
-                ids.push(id);
+            entry.chosen = None;
+            if let Some((candidate, drawing)) = entry.candidate(frame, &seen, largest) {
                 candidates.push(candidate);
+                drawings.push((id, Some(drawing)));
             }
         }
         let budget = match frame.budget {
@@ -300,7 +304,8 @@ impl LightSet {
             Budget::Texels(texels) => texels,
         };
         for i in schedule::chosen(&candidates, budget) {
-            self.lights[ids[i]].is_chosen = true;
+            let (id, drawing) = &mut drawings[i];
+            self.lights[*id].chosen = drawing.take();
         }
     }
 
@@ -326,26 +331,32 @@ impl Entry {
     /// Pixels and texels of the frame drawn last; `None` where there was none.
     fn known_texels(&mut self) -> Option<u64> {
         if self.state == MaskState::Drawn {
-            self.texels = Some(self.shadow.map_texels() + self.mask.size_px().as_u64vec2().element_product());
+            self.texels = Some(self.shadow.map_texels() + self.pixels());
         }
         self.texels
     }
 
-    fn frame<'f>(&'f self, frame: &LightSetFrame<'f>) -> Frame<'f> {
-        let casters = self.light.casters(frame.casters);
-        Frame { light: &self.light.light, casters, receivers: frame.receivers, mask: &self.mask }
+    /// Pixels of the mask.
+    fn pixels(&self) -> u64 {
+        self.mask.size_px().as_u64vec2().element_product()
     }
 
-    /// Candidate for the schedule; `None` where the light need not be redrawn.
-    fn candidate(&mut self, frame: &LightSetFrame<'_>, seen: &SeenSpace, largest: Option<u64>) -> Option<Candidate> {
+    /// Candidate for the schedule, and what it would draw with; `None` where the light need not be redrawn.
+    fn candidate(
+        &mut self,
+        frame: &LightSetFrame<'_>,
+        seen: &SeenSpace,
+        largest: Option<u64>,
+    ) -> Option<(Candidate, Drawing)> {
         let Some(area) = seen.share_of(&self.light.ball()) else {
             // The mask may be of another view by the time that the light is seen again.
             (self.state, self.waits, self.drawn) = (MaskState::Culled, 0, None);
             return None;
         };
-        let asked = self.frame(frame);
-        let drawing = (self.light.light.for_shadows(), asked.casters.key());
-        if self.shadow.holds(&asked) {
+        let casters = self.light.casters(frame.casters);
+        let asked = Frame { light: &self.light.light, casters, receivers: frame.receivers, mask: &self.mask };
+        let drawing = (self.light.light.for_shadows(), casters.key());
+        if self.shadow.holds(&asked, drawing.1) {
             (self.state, self.waits, self.drawn) = (MaskState::Current, 0, Some(drawing));
             return None;
         }
@@ -359,20 +370,19 @@ impl Entry {
             Some(_) => Change::Shadows,
         };
         self.state = if self.drawn.is_some() { MaskState::Kept { age: self.waits } } else { MaskState::Missing };
-        let pixels = self.mask.size_px().as_u64vec2().element_product();
         let cost = match frame.budget {
             Budget::Lights(_) => 1,
-            Budget::Texels(_) => self.texels.or(largest).unwrap_or(pixels),
+            Budget::Texels(_) => self.texels.or(largest).unwrap_or_else(|| self.pixels()),
         };
-        Some(Candidate { area, change, waits: self.waits, cost })
+        Some((Candidate { area, change, waits: self.waits, cost }, drawing))
     }
 
-    fn prepare<'a>(&'a mut self, frame: &LightSetFrame<'a>) -> Result<Prepared<'a>, Error> {
+    fn prepare<'a>(&'a mut self, frame: &LightSetFrame<'a>, drawing: Drawing) -> Result<Prepared<'a>, Error> {
         let casters = self.light.casters(frame.casters);
         let Self { light, shadow, mask, .. } = self;
         let work = shadow.prepare(&Frame { light: &light.light, casters, receivers: frame.receivers, mask })?;
         (self.state, self.waits) = (MaskState::Drawn, 0);
-        self.drawn = Some((light.light.for_shadows(), casters.key()));
+        self.drawn = Some(drawing);
         Ok(work)
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::{Frame, PointFrame, Prepared, Shadow, WarmUp, WarmUpSteps};
 use crate::contract::{
-    Denoise, DrawnLists, DrawnMap, Error, Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
+    CastersKey, Denoise, DrawnLists, DrawnMap, Error, Overflow, ParamError, ParamSpec, ParamValue, Params, Quality,
 };
 use crate::gpu::ShaderFunction;
 use crate::techniques::Technique;
@@ -30,7 +30,7 @@ trait ErasedShadow: wgpu::WasmNotSendSync {
     fn drawn_maps(&self) -> Vec<DrawnMap>;
     fn drawn_lists(&self) -> Vec<DrawnLists>;
     fn overflow(&self) -> Option<Overflow>;
-    fn holds(&self, frame: &Frame<'_>) -> bool;
+    fn holds(&self, frame: &Frame<'_>, casters: Option<CastersKey>) -> bool;
     fn is_intact(&self) -> bool;
     fn map_texels(&self) -> u64;
 }
@@ -93,8 +93,8 @@ impl<T: Technique + 'static> ErasedShadow for Shadow<T> {
     fn overflow(&self) -> Option<Overflow> {
         Shadow::overflow(self)
     }
-    fn holds(&self, frame: &Frame<'_>) -> bool {
-        Shadow::holds(self, frame)
+    fn holds(&self, frame: &Frame<'_>, casters: Option<CastersKey>) -> bool {
+        Shadow::holds(self, frame, casters)
     }
     fn is_intact(&self) -> bool {
         Shadow::is_intact(self)
@@ -237,8 +237,8 @@ impl AnyShadow {
     }
 
     /// [`Shadow::holds`].
-    pub(crate) fn holds(&self, frame: &Frame<'_>) -> bool {
-        self.inner.holds(frame)
+    pub(crate) fn holds(&self, frame: &Frame<'_>, casters: Option<CastersKey>) -> bool {
+        self.inner.holds(frame, casters)
     }
 
     /// [`Shadow::is_intact`].
