@@ -101,7 +101,7 @@ impl TechniqueChoice {
         Self { extras, ..self }
     }
 
-    /// `pcss`, or `pcss:fast` where it is not as it comes; and its extras: `pcss:fast+half+denoised`.
+    /// Name of the technique, with its quality where that is not the default, and its extras: `pcss`, `pcss:fast+half+denoised`.
     pub fn name(&self) -> String {
         let extras = self.extras.suffix();
         match self.quality {

@@ -150,29 +150,47 @@ pub(super) fn draw_axes(svg: &mut String, axes: &Axes) {
 
 /// A name beside each point.
 pub(super) fn name_points(svg: &mut String, scale: &Scale, points: &[&Point]) {
+    for (point, named) in points.iter().zip(named_points(scale, points)) {
+        svg.push_str(&named.text(&point.name));
+    }
+}
+
+/// A point in the drawing, and the place of its name.
+struct NamedPoint {
+    x: f64,
+    y: f64,
+    label_x: f64,
+    label_y: f64,
+    anchor: &'static str,
+}
+
+impl NamedPoint {
+    fn text(&self, name: &str) -> String {
+        let Self { label_x, label_y, anchor, .. } = self;
+        format!(
+            "<text class=\"label\" x=\"{label_x:.1}\" y=\"{label_y:.1}\" text-anchor=\"{anchor}\">{}</text>",
+            escape(name)
+        )
+    }
+}
+
+/// Places of points and of their names, which cover none and no point.
+fn named_points(scale: &Scale, points: &[&Point]) -> Vec<NamedPoint> {
     let centers: Vec<(f64, f64)> =
         points.iter().map(|point| (scale.x_of(point.cost), scale.y_of(point.error))).collect();
     let widths: Vec<f64> = points.iter().map(|point| point.name.chars().count() as f64 * LABEL_ADVANCE).collect();
-    for ((point, label), (x, _)) in points.iter().zip(place_labels(&centers, &widths)).zip(&centers) {
-        let (label_x, anchor) = if label.left > *x { (label.left, "start") } else { (label.right, "end") };
-        let _ = write!(
-            svg,
-            "<text class=\"label\" x=\"{label_x:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{}</text>",
-            label.baseline,
-            escape(&point.name)
-        );
-    }
+    let labels = place_labels(&centers, &widths);
+    let named = |((x, y), label): ((f64, f64), Label)| {
+        let (label_x, anchor) = if label.left > x { (label.left, "start") } else { (label.right, "end") };
+        NamedPoint { x, y, label_x, label_y: label.baseline, anchor }
+    };
+    centers.into_iter().zip(labels).map(named).collect()
 }
 
 /// A circle and a name for each point.
 fn draw_points(svg: &mut String, scale: &Scale, axes: &Axes, points: &[&Point], front: &[&Point]) {
-    let centers: Vec<(f64, f64)> =
-        points.iter().map(|point| (scale.x_of(point.cost), scale.y_of(point.error))).collect();
-    let widths = points.iter().map(|point| point.name.chars().count() as f64 * LABEL_ADVANCE);
-    let labels = place_labels(&centers, &widths.collect::<Vec<_>>());
-    for ((point, (x, y)), label) in points.iter().zip(centers).zip(labels) {
-        let (label_x, anchor) = if label.left > x { (label.left, "start") } else { (label.right, "end") };
-        let label_y = label.baseline;
+    for (point, named) in points.iter().zip(named_points(scale, points)) {
+        let NamedPoint { x, y, label_x, label_y, .. } = named;
         let leader = if (label_y - LABEL_DROP - y).abs() > LABEL_STEP / 2.0 {
             format!(
                 "<line class=\"leader\" x1=\"{x:.1}\" y1=\"{y:.1}\" x2=\"{label_x:.1}\" y2=\"{:.1}\"/>",
@@ -185,8 +203,7 @@ fn draw_points(svg: &mut String, scale: &Scale, axes: &Axes, points: &[&Point], 
         let _ = write!(
             svg,
             "<a href=\"#{}\"><title>{}: {} {}, {} {}</title>{leader}<circle class=\"{}\" cx=\"{x:.1}\" cy=\"{y:.1}\" \
-             r=\"{RADIUS}\"/>\
-             <text class=\"label\" x=\"{label_x:.1}\" y=\"{label_y:.1}\" text-anchor=\"{anchor}\">{}</text></a>",
+             r=\"{RADIUS}\"/>{}</a>",
             escape(&point.anchor),
             escape(&point.name),
             axes.error,
@@ -194,7 +211,7 @@ fn draw_points(svg: &mut String, scale: &Scale, axes: &Axes, points: &[&Point], 
             three_figures(point.cost),
             axes.cost_unit,
             if is_front { "point best" } else { "point" },
-            escape(&point.name),
+            named.text(&point.name),
         );
     }
 }
