@@ -122,6 +122,14 @@ struct Rays {
     least_g: f32
 }
 
+fn is_undecided(rays: Rays) -> bool {
+    return rays.weight <= 0.0 || (rays.free > 0.0 && rays.free < rays.weight);
+}
+
+fn findings(rays: Rays) -> u32 {
+    return select(0u, FREE, rays.free > 0.0 || rays.weight <= 0.0) | select(0u, BLOCKED, rays.free < rays.weight || rays.weight <= 0.0);
+}
+
 fn follow(open: Open, steps: bins_Steps, before: Rays, begin: u32, end: u32) -> Rays {
     let first = vec3f(open.shift, fract(open.shift.x + GOLDEN * open.shift.y));
     var sums = before;
@@ -216,13 +224,13 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     var sums = Rays(0.0, 0.0, map_receiver_NO_G);
     if has_rays {
         sums = follow(open, steps, sums, 0u, probes(TILE_PROBES));
-        atomicOr(&rays_found, select(0u, FREE, sums.free > 0.0) | select(0u, BLOCKED, sums.free < sums.weight));
+        atomicOr(&rays_found, findings(sums));
     }
     workgroupBarrier();
     if has_rays && atomicLoad(&rays_found) == (FREE | BLOCKED) {
-        if !IS_SMOOTHED || is_narrow(open, sums.least_g) {
+        if !IS_SMOOTHED || is_narrow(open, sums.least_g) || sums.weight <= 0.0 {
             sums = follow(open, steps, sums, probes(TILE_PROBES), probes(PIXEL_PROBES));
-            if sums.free > 0.0 && sums.free < sums.weight {
+            if is_undecided(sums) {
                 sums = follow(open, steps, sums, probes(PIXEL_PROBES), smrt.ray_count);
             }
         }
