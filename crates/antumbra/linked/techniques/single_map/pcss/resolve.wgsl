@@ -760,6 +760,13 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), plane.faces_away, 2.0 * abs(plane.bias));
 }
 
+fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
+    if layer == 0u {
+        return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
+    }
+    return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
+}
+
 fn map_receiver_least_depth() -> f32 {
     return min(map_light_view.depth_sign, 0.0);
 }
@@ -768,16 +775,36 @@ fn map_receiver_most_depth() -> f32 {
     return max(map_light_view.depth_sign, 0.0);
 }
 
-fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
-    return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
-}
-
 fn map_receiver_plane_depth_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
     return receiver.depth_at_origin + dot(receiver.slope, texel);
 }
 
-fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
-    return map_receiver_held(receiver, map_receiver_plane_depth_at(receiver, texel));
+struct map_receiver_BlockingDepths {
+    least: vec4f,
+    most: vec4f
+}
+
+fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
+    let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), receiver.faces_away);
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, receiver.faces_away));
+}
+
+fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
+    let depths = map_receiver_blocking_depths(receiver, vec4f(map_receiver_plane_depth_at(receiver, texel)));
+    return vec2f(depths.least.x, depths.most.x);
+}
+
+fn map_receiver_texel_in_front(receiver: map_receiver_MapReceiver, texel: vec2f, passed_depth: f32) -> vec2f {
+    let steepness = max(length(receiver.slope), 1e-30);
+    let towards_light = select(1.0, -1.0, receiver.faces_away);
+    let forward = -towards_light * receiver.slope / steepness;
+    let behind = max(towards_light * (map_receiver_plane_depth_at(receiver, texel) - passed_depth), 0.0) / steepness;
+    return floor(texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y))));
+}
+
+fn map_receiver_may_block(receiver: map_receiver_MapReceiver, depths: vec4f, plane_depths: vec4f) -> vec4<bool> {
+    let blocking = map_receiver_blocking_depths(receiver, plane_depths);
+    return (depths > blocking.least) & (depths < blocking.most);
 }
 
 fn map_receiver_is_texel(texel: vec2f) -> bool {
@@ -832,8 +859,7 @@ fn comparison_quad_about(receiver: map_receiver_MapReceiver, offset: vec2f, g: f
     let low = receiver.depth_at_origin + dot(receiver.slope, corner);
     let lows = vec2f(low, low + receiver.slope.x);
     let centers = vec4f(lows + receiver.slope.y, lows.yx);
-    let here = low + dot(receiver.slope, t);
-    return comparison_Quad((corner + 1.0) / map_light_view.map_size, t, clamp(max(centers, vec4f(receiver.depth)), vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), map_receiver_held(receiver, here), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
+    return comparison_Quad((corner + 1.0) / map_light_view.map_size, t, centers, low + dot(receiver.slope, t), all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size));
 }
 
 fn comparison_occluding(window: search_Window, quad: comparison_Quad, depths: vec4f) -> vec4<bool> {
@@ -842,14 +868,31 @@ fn comparison_occluding(window: search_Window, quad: comparison_Quad, depths: ve
     let from_here = abs(vec4f(quad.t, 1.0 - quad.t));
     let step = vec4f(window.surface_step);
     let carried = depths + from_here.xzzx * select(vec4f(), across, abs(across) < step) + from_here.wwyy * select(vec4f(), along, abs(along) < step);
-    return (depths > quad.at_centers) & (carried > vec4f(quad.here));
+    return map_receiver_may_block(window.at, depths, quad.at_centers) & map_receiver_may_block(window.at, carried, vec4f(quad.here));
 }
 
 fn comparison_lit_of(occluding: vec4<bool>, t: vec2f, sharpness: f32) -> f32 {
     return space_bilinear(select(vec4f(1.0), vec4f(), occluding), saturate((t - 0.5) * sharpness + 0.5));
 }
 
+fn comparison_hiding_g_in_front(window: search_Window, texels: vec2f, layer: u32, g: f32) -> f32 {
+    let texel = floor(map_receiver_place_in_map(window.at, window.at.center + texels * g, g));
+    if !map_receiver_is_texel(texel) {
+        return 0.0;
+    }
+    return search_blocking_g_about(window, texel, layer);
+}
+
 fn comparison_lit_at_scale(plane: space_ReceiverPlane, window: search_Window, texels: vec2f, scale: scales_Scale) -> f32 {
+    if window.at.faces_away {
+        for (var layer = scale.layers.x; layer < min(scale.layers.y, behind_LAYER_COUNT); layer++) {
+            let g = comparison_hiding_g_in_front(window, texels, layer, scale.g);
+            if g > 0.0 && g >= scale.g_range.x && g <= scale.g_range.y {
+                return 0.0;
+            }
+        }
+        return 1.0;
+    }
     let quad = comparison_quad_about(window.at, texels, scale.g);
     let sharpness = comparison_edge_sharpness(plane, scale.g);
     let depths = window.at.depth + scale.g_range / window.at.g_per_depth;
@@ -874,6 +917,16 @@ fn comparison_gathered(quad: comparison_Quad, layer: u32) -> vec4f {
 
 fn comparison_lit_in_layer(window: search_Window, texels: vec2f, share: f32, layer: u32, g: f32, sharpness: f32) -> f32 {
     var scale = g;
+    if window.at.faces_away {
+        for (var look = 0u; look < comparison_LOOKS; look++) {
+            let own_g = comparison_hiding_g_in_front(window, texels, layer, scale);
+            if own_g <= 0.0 || own_g >= share * scale {
+                return select(1.0, 0.0, own_g > 0.0);
+            }
+            scale = own_g;
+        }
+        return 1.0;
+    }
     var lit = 1.0;
     for (var look = 0u; look < comparison_LOOKS; look++) {
         let quad = comparison_quad_about(window.at, texels, scale);
@@ -995,6 +1048,7 @@ fn search_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
     plane.farthest_depth = plane.depth;
     if settings_pcss.is_flat == 1u {
         plane.depth_per_uv = vec2f(0.0);
+        plane.faces_away = false;
     }
     return plane;
 }
@@ -1019,9 +1073,22 @@ fn search_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m
 }
 
 fn search_blocking_g(window: search_Window, texel: vec2f, stored: f32) -> f32 {
-    let depth = map_light_view.depth_sign * stored;
-    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
-    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
+    let blocking = map_receiver_blocking_depths_at(window.at, texel);
+    let may_block = stored > blocking.x && stored < blocking.y;
+    return select(0.0, max((stored - window.at.depth) * window.at.g_per_depth, 1e-20), may_block);
+}
+
+fn search_blocking_g_about(window: search_Window, texel: vec2f, layer: u32) -> f32 {
+    let stored = map_receiver_stored_depth(vec2u(texel), layer);
+    if !window.at.faces_away {
+        return search_blocking_g(window, texel, stored);
+    }
+    let passed_depth = max(stored, window.at.depth);
+    if passed_depth < map_receiver_blocking_depths_at(window.at, texel).y {
+        return search_blocking_g(window, texel, stored);
+    }
+    let in_front = map_receiver_texel_in_front(window.at, texel, passed_depth);
+    return select(0.0, search_blocking_g(window, in_front, map_receiver_stored_depth(vec2u(in_front), layer)), map_receiver_is_texel(in_front));
 }
 
 struct search_Blockers {
@@ -1056,8 +1123,8 @@ fn search_range_of_group(group: u32, most_g: f32) -> vec2f {
     return ends * ends * vec2f(1.0 / search_OVERLAP, search_OVERLAP) * most_g;
 }
 
-fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, stored: f32, layer: u32) -> search_Sums {
-    let g = search_blocking_g(window, look.texel, stored);
+fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, layer: u32) -> search_Sums {
+    let g = search_blocking_g_about(window, look.texel, layer);
     let counts = g > 0.0 && g >= look.hiding_g;
     let least_g = select(sums.least_g, min(sums.least_g, g), counts);
     let weight = select(0.0, select(search_RIM_WEIGHT, 1.0, g >= blocker_range_RIM * look.hiding_g), counts);
@@ -1071,13 +1138,13 @@ fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look,
 
 fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
     let own = floor(window.at.center);
-    let own_g = search_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
+    let own_g = search_blocking_g_about(window, own, 0u);
     var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0), 0u);
     let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
     let enough = settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS);
     for (var i = 0u; i < min(window.search_count, settings_pcss.search_count); i++) {
         let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
-        sums = search_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
+        sums = search_add(sums, window, look, 0u);
         if (light_taps_IS_PROGRESSIVE && i + 1u >= least && sums.found >= enough) || (i + 1u >= settings_pcss.search_enough && sums.found > 0u) {
             break;
         }
@@ -1092,11 +1159,11 @@ fn search_search_behind(window: search_Window, light: light_taps_LightPlane, fir
     let count = min(min(window.search_count, settings_part_of(settings_pcss.search_count, search_BEHIND_TAPS)), settings_pcss.search_count);
     for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0u; layer++) {
         let before = sums.found;
-        let own_g = search_blocking_g(window, own, textureLoad(behind_further_layers, vec2i(own), layer - 1u, 0));
+        let own_g = search_blocking_g_about(window, own, layer);
         sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
         for (var i = 0u; i < count; i++) {
             let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
-            sums = search_add(sums, window, look, textureLoad(behind_further_layers, vec2i(look.texel), layer - 1u, 0), layer);
+            sums = search_add(sums, window, look, layer);
         }
         found = sums.found - before;
     }

@@ -11,7 +11,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if above <= 0.0 {
         return 0.0;
     }
-    let plane = search_comparison_plane(receiver);
+    var plane = search_comparison_plane(receiver);
+    plane.faces_away = false;
     let receiver_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
     let shift = select(vec2f(), noise_shift_of_pixel(pixel), settings_pcss.rotate == 1u);
     let extent = blocker_range_seen_extent(settings_pcss.light_extent, settings_pcss.light_extent_axis, receiver_in_light);
@@ -369,6 +370,9 @@ fn blocker_range_largest_g(plane: space_ReceiverPlane, extent: vec2f) -> f32 {
     }
     return g;
 }
+
+@group(1) @binding(4)
+var behind_further_layers: texture_depth_2d_array;
 
 fn horizon_center_height(receiver: inputs_Receiver) -> f32 {
     if inputs_light_source.kind == light_KIND_SUN {
@@ -868,6 +872,13 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), plane.faces_away, 2.0 * abs(plane.bias));
 }
 
+fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
+    if layer == 0u {
+        return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
+    }
+    return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
+}
+
 fn map_receiver_least_depth() -> f32 {
     return min(map_light_view.depth_sign, 0.0);
 }
@@ -876,16 +887,31 @@ fn map_receiver_most_depth() -> f32 {
     return max(map_light_view.depth_sign, 0.0);
 }
 
-fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
-    return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
-}
-
 fn map_receiver_plane_depth_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
     return receiver.depth_at_origin + dot(receiver.slope, texel);
 }
 
-fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
-    return map_receiver_held(receiver, map_receiver_plane_depth_at(receiver, texel));
+struct map_receiver_BlockingDepths {
+    least: vec4f,
+    most: vec4f
+}
+
+fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
+    let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), receiver.faces_away);
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, receiver.faces_away));
+}
+
+fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
+    let depths = map_receiver_blocking_depths(receiver, vec4f(map_receiver_plane_depth_at(receiver, texel)));
+    return vec2f(depths.least.x, depths.most.x);
+}
+
+fn map_receiver_texel_in_front(receiver: map_receiver_MapReceiver, texel: vec2f, passed_depth: f32) -> vec2f {
+    let steepness = max(length(receiver.slope), 1e-30);
+    let towards_light = select(1.0, -1.0, receiver.faces_away);
+    let forward = -towards_light * receiver.slope / steepness;
+    let behind = max(towards_light * (map_receiver_plane_depth_at(receiver, texel) - passed_depth), 0.0) / steepness;
+    return floor(texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y))));
 }
 
 fn map_receiver_is_texel(texel: vec2f) -> bool {
@@ -927,6 +953,7 @@ fn search_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
     plane.farthest_depth = plane.depth;
     if settings_pcss.is_flat == 1u {
         plane.depth_per_uv = vec2f(0.0);
+        plane.faces_away = false;
     }
     return plane;
 }
@@ -951,9 +978,22 @@ fn search_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m
 }
 
 fn search_blocking_g(window: search_Window, texel: vec2f, stored: f32) -> f32 {
-    let depth = map_light_view.depth_sign * stored;
-    let is_in_front = depth > map_receiver_plane_depth(window.at, texel);
-    return select(0.0, max((depth - window.at.depth) * window.at.g_per_depth, 1e-20), is_in_front);
+    let blocking = map_receiver_blocking_depths_at(window.at, texel);
+    let may_block = stored > blocking.x && stored < blocking.y;
+    return select(0.0, max((stored - window.at.depth) * window.at.g_per_depth, 1e-20), may_block);
+}
+
+fn search_blocking_g_about(window: search_Window, texel: vec2f, layer: u32) -> f32 {
+    let stored = map_receiver_stored_depth(vec2u(texel), layer);
+    if !window.at.faces_away {
+        return search_blocking_g(window, texel, stored);
+    }
+    let passed_depth = max(stored, window.at.depth);
+    if passed_depth < map_receiver_blocking_depths_at(window.at, texel).y {
+        return search_blocking_g(window, texel, stored);
+    }
+    let in_front = map_receiver_texel_in_front(window.at, texel, passed_depth);
+    return select(0.0, search_blocking_g(window, in_front, map_receiver_stored_depth(vec2u(in_front), layer)), map_receiver_is_texel(in_front));
 }
 
 struct search_Blockers {
@@ -981,8 +1021,8 @@ fn search_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
     return u32(clamp(floor(search_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, search_GROUPS - 1.0));
 }
 
-fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, stored: f32, layer: u32) -> search_Sums {
-    let g = search_blocking_g(window, look.texel, stored);
+fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, layer: u32) -> search_Sums {
+    let g = search_blocking_g_about(window, look.texel, layer);
     let counts = g > 0.0 && g >= look.hiding_g;
     let least_g = select(sums.least_g, min(sums.least_g, g), counts);
     let weight = select(0.0, select(search_RIM_WEIGHT, 1.0, g >= blocker_range_RIM * look.hiding_g), counts);
@@ -996,13 +1036,13 @@ fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look,
 
 fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
     let own = floor(window.at.center);
-    let own_g = search_blocking_g(window, own, textureLoad(map_light_map, vec2i(own), 0));
+    let own_g = search_blocking_g_about(window, own, 0u);
     var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0), 0u);
     let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
     let enough = settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS);
     for (var i = 0u; i < min(window.search_count, settings_pcss.search_count); i++) {
         let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
-        sums = search_add(sums, window, look, textureLoad(map_light_map, vec2i(look.texel), 0), 0u);
+        sums = search_add(sums, window, look, 0u);
         if (light_taps_IS_PROGRESSIVE && i + 1u >= least && sums.found >= enough) || (i + 1u >= settings_pcss.search_enough && sums.found > 0u) {
             break;
         }

@@ -950,23 +950,31 @@ fn map_receiver_most_depth() -> f32 {
     return max(map_light_view.depth_sign, 0.0);
 }
 
-fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
-    return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
-}
-
 fn map_receiver_plane_depth_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
     return receiver.depth_at_origin + dot(receiver.slope, texel);
 }
 
-fn map_receiver_plane_depth(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
-    return map_receiver_held(receiver, map_receiver_plane_depth_at(receiver, texel));
+struct map_receiver_BlockingDepths {
+    least: vec4f,
+    most: vec4f
 }
 
-fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
-    if receiver.faces_away {
-        return vec2f(map_receiver_held(receiver, receiver.depth), map_receiver_plane_depth_at(receiver, texel) - receiver.away_margin);
-    }
-    return vec2f(map_receiver_plane_depth(receiver, texel), map_receiver_NO_G);
+fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
+    let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), receiver.faces_away);
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, receiver.faces_away));
+}
+
+fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
+    let depths = map_receiver_blocking_depths(receiver, vec4f(map_receiver_plane_depth_at(receiver, texel)));
+    return vec2f(depths.least.x, depths.most.x);
+}
+
+fn map_receiver_texel_in_front(receiver: map_receiver_MapReceiver, texel: vec2f, passed_depth: f32) -> vec2f {
+    let steepness = max(length(receiver.slope), 1e-30);
+    let towards_light = select(1.0, -1.0, receiver.faces_away);
+    let forward = -towards_light * receiver.slope / steepness;
+    let behind = max(towards_light * (map_receiver_plane_depth_at(receiver, texel) - passed_depth), 0.0) / steepness;
+    return floor(texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y))));
 }
 
 fn map_receiver_is_texel(texel: vec2f) -> bool {
@@ -1063,7 +1071,7 @@ fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane,
 }
 
 fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) {
-    let least = map_receiver_blocking_depths(receiver, look.texel).x;
+    let least = map_receiver_blocking_depths_at(receiver, look.texel).x;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = map_receiver_stored_depth(vec2u(look.texel), layer);
         if depth <= least {
@@ -1163,7 +1171,7 @@ fn fan_found_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> fan_Fou
         return found;
     }
     let begin = max(fan.at.depth, fan_depth_at_g(fan.at, begin_g));
-    let depths = max(map_receiver_blocking_depths(fan.at, texel), vec2f(begin));
+    let depths = max(map_receiver_blocking_depths_at(fan.at, texel), vec2f(begin));
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = map_receiver_stored_depth(vec2u(texel), layer);
         let g = fan_g_of(fan.at, depth);
@@ -1187,13 +1195,8 @@ fn fan_blocker_g_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: 
     if found.g != map_receiver_NO_G || found.behind_g == map_receiver_NO_G {
         return found.g;
     }
-    let steepness = max(length(fan.at.slope), 1e-30);
-    let towards_light = select(1.0, -1.0, fan.at.faces_away);
-    let forward = -towards_light * fan.at.slope / steepness;
     let passed_depth = fan_depth_at_g(fan.at, select(g, found.behind_g, fan.at.faces_away));
-    let behind = max(towards_light * (map_receiver_plane_depth_at(fan.at, texel) - passed_depth), 0.0) / steepness;
-    let in_front = texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y)));
-    return fan_found_in(fan, floor(in_front), begin_g, end_g).g;
+    return fan_found_in(fan, map_receiver_texel_in_front(fan.at, texel, passed_depth), begin_g, end_g).g;
 }
 
 fn fan_far_side(fan: fan_Fan, g: f32, layer: u32) -> f32 {

@@ -20,6 +20,9 @@
 //! `bench/measurements.md` has what each contributes.
 //! - A blocker is in front of the receiver's *plane* at the tap, so that tilted receivers do not block themselves, and nearer to
 //!   the light than the receiver, since segments to the light only come nearer to it.
+//! - A receiver that faces away from the light's middle and sees a part of it is compared from its front, where what blocks is farther from
+//!   the light than its plane (`map_receiver.wesl`). That plane is nearly edge-on in the map, and of four texels some are behind it: so
+//!   one texel decides, the nearest in front.
 //! - The search covers all scales from the receiver to the nearest caster, denser near the receiver, and counts a blocker only where it
 //!   hides a point of the light, or nearly. The sketch's window, as wide as the nearest caster asks for, mostly finds what hides nothing.
 //! - *Contacts* (`attach_contacts`): one mean depth lets light through under blockers much nearer than it. Where the nearest one is so near that
