@@ -1122,10 +1122,7 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
         }
         case default {
             let held = saturate(t - convolution_convolution_offset(answer_TERM_COUNT));
-            var further: array<vec4f, 4>;
-            for (var i = 0u; i < 4u; i++) {
-                further[i] = answer_sum_of(i + 1u, texels, cuts) / max(count, 1e-6);
-            }
+            let further = array<vec4f, 4>(answer_sum_of(1u, texels, cuts) / max(count, 1e-6), answer_sum_of(2u, texels, cuts) / max(count, 1e-6), answer_sum_of(3u, texels, cuts) / max(count, 1e-6), answer_sum_of(4u, texels, cuts) / max(count, 1e-6));
             let terms = answer_convolution_sum(2.0 * mean - 1.0, 2.0 * further[0] - 1.0, held);
             lit = convolution_convolution_visibility(terms);
             let terms_t = answer_convolution_sum(2.0 * further[1] - 1.0, 2.0 * further[2] - 1.0, held);
@@ -1893,7 +1890,7 @@ fn sums_count_of(texels: sums_Texels) -> f32 {
 
 fn sums_load_table(which: u32, texel: vec2i) -> sums_Sum {
     sums_note_reads(1u);
-    if uniform_BASIS == uniform_BASIS_CONVOLUTION {
+    if uniform_BASIS == uniform_BASIS_CONVOLUTION && which > 0u {
         switch which {
             case 1u {
                 return textureLoad(sums_table_1, texel, 0);
@@ -1904,11 +1901,8 @@ fn sums_load_table(which: u32, texel: vec2i) -> sums_Sum {
             case 3u {
                 return textureLoad(sums_table_3, texel, 0);
             }
-            case 4u {
-                return textureLoad(sums_table_4, texel, 0);
-            }
             case default {
-            
+                return textureLoad(sums_table_4, texel, 0);
             }
         }
     }
