@@ -66,7 +66,7 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     workgroupBarrier();
     let bits_at = bits_first_word_of(pixel_index);
     if is_first_pass && settings_is_on(bits_settings, settings_FIRST_TRIANGLES) {
-        open_points_open_before_casters(receiver, sight.rays);
+        open_points_open_before_casters(receiver, sight_rays_of(sight, true));
     }
     else {
         for (var word = 0u; word < bits_settings.word_count; word++) {
@@ -541,6 +541,12 @@ var<workgroup> group_group_low: vec3f;
 
 var<workgroup> group_group_high: vec3f;
 
+var<workgroup> group_light_low: vec3f;
+
+var<workgroup> group_light_high: vec3f;
+
+var<workgroup> group_shared_frame: block_shafts_LightFrame;
+
 var<workgroup> group_shaft: array<vec4f, shaft_SHAFT_PLANES>;
 
 var<workgroup> group_block_low: array<vec3f, group_BLOCKS>;
@@ -553,6 +559,10 @@ var<workgroup> group_block_upwards: array<vec4f, group_BLOCKS>;
 
 fn group_group_box() -> shaft_Box {
     return shaft_Box(group_group_low, group_group_high);
+}
+
+fn group_shared_light_box() -> shaft_Box {
+    return shaft_Box(group_light_low, group_light_high);
 }
 
 fn group_light_box(group: shaft_Box, low: vec3f, high: vec3f) -> shaft_Box {
@@ -574,7 +584,7 @@ fn group_shaft_meets_box(box: shaft_Box) -> bool {
     return !is_outside;
 }
 
-fn group_shaft_meets_triangle(a: vec3f, b: vec3f, c: vec3f, flags: u32, group: shaft_Box, light: shaft_Box) -> bool {
+fn group_shaft_meets_triangle(a: vec3f, b: vec3f, c: vec3f, flags: u32) -> bool {
     var is_outside = false;
     for (var i = 0u; i < shaft_SHAFT_PLANES; i += 3u) {
         is_outside |= shaft_triangle_is_outside(group_shaft[i], a, b, c);
@@ -586,8 +596,8 @@ fn group_shaft_meets_triangle(a: vec3f, b: vec3f, c: vec3f, flags: u32, group: s
     }
     if settings_is_on(bits_settings, settings_CUT_BY_PLANE) {
         let normal = cross(b - a, c - a);
-        let side_of_group = shaft_side_of_box(normal, a, group);
-        let side_of_light = shaft_side_of_box(normal, a, light);
+        let side_of_group = shaft_side_of_box(normal, a, group_group_box());
+        let side_of_light = shaft_side_of_box(normal, a, group_shared_light_box());
         if side_of_group != 0.0 && side_of_group == side_of_light {
             return false;
         }
@@ -603,7 +613,7 @@ fn group_group_light_frame() -> block_shafts_LightFrame {
 }
 
 fn group_share_block(block: u32) {
-    let frame = group_group_light_frame();
+    let frame = group_shared_frame;
     var low = group_positions[group_BLOCK * block].xyz;
     var high = low;
     var low_in_frame = block_shafts_in_frame(frame, low - frame.origin);
@@ -627,6 +637,10 @@ fn group_share_block(block: u32) {
 fn group_share_box_and_shaft(lane: u32, x: vec3f) {
     group_positions[lane] = vec4f(x, ray_offset_ray_offset_m(bits_settings, x));
     workgroupBarrier();
+    if lane == 0u {
+        group_shared_frame = group_group_light_frame();
+    }
+    workgroupBarrier();
     if lane < group_BLOCKS {
         group_share_block(lane);
     }
@@ -640,11 +654,13 @@ fn group_share_box_and_shaft(lane: u32, x: vec3f) {
         }
         group_group_low = low;
         group_group_high = high;
+        let light = group_light_box(group_group_box(), bits_settings.light_min, bits_settings.light_max);
+        group_light_low = light.low;
+        group_light_high = light.high;
     }
     workgroupBarrier();
     if lane < shaft_SHAFT_PLANES {
-        let group = group_group_box();
-        group_shaft[lane] = shaft_shaft_plane(lane, group, group_light_box(group, bits_settings.light_min, bits_settings.light_max));
+        group_shaft[lane] = shaft_shaft_plane(lane, group_group_box(), group_shared_light_box());
     }
 }
 
@@ -739,7 +755,7 @@ fn test_triangles_test_point(index: u32, planes: triangle_test_Planes, flags: u3
 
 fn test_triangles_test_few(index: u32, sight: sight_Sight, window: shadow_window_LightWindow, grid: test_triangles_Grid, middle: vec3f, half_box: vec3f) {
     let triangle = waiting_waiting_at(index, sight);
-    let cells = test_triangles_cells_of(grid, shadow_window_shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c));
+    let cells = test_triangles_cells_of(grid, shadow_window_shadow_box(window, sight.axis, triangle.x, triangle.a, triangle.b, triangle.c));
     let planes = waiting_planes_of_waiting(triangle, sight, middle, half_box);
     if planes.is_missed {
         return;
@@ -809,7 +825,8 @@ fn test_triangles_test_block(block: u32, sight: sight_Sight, is_single: bool) {
     if is_single {
         half_box = vec3f();
     }
-    let window = shadow_window_light_window(sight.rays, middle, half_box, length(sight.to_center_open - sight.rays.to_center));
+    let rays = sight_rays_of(sight, true);
+    let window = shadow_window_light_window(rays, middle, half_box, length(sight_rays_of(sight, false).to_center - rays.to_center));
     let grid = test_triangles_grid_of_cells();
     let takes_few = !test_triangles_USES_TABLE && !open_points_HAS_TINT && !is_single;
     for (var first = 0u; first < count; first += 32u) {
@@ -820,7 +837,7 @@ fn test_triangles_test_block(block: u32, sight: sight_Sight, is_single: bool) {
         for (; candidates != 0u; candidates &= candidates - 1u) {
             let k = firstTrailingBit(candidates);
             let triangle = waiting_waiting_at(first + k, sight);
-            let shadow = shadow_window_shadow_box(window, triangle.x, triangle.a, triangle.b, triangle.c);
+            let shadow = shadow_window_shadow_box(window, sight.axis, triangle.x, triangle.a, triangle.b, triangle.c);
             let is_near = !shadow.is_beside && (!shadow.is_bounded || (all(shadow.low <= middle.xy + half_box.xy) && all(shadow.high >= middle.xy - half_box.xy)));
             let cells = test_triangles_cells_of(grid, shadow);
             let touched = cells.high - cells.low + 1u;
@@ -829,8 +846,10 @@ fn test_triangles_test_block(block: u32, sight: sight_Sight, is_single: bool) {
             many |= select(0u, 1u << k, is_near && !is_few);
         }
         counters_tally(work_COUNT_PAIRS_NEAR, countOneBits(few | many));
-        for (; few != 0u; few &= few - 1u) {
-            test_triangles_test_few(first + firstTrailingBit(few), sight, window, grid, middle, half_box);
+        if !test_triangles_USES_TABLE && !open_points_HAS_TINT {
+            for (; few != 0u; few &= few - 1u) {
+                test_triangles_test_few(first + firstTrailingBit(few), sight, window, grid, middle, half_box);
+            }
         }
         for (; many != 0u; many &= many - 1u) {
             test_triangles_test_many(first + firstTrailingBit(many), sight, middle, half_box, axes, is_single);
@@ -842,12 +861,12 @@ fn test_triangles_turns_of(triangle_count: u32, is_single: bool) -> u32 {
     return 36u + 2u * bits_settings.word_count + triangle_count * select(bits_settings.turns_per_triangle, 2u, is_single);
 }
 
-fn test_triangles_test_waiting_triangles(lane: u32, is_live: bool, sight: sight_Sight, frame: block_shafts_LightFrame, is_single: bool) -> bool {
+fn test_triangles_test_waiting_triangles(lane: u32, is_live: bool, sight: sight_Sight, is_single: bool) -> bool {
     let word_count = select(bits_settings.word_count, 1u, is_single);
     if lane == 0u {
         atomicStore(&test_triangles_open_count, 0u);
     }
-    waiting_meet_blocks(lane, frame);
+    waiting_meet_blocks(lane);
     workgroupBarrier();
     if is_live && open_points_any_open(word_count) {
         test_triangles_test_block(lane / group_BLOCK, sight, is_single);
@@ -917,7 +936,8 @@ fn waiting_facing_of(triangle: waiting_Waiting, x: vec3f) -> u32 {
     return select(0u, 1u, dot(normal, triangle.a - x) > 0.0);
 }
 
-fn waiting_meet_blocks(lane: u32, frame: block_shafts_LightFrame) {
+fn waiting_meet_blocks(lane: u32) {
+    let frame = group_shared_frame;
     let count = min(atomicLoad(&waiting_waiting_count), waiting_MOST_WAITING);
     for (var slot = lane; slot < count; slot += group_GROUP) {
         let a = block_shafts_in_frame(frame, waiting_waiting[3u * slot].xyz - frame.origin);
@@ -993,7 +1013,7 @@ fn walk_rest_of(at: walk_Walk, extent: walk_Extent) -> u32 {
     return select(walk_ALL_DONE, 32u * at.next_super, at.next_super < extent.supers);
 }
 
-fn walk_enter_cluster(at: ptr<function, walk_Walk>, lane: u32, required: u32, triangle_count: u32, group: shaft_Box, light: shaft_Box) {
+fn walk_enter_cluster(at: ptr<function, walk_Walk>, lane: u32, required: u32, triangle_count: u32) {
     let cluster = (*at).cluster_base + firstTrailingBit((*at).clusters);
     (*at).clusters &= (*at).clusters - 1u;
     let index = 64u * cluster + lane;
@@ -1006,7 +1026,7 @@ fn walk_enter_cluster(at: ptr<function, walk_Walk>, lane: u32, required: u32, tr
     let corner_b = bits_triangles[source + 1u];
     let corner_c = bits_triangles[source + 2u].xyz;
     let flags = u32(corner_a.w);
-    if (flags & required) == required && group_shaft_meets_triangle(corner_a.xyz, corner_b.xyz, corner_c, flags, group, light) {
+    if (flags & required) == required && group_shaft_meets_triangle(corner_a.xyz, corner_b.xyz, corner_c, flags) {
         waiting_add_waiting(corner_a, corner_b, corner_c, source);
     }
 }
@@ -1046,9 +1066,6 @@ struct walk_Outcome {
 }
 
 fn walk_walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first_cluster: u32, was_single: bool, searches: bool) -> walk_Outcome {
-    let group = group_group_box();
-    let light = group_light_box(group, bits_settings.light_min, bits_settings.light_max);
-    let frame = group_group_light_frame();
     let extent = walk_extent_of_walks();
     var at = walk_walk_from(first_cluster, extent.supers);
     var waits = 0u;
@@ -1060,9 +1077,9 @@ fn walk_walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first_clust
         var is_last = false;
         turns += 8u;
         if at.clusters != 0u {
-            walk_enter_cluster(&at, lane, required, extent.triangles, group, light);
+            walk_enter_cluster(&at, lane, required, extent.triangles);
             if waits == 0u && at.clusters != 0u {
-                walk_enter_cluster(&at, lane, required, extent.triangles, group, light);
+                walk_enter_cluster(&at, lane, required, extent.triangles);
             }
         }
         else if at.supers == 0u && at.next_super >= extent.supers {
@@ -1092,7 +1109,7 @@ fn walk_walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first_clust
         let is_over = turns > bits_settings.most_turns;
         if waits > waiting_MOST_WAITING - group_GROUP || is_last || is_over {
             turns += test_triangles_turns_of(waits, is_single);
-            let is_dark = test_triangles_test_waiting_triangles(lane, is_live, sight, frame, is_single);
+            let is_dark = test_triangles_test_waiting_triangles(lane, is_live, sight, is_single);
             waits = 0u;
             if is_last || (is_dark && settings_is_on(bits_settings, settings_STOP_WHEN_OCCLUDED)) {
                 break;
@@ -1169,9 +1186,24 @@ fn bits_bits_of_four(is_set: vec4<bool>) -> u32 {
     return bits.x | bits.y | bits.z | bits.w;
 }
 
+fn bits_at_one(plane: vec4f, point: vec3f) -> f32 {
+    let across = plane.x + plane.y * point.x + plane.z * point.y;
+    if bits_IS_FLAT {
+        return across;
+    }
+    return across + plane.w * point.z;
+}
+
+fn bits_is_hidden(planes: triangle_test_Planes, point: vec3f) -> bool {
+    let inside = min(min(bits_at_one(planes.edge_a, point), bits_at_one(planes.edge_b, point)), bits_at_one(planes.edge_c, point));
+    return inside >= 0.0 && bits_at_one(planes.support, point) < 0.0;
+}
+
 fn bits_hidden_of_four(planes: triangle_test_Planes, at: u32) -> u32 {
-    let inside = min(min(bits_at_four(planes.edge_a, at), bits_at_four(planes.edge_b, at)), bits_at_four(planes.edge_c, at));
-    return bits_bits_of_four((inside >= vec4f(0.0)) & (bits_at_four(planes.support, at) < vec4f(0.0)));
+    let x = bits_light_words[at];
+    let y = bits_light_words[at + 1u];
+    let z = bits_light_words[at + 2u];
+    return select(0u, 1u, bits_is_hidden(planes, vec3f(x.x, y.x, z.x))) | select(0u, 2u, bits_is_hidden(planes, vec3f(x.y, y.y, z.y))) | select(0u, 4u, bits_is_hidden(planes, vec3f(x.z, y.z, z.z))) | select(0u, 8u, bits_is_hidden(planes, vec3f(x.w, y.w, z.w)));
 }
 
 fn bits_hidden_exactly(planes: triangle_test_Planes, word: u32) -> u32 {
@@ -1390,7 +1422,7 @@ fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3
 struct shadow_window_LightWindow {
     right: vec3f,
     up: vec3f,
-    towards: vec3f,
+    side: f32,
     to_light: vec3f,
     half_depth: f32,
     tangent_low: vec2f,
@@ -1418,7 +1450,7 @@ fn shadow_window_light_window(rays: points_Rays, middle: vec3f, half_box: vec3f,
     window.right = rays.right;
     window.up = rays.up;
     let along = dot(rays.to_center, rays.axis) + middle.z;
-    window.towards = select(-rays.axis, rays.axis, along >= 0.0);
+    window.side = select(-1.0, 1.0, along >= 0.0);
     window.to_light = vec3f(dot(rays.to_center, rays.right), dot(rays.to_center, rays.up), abs(along));
     window.half_depth = half_box.z;
     let depth = window.to_light.z;
@@ -1436,13 +1468,13 @@ fn shadow_window_light_window(rays: points_Rays, middle: vec3f, half_box: vec3f,
     return window;
 }
 
-fn shadow_window_shadow_box(window: shadow_window_LightWindow, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f) -> shadow_window_ShadowBox {
+fn shadow_window_shadow_box(window: shadow_window_LightWindow, axis: vec3f, x: vec3f, corner_a: vec3f, corner_b: vec3f, corner_c: vec3f) -> shadow_window_ShadowBox {
     let a = corner_a - x;
     let b = corner_b - x;
     let c = corner_c - x;
     let across = vec3f(dot(a, window.right), dot(b, window.right), dot(c, window.right));
     let upwards = vec3f(dot(a, window.up), dot(b, window.up), dot(c, window.up));
-    let ahead = vec3f(dot(a, window.towards), dot(b, window.towards), dot(c, window.towards));
+    let ahead = window.side * vec3f(dot(a, axis), dot(b, axis), dot(c, axis));
     let room = shadow_window_CONE_SLACK * (abs(across) + abs(upwards) + abs(ahead));
     let is_beside = window.has_cone && (all(across > window.tangent_high.x * ahead + room) || all(across < window.tangent_low.x * ahead - room) || all(upwards > window.tangent_high.y * ahead + room) || all(upwards < window.tangent_low.y * ahead - room) || all(ahead < -room));
     let is_bounded = window.is_before && all(abs(across) + abs(upwards) < shadow_window_MOST_TANGENT * ahead);
@@ -1458,16 +1490,17 @@ fn shadow_window_shadow_box(window: shadow_window_LightWindow, x: vec3f, corner_
 }
 
 struct sight_Sight {
-    rays: points_Rays,
+    right: vec3f,
+    up: vec3f,
+    axis: vec3f,
     x: vec3f,
     x_open: vec3f,
-    to_center_open: vec3f,
     depth_error_m: vec3f
 }
 
 fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
-    let noise = noise_noise_of_pixel(pixel);
-    return sight_Sight(points_rays_from(settings, light, x, x, noise), x, x_open, points_rays_from(settings, light, x_open, x, noise).to_center, inputs_depth_error_m(x));
+    let rays = points_rays_from(settings, light, x, x, noise_noise_of_pixel(pixel));
+    return sight_Sight(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
 }
 
 fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
@@ -1480,9 +1513,9 @@ fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
 }
 
 fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> points_Rays {
-    var rays = sight.rays;
-    rays.to_center = select(sight.to_center_open, sight.rays.to_center, is_closed);
-    return rays;
+    let is_sun = inputs_light_source.kind == light_KIND_SUN;
+    let from_center = select(sight_origin_of(sight, is_closed) - inputs_light_source.center_in_world, sight.axis, is_sun);
+    return points_Rays(-from_center, sight.right, sight.up, sight.axis, select(1.0 + points_END_MARGIN, 0.0, is_sun));
 }
 
 const triangle_test_PLANE_SLACK = 9.5367431640625e-7;

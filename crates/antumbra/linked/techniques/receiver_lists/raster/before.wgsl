@@ -16,7 +16,7 @@ fn raster_before(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let pixel = bits_pixel_of(pixel_index);
     let receiver = inputs_load_receiver(pixel);
     let sight = sight_sight_of(bits_settings, inputs_light_source, pixel, receiver);
-    let plane = points_plane_for(sight.rays, receiver.normal_in_world);
+    let plane = points_plane_for(sight_rays_of(sight, true), receiver.normal_in_world);
     let first_word = bits_first_word_of(pixel_index);
     for (var word = 0u; word < bits_settings.word_count; word++) {
         open_bits_bits[first_word + word] = open_bits_in_front_of(plane, word);
@@ -349,21 +349,32 @@ fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3
 }
 
 struct sight_Sight {
-    rays: points_Rays,
+    right: vec3f,
+    up: vec3f,
+    axis: vec3f,
     x: vec3f,
     x_open: vec3f,
-    to_center_open: vec3f,
     depth_error_m: vec3f
 }
 
 fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
-    let noise = noise_noise_of_pixel(pixel);
-    return sight_Sight(points_rays_from(settings, light, x, x, noise), x, x_open, points_rays_from(settings, light, x_open, x, noise).to_center, inputs_depth_error_m(x));
+    let rays = points_rays_from(settings, light, x, x, noise_noise_of_pixel(pixel));
+    return sight_Sight(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
 }
 
 fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
     let x = receiver.pos_in_world;
     return sight_sight_from(settings, light, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
+}
+
+fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
+    return select(sight.x_open, sight.x, is_closed);
+}
+
+fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> points_Rays {
+    let is_sun = inputs_light_source.kind == light_KIND_SUN;
+    let from_center = select(sight_origin_of(sight, is_closed) - inputs_light_source.center_in_world, sight.axis, is_sun);
+    return points_Rays(-from_center, sight.right, sight.up, sight.axis, select(1.0 + points_END_MARGIN, 0.0, is_sun));
 }
 
 struct settings_SampleSettings {

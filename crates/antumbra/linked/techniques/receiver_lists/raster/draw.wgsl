@@ -437,22 +437,24 @@ fn bits_point_at(index: u32) -> vec3f {
     return vec3f(bits_light_words[at][index & 3u], bits_light_words[at + 1u][index & 3u], bits_light_words[at + 2u][index & 3u]);
 }
 
-fn bits_at_four(plane: vec4f, at: u32) -> vec4f {
-    let across = plane.x + plane.y * bits_light_words[at] + plane.z * bits_light_words[at + 1u];
+fn bits_at_one(plane: vec4f, point: vec3f) -> f32 {
+    let across = plane.x + plane.y * point.x + plane.z * point.y;
     if bits_IS_FLAT {
         return across;
     }
-    return across + plane.w * bits_light_words[at + 2u];
+    return across + plane.w * point.z;
 }
 
-fn bits_bits_of_four(is_set: vec4<bool>) -> u32 {
-    let bits = select(vec4u(0u), vec4u(1u, 2u, 4u, 8u), is_set);
-    return bits.x | bits.y | bits.z | bits.w;
+fn bits_is_hidden(planes: triangle_test_Planes, point: vec3f) -> bool {
+    let inside = min(min(bits_at_one(planes.edge_a, point), bits_at_one(planes.edge_b, point)), bits_at_one(planes.edge_c, point));
+    return inside >= 0.0 && bits_at_one(planes.support, point) < 0.0;
 }
 
 fn bits_hidden_of_four(planes: triangle_test_Planes, at: u32) -> u32 {
-    let inside = min(min(bits_at_four(planes.edge_a, at), bits_at_four(planes.edge_b, at)), bits_at_four(planes.edge_c, at));
-    return bits_bits_of_four((inside >= vec4f(0.0)) & (bits_at_four(planes.support, at) < vec4f(0.0)));
+    let x = bits_light_words[at];
+    let y = bits_light_words[at + 1u];
+    let z = bits_light_words[at + 2u];
+    return select(0u, 1u, bits_is_hidden(planes, vec3f(x.x, y.x, z.x))) | select(0u, 2u, bits_is_hidden(planes, vec3f(x.y, y.y, z.y))) | select(0u, 4u, bits_is_hidden(planes, vec3f(x.z, y.z, z.z))) | select(0u, 8u, bits_is_hidden(planes, vec3f(x.w, y.w, z.w)));
 }
 
 fn bits_hidden_exactly(planes: triangle_test_Planes, word: u32) -> u32 {
@@ -602,16 +604,17 @@ fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3
 }
 
 struct sight_Sight {
-    rays: points_Rays,
+    right: vec3f,
+    up: vec3f,
+    axis: vec3f,
     x: vec3f,
     x_open: vec3f,
-    to_center_open: vec3f,
     depth_error_m: vec3f
 }
 
 fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
-    let noise = noise_noise_of_pixel(pixel);
-    return sight_Sight(points_rays_from(settings, light, x, x, noise), x, x_open, points_rays_from(settings, light, x_open, x, noise).to_center, inputs_depth_error_m(x));
+    let rays = points_rays_from(settings, light, x, x, noise_noise_of_pixel(pixel));
+    return sight_Sight(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
 }
 
 fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
@@ -619,9 +622,9 @@ fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
 }
 
 fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> points_Rays {
-    var rays = sight.rays;
-    rays.to_center = select(sight.to_center_open, sight.rays.to_center, is_closed);
-    return rays;
+    let is_sun = inputs_light_source.kind == light_KIND_SUN;
+    let from_center = select(sight_origin_of(sight, is_closed) - inputs_light_source.center_in_world, sight.axis, is_sun);
+    return points_Rays(-from_center, sight.right, sight.up, sight.axis, select(1.0 + points_END_MARGIN, 0.0, is_sun));
 }
 
 const triangle_test_PLANE_SLACK = 9.5367431640625e-7;
