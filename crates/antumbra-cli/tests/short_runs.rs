@@ -13,6 +13,9 @@ use serde_json::Value;
 /// Few pixels of a scene of few triangles, by two cheap techniques.
 const BENCH: &str = "bench builtin:overlap --techniques hard,pcf --sizes 32x18 --frames 2 --warm-up 0 --json t.json";
 const COMPARE: &str = "compare builtin:overlap --techniques hard,pcf --size 32x18 --samples 4 --frames 1 -o out";
+/// Techniques whose programs compile quickly, in the order of all: two for each of three interruptions, and more that are left.
+#[cfg(unix)]
+const SOON_COMPILED: [&str; 9] = ["hard", "pcf", "pcss", "multi_view", "vsm", "evsm", "esm", "convolution", "moment"];
 const REPRODUCE: &str = "reproduce lauritzen-2008/figure6 --size 16x9 --samples 1 --frames 1 -o papers";
 
 fn words(line: &str) -> Vec<&str> {
@@ -34,10 +37,6 @@ fn works(dir: &Path, line: &str) -> String {
 #[track_caller]
 fn read(path: &Path) -> Value {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
-
-fn all_techniques() -> Vec<&'static str> {
-    antumbra::TechniqueKind::ALL.iter().map(|kind| kind.name()).collect()
 }
 
 /// Names of rows that have a result.
@@ -91,7 +90,8 @@ fn a_bench_that_is_stopped_is_resumed() {
         return;
     }
     let path = dir.path().join("t.json");
-    let all = "bench builtin:overlap --techniques all --sizes 32x18 --frames 2 --warm-up 0 --json t.json";
+    let list = format!("bench builtin:overlap --techniques {} --sizes 32x18", SOON_COMPILED.join(","));
+    let all = format!("{list} --frames 2 --warm-up 0 --json t.json");
     for (signal, exit) in [("-TERM", Some(130)), ("-KILL", None), ("-INT", Some(130))] {
         let before = rows_so_far(&path);
         assert_eq!(stop(dir.path(), &format!("{all} --resume"), signal, || rows_so_far(&path) > before + 1), exit);
@@ -99,13 +99,12 @@ fn a_bench_that_is_stopped_is_resumed() {
     }
     let there = read(&path);
     let done = there["rows"].as_array().unwrap();
-    let planned = antumbra::TechniqueKind::ALL.len();
-    assert_eq!(done.len() + there["missing"].as_array().unwrap().len(), planned);
+    assert_eq!(done.len() + there["missing"].as_array().unwrap().len(), SOON_COMPILED.len());
     works(dir.path(), &format!("{all} --resume"));
     let resumed = read(&path);
     let rows = resumed["rows"].as_array().unwrap();
     let names: Vec<_> = rows.iter().map(|row| row["technique"].as_str().unwrap()).collect();
-    assert_eq!(names, all_techniques(), "the plan's order");
+    assert_eq!(names, SOON_COMPILED, "the plan's order");
     assert!(done.iter().all(|row| rows.contains(row)), "what was measured stays as it was");
     assert_eq!(resumed["missing"], serde_json::json!([]));
 }
