@@ -154,7 +154,7 @@ fn a_scene_far_from_the_origin_is_as_at_it() {
     fs::write(dir.path().join("far.gltf"), far.to_string()).unwrap();
 
     let options =
-        "--techniques multi_view,sample_based,alias_free,pcss --set multi_view.samples=16 --samples 64 --frames 1";
+        "--techniques multi_view,sample_based,alias_free,pcss --set multi_view.samples=64 --samples 64 --frames 1";
     let rows = |name: &str| {
         run(&format!("compare {name}.gltf {options} --size 64x36 -o {name}"));
         read(&format!("{name}/metrics.json"))["rows"].as_array().unwrap().clone()

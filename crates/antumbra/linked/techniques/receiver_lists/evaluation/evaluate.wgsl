@@ -60,7 +60,7 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     let pixel_index = list[min(first_slot + lane, listed - 1u)];
     let pixel = bits_pixel_of(pixel_index);
     let receiver = inputs_load_receiver(pixel);
-    let sight = sight_sight_of(bits_settings, inputs_light_source, pixel, receiver);
+    let sight = sight_sight_of(bits_settings, pixel, receiver);
     group_share_box_and_shaft(lane, receiver.pos_in_world);
     waiting_clear_waiting(lane);
     workgroupBarrier();
@@ -1187,16 +1187,14 @@ fn bits_bits_of_four(is_set: vec4<bool>) -> u32 {
 }
 
 fn bits_at_one(plane: vec4f, point: vec3f) -> f32 {
-    let across = plane.x + plane.y * point.x + plane.z * point.y;
     if bits_IS_FLAT {
-        return across;
+        return plane.x + plane.y * point.x + plane.z * point.y;
     }
-    return across + plane.w * point.z;
+    return points_at_point(plane, point);
 }
 
 fn bits_is_hidden(planes: triangle_test_Planes, point: vec3f) -> bool {
-    let inside = min(min(bits_at_one(planes.edge_a, point), bits_at_one(planes.edge_b, point)), bits_at_one(planes.edge_c, point));
-    return inside >= 0.0 && bits_at_one(planes.support, point) < 0.0;
+    return triangle_test_is_hit(vec4f(bits_at_one(planes.edge_a, point), bits_at_one(planes.edge_b, point), bits_at_one(planes.edge_c, point), bits_at_one(planes.support, point)));
 }
 
 fn bits_hidden_of_four(planes: triangle_test_Planes, at: u32) -> u32 {
@@ -1378,12 +1376,16 @@ fn points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
+fn points_to_center_from(light: light_LightSource, axis: vec3f, origin: vec3f) -> vec3f {
+    return select(light.center_in_world - origin, -axis, light.kind == light_KIND_SUN);
+}
+
+fn points_inverse_end_of(light: light_LightSource) -> f32 {
+    return select(1.0 + points_END_MARGIN, 0.0, light.kind == light_KIND_SUN);
+}
+
 fn points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> points_Rays {
-    var rays = points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + points_END_MARGIN);
-    if light.kind == light_KIND_SUN {
-        rays.to_center = -light.axis_in_world;
-        rays.inverse_end = 0.0;
-    }
+    var rays = points_Rays(points_to_center_from(light, light.axis_in_world, origin), light.right_in_world, light.up_in_world, light.axis_in_world, points_inverse_end_of(light));
     if light.kind == light_KIND_SPHERE {
         let towards = normalize(light.center_in_world - position);
         let across = cross(light.up_in_world, towards);
@@ -1498,14 +1500,14 @@ struct sight_Sight {
     depth_error_m: vec3f
 }
 
-fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
-    let rays = points_rays_from(settings, light, x, x, noise_noise_of_pixel(pixel));
+fn sight_sight_from(settings: settings_SampleSettings, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+    let rays = points_rays_from(settings, inputs_light_source, x, x, noise_noise_of_pixel(pixel));
     return sight_Sight(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
 }
 
-fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
+fn sight_sight_of(settings: settings_SampleSettings, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
     let x = receiver.pos_in_world;
-    return sight_sight_from(settings, light, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
+    return sight_sight_from(settings, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
 }
 
 fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
@@ -1513,9 +1515,8 @@ fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
 }
 
 fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> points_Rays {
-    let is_sun = inputs_light_source.kind == light_KIND_SUN;
-    let from_center = select(sight_origin_of(sight, is_closed) - inputs_light_source.center_in_world, sight.axis, is_sun);
-    return points_Rays(-from_center, sight.right, sight.up, sight.axis, select(1.0 + points_END_MARGIN, 0.0, is_sun));
+    let to_center = points_to_center_from(inputs_light_source, sight.axis, sight_origin_of(sight, is_closed));
+    return points_Rays(to_center, sight.right, sight.up, sight.axis, points_inverse_end_of(inputs_light_source));
 }
 
 const triangle_test_PLANE_SLACK = 9.5367431640625e-7;

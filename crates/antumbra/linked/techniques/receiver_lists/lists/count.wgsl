@@ -268,12 +268,16 @@ fn points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
+fn points_to_center_from(light: light_LightSource, axis: vec3f, origin: vec3f) -> vec3f {
+    return select(light.center_in_world - origin, -axis, light.kind == light_KIND_SUN);
+}
+
+fn points_inverse_end_of(light: light_LightSource) -> f32 {
+    return select(1.0 + points_END_MARGIN, 0.0, light.kind == light_KIND_SUN);
+}
+
 fn points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> points_Rays {
-    var rays = points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + points_END_MARGIN);
-    if light.kind == light_KIND_SUN {
-        rays.to_center = -light.axis_in_world;
-        rays.inverse_end = 0.0;
-    }
+    var rays = points_Rays(points_to_center_from(light, light.axis_in_world, origin), light.right_in_world, light.up_in_world, light.axis_in_world, points_inverse_end_of(light));
     if light.kind == light_KIND_SPHERE {
         let towards = normalize(light.center_in_world - position);
         let across = cross(light.up_in_world, towards);

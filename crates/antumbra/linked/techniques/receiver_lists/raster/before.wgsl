@@ -15,7 +15,7 @@ fn raster_before(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let pixel_index = list[slot];
     let pixel = bits_pixel_of(pixel_index);
     let receiver = inputs_load_receiver(pixel);
-    let sight = sight_sight_of(bits_settings, inputs_light_source, pixel, receiver);
+    let sight = sight_sight_of(bits_settings, pixel, receiver);
     let plane = points_plane_for(sight_rays_of(sight, true), receiver.normal_in_world);
     let first_word = bits_first_word_of(pixel_index);
     for (var word = 0u; word < bits_settings.word_count; word++) {
@@ -315,12 +315,16 @@ fn points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
+fn points_to_center_from(light: light_LightSource, axis: vec3f, origin: vec3f) -> vec3f {
+    return select(light.center_in_world - origin, -axis, light.kind == light_KIND_SUN);
+}
+
+fn points_inverse_end_of(light: light_LightSource) -> f32 {
+    return select(1.0 + points_END_MARGIN, 0.0, light.kind == light_KIND_SUN);
+}
+
 fn points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> points_Rays {
-    var rays = points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + points_END_MARGIN);
-    if light.kind == light_KIND_SUN {
-        rays.to_center = -light.axis_in_world;
-        rays.inverse_end = 0.0;
-    }
+    var rays = points_Rays(points_to_center_from(light, light.axis_in_world, origin), light.right_in_world, light.up_in_world, light.axis_in_world, points_inverse_end_of(light));
     if light.kind == light_KIND_SPHERE {
         let towards = normalize(light.center_in_world - position);
         let across = cross(light.up_in_world, towards);
@@ -357,14 +361,14 @@ struct sight_Sight {
     depth_error_m: vec3f
 }
 
-fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
-    let rays = points_rays_from(settings, light, x, x, noise_noise_of_pixel(pixel));
+fn sight_sight_from(settings: settings_SampleSettings, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+    let rays = points_rays_from(settings, inputs_light_source, x, x, noise_noise_of_pixel(pixel));
     return sight_Sight(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
 }
 
-fn sight_sight_of(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
+fn sight_sight_of(settings: settings_SampleSettings, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
     let x = receiver.pos_in_world;
-    return sight_sight_from(settings, light, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
+    return sight_sight_from(settings, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
 }
 
 fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
@@ -372,9 +376,8 @@ fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
 }
 
 fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> points_Rays {
-    let is_sun = inputs_light_source.kind == light_KIND_SUN;
-    let from_center = select(sight_origin_of(sight, is_closed) - inputs_light_source.center_in_world, sight.axis, is_sun);
-    return points_Rays(-from_center, sight.right, sight.up, sight.axis, select(1.0 + points_END_MARGIN, 0.0, is_sun));
+    let to_center = points_to_center_from(inputs_light_source, sight.axis, sight_origin_of(sight, is_closed));
+    return points_Rays(to_center, sight.right, sight.up, sight.axis, points_inverse_end_of(inputs_light_source));
 }
 
 struct settings_SampleSettings {

@@ -57,7 +57,7 @@ fn fragment(fragment: Fragment) {
             continue;
         }
         let place = texel_receivers_place_of(part.first + i, pixel_index, STORED_POSITIONS);
-        let sight = sight_sight_from(bits_settings, inputs_light_source, bits_pixel_of(pixel_index), place.x, place.x_open);
+        let sight = sight_sight_from(bits_settings, bits_pixel_of(pixel_index), place.x, place.x_open);
         let planes = triangle_test_planes_of(sight_rays_of(sight, is_closed), sight_origin_of(sight, is_closed), corner_a.xyz, corner_b.xyz, corner_c, is_closed, corner_b.w * sight.depth_error_m, middle, half_box);
         if planes.is_missed {
             continue;
@@ -438,16 +438,14 @@ fn bits_point_at(index: u32) -> vec3f {
 }
 
 fn bits_at_one(plane: vec4f, point: vec3f) -> f32 {
-    let across = plane.x + plane.y * point.x + plane.z * point.y;
     if bits_IS_FLAT {
-        return across;
+        return plane.x + plane.y * point.x + plane.z * point.y;
     }
-    return across + plane.w * point.z;
+    return points_at_point(plane, point);
 }
 
 fn bits_is_hidden(planes: triangle_test_Planes, point: vec3f) -> bool {
-    let inside = min(min(bits_at_one(planes.edge_a, point), bits_at_one(planes.edge_b, point)), bits_at_one(planes.edge_c, point));
-    return inside >= 0.0 && bits_at_one(planes.support, point) < 0.0;
+    return triangle_test_is_hit(vec4f(bits_at_one(planes.edge_a, point), bits_at_one(planes.edge_b, point), bits_at_one(planes.edge_c, point), bits_at_one(planes.support, point)));
 }
 
 fn bits_hidden_of_four(planes: triangle_test_Planes, at: u32) -> u32 {
@@ -562,12 +560,16 @@ fn points_turned(settings: settings_SampleSettings, noise: f32, right: vec3f, up
     return mat2x3f(cos(angle) * right + sin(angle) * up, cos(angle) * up - sin(angle) * right);
 }
 
+fn points_to_center_from(light: light_LightSource, axis: vec3f, origin: vec3f) -> vec3f {
+    return select(light.center_in_world - origin, -axis, light.kind == light_KIND_SUN);
+}
+
+fn points_inverse_end_of(light: light_LightSource) -> f32 {
+    return select(1.0 + points_END_MARGIN, 0.0, light.kind == light_KIND_SUN);
+}
+
 fn points_rays_from(settings: settings_SampleSettings, light: light_LightSource, origin: vec3f, position: vec3f, noise: f32) -> points_Rays {
-    var rays = points_Rays(light.center_in_world - origin, light.right_in_world, light.up_in_world, light.axis_in_world, 1.0 + points_END_MARGIN);
-    if light.kind == light_KIND_SUN {
-        rays.to_center = -light.axis_in_world;
-        rays.inverse_end = 0.0;
-    }
+    var rays = points_Rays(points_to_center_from(light, light.axis_in_world, origin), light.right_in_world, light.up_in_world, light.axis_in_world, points_inverse_end_of(light));
     if light.kind == light_KIND_SPHERE {
         let towards = normalize(light.center_in_world - position);
         let across = cross(light.up_in_world, towards);
@@ -612,8 +614,8 @@ struct sight_Sight {
     depth_error_m: vec3f
 }
 
-fn sight_sight_from(settings: settings_SampleSettings, light: light_LightSource, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
-    let rays = points_rays_from(settings, light, x, x, noise_noise_of_pixel(pixel));
+fn sight_sight_from(settings: settings_SampleSettings, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+    let rays = points_rays_from(settings, inputs_light_source, x, x, noise_noise_of_pixel(pixel));
     return sight_Sight(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
 }
 
@@ -622,9 +624,8 @@ fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
 }
 
 fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> points_Rays {
-    let is_sun = inputs_light_source.kind == light_KIND_SUN;
-    let from_center = select(sight_origin_of(sight, is_closed) - inputs_light_source.center_in_world, sight.axis, is_sun);
-    return points_Rays(-from_center, sight.right, sight.up, sight.axis, select(1.0 + points_END_MARGIN, 0.0, is_sun));
+    let to_center = points_to_center_from(inputs_light_source, sight.axis, sight_origin_of(sight, is_closed));
+    return points_Rays(to_center, sight.right, sight.up, sight.axis, points_inverse_end_of(inputs_light_source));
 }
 
 const triangle_test_PLANE_SLACK = 9.5367431640625e-7;
