@@ -951,10 +951,9 @@ const search_NARROW_TAPS = 12u;
 fn search_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
     var plane = receiver_light_biased_plane(receiver, settings_pcss.bias_scale);
     plane.farthest_depth = plane.depth;
-    if settings_pcss.is_flat == 1u {
-        plane.depth_per_uv = vec2f(0.0);
-        plane.faces_away = false;
-    }
+    let is_flat = settings_pcss.is_flat == 1u;
+    plane.depth_per_uv = select(plane.depth_per_uv, vec2f(0.0), is_flat);
+    plane.faces_away = plane.faces_away && !is_flat;
     return plane;
 }
 
