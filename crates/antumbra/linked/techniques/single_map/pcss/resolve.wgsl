@@ -811,6 +811,25 @@ fn map_receiver_is_texel(texel: vec2f) -> bool {
     return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
 }
 
+fn map_receiver_blocking_g(receiver: map_receiver_MapReceiver, texel: vec2f, stored: f32) -> f32 {
+    let blocking = map_receiver_blocking_depths_at(receiver, texel);
+    let may_block = stored > blocking.x && stored < blocking.y;
+    return select(0.0, max((stored - receiver.depth) * receiver.g_per_depth, 1e-20), may_block);
+}
+
+fn map_receiver_blocking_g_about(receiver: map_receiver_MapReceiver, texel: vec2f, layer: u32) -> f32 {
+    let stored = map_receiver_stored_depth(vec2u(texel), layer);
+    if !receiver.faces_away {
+        return map_receiver_blocking_g(receiver, texel, stored);
+    }
+    let passed_depth = max(stored, receiver.depth);
+    if passed_depth < map_receiver_blocking_depths_at(receiver, texel).y {
+        return map_receiver_blocking_g(receiver, texel, stored);
+    }
+    let in_front = map_receiver_texel_in_front(receiver, texel, passed_depth);
+    return select(0.0, map_receiver_blocking_g(receiver, in_front, map_receiver_stored_depth(vec2u(in_front), layer)), map_receiver_is_texel(in_front));
+}
+
 fn map_receiver_place_in_map(receiver: map_receiver_MapReceiver, place: vec2f, g: f32) -> vec2f {
     return select(place, clamp(place, vec2f(0.5), map_light_view.map_size - 0.5), g > receiver.edge_g);
 }
@@ -880,7 +899,7 @@ fn comparison_hiding_g_in_front(window: search_Window, texels: vec2f, layer: u32
     if !map_receiver_is_texel(texel) {
         return 0.0;
     }
-    return search_blocking_g_about(window, texel, layer);
+    return map_receiver_blocking_g_about(window.at, texel, layer);
 }
 
 fn comparison_lit_at_scale(plane: space_ReceiverPlane, window: search_Window, texels: vec2f, scale: scales_Scale) -> f32 {
@@ -1071,25 +1090,6 @@ fn search_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m
     return search_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, search_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
 }
 
-fn search_blocking_g(window: search_Window, texel: vec2f, stored: f32) -> f32 {
-    let blocking = map_receiver_blocking_depths_at(window.at, texel);
-    let may_block = stored > blocking.x && stored < blocking.y;
-    return select(0.0, max((stored - window.at.depth) * window.at.g_per_depth, 1e-20), may_block);
-}
-
-fn search_blocking_g_about(window: search_Window, texel: vec2f, layer: u32) -> f32 {
-    let stored = map_receiver_stored_depth(vec2u(texel), layer);
-    if !window.at.faces_away {
-        return search_blocking_g(window, texel, stored);
-    }
-    let passed_depth = max(stored, window.at.depth);
-    if passed_depth < map_receiver_blocking_depths_at(window.at, texel).y {
-        return search_blocking_g(window, texel, stored);
-    }
-    let in_front = map_receiver_texel_in_front(window.at, texel, passed_depth);
-    return select(0.0, search_blocking_g(window, in_front, map_receiver_stored_depth(vec2u(in_front), layer)), map_receiver_is_texel(in_front));
-}
-
 struct search_Blockers {
     g: vec4f,
     groups: u32,
@@ -1123,7 +1123,7 @@ fn search_range_of_group(group: u32, most_g: f32) -> vec2f {
 }
 
 fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, layer: u32) -> search_Sums {
-    let g = search_blocking_g_about(window, look.texel, layer);
+    let g = map_receiver_blocking_g_about(window.at, look.texel, layer);
     let counts = g > 0.0 && g >= look.hiding_g;
     let least_g = select(sums.least_g, min(sums.least_g, g), counts);
     let weight = select(0.0, select(search_RIM_WEIGHT, 1.0, g >= blocker_range_RIM * look.hiding_g), counts);
@@ -1137,7 +1137,7 @@ fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look,
 
 fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
     let own = floor(window.at.center);
-    let own_g = search_blocking_g_about(window, own, 0u);
+    let own_g = map_receiver_blocking_g_about(window.at, own, 0u);
     var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0), 0u);
     let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
     let enough = settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS);
@@ -1158,7 +1158,7 @@ fn search_search_behind(window: search_Window, light: light_taps_LightPlane, fir
     let count = min(min(window.search_count, settings_part_of(settings_pcss.search_count, search_BEHIND_TAPS)), settings_pcss.search_count);
     for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0u; layer++) {
         let before = sums.found;
-        let own_g = search_blocking_g_about(window, own, layer);
+        let own_g = map_receiver_blocking_g_about(window.at, own, layer);
         sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
         for (var i = 0u; i < count; i++) {
             let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
