@@ -5,7 +5,7 @@
 //! the light. Of this project it uses crate `antumbra` alone.
 //!
 //! ```text
-//! cargo run -p antumbra --example anywhere
+//! cargo run --example anywhere
 //! ```
 
 use antumbra::light::{Aabb, Light, LightShape};

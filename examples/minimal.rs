@@ -4,7 +4,7 @@
 //! add shadows are marked with `// shadows`. Of this project it uses crate `antumbra` alone. It writes `minimal.png`:
 //!
 //! ```text
-//! cargo run -p antumbra --example minimal
+//! cargo run --example minimal
 //! ```
 
 use antumbra::light::{Aabb, Light, LightShape};

@@ -7,7 +7,7 @@
 //! each, and writes the last as `many_lights.png`:
 //!
 //! ```text
-//! cargo run -p antumbra --example many_lights
+//! cargo run --example many_lights
 //! ```
 
 mod buffers;

@@ -53,8 +53,7 @@ impl Case {
 pub fn run(names: &[String]) -> Result<(), String> {
     machine::set_up()?;
     let folder = folder()?;
-    shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
-    let binary = shell::built_binary()?;
+    let binary = shell::built_of_workspace("antumbra")?;
     let all = scenes_in(&folder)?;
     let asked = all.iter().filter(|scene| names.is_empty() || names.iter().any(|name| stem(scene).starts_with(name)));
     let cases: Vec<Case> = asked.map(|scene| measure(&binary, scene)).collect::<Result<_, _>>()?;

@@ -30,12 +30,12 @@ pub fn run(args: &[String]) -> Result<(), String> {
     machine::set_up()?;
     let driver = Driver::choose(wanted)?;
     eprintln!("xtask: building the command `antumbra` (some six minutes on two cores the first time)");
-    shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
+    let binary = shell::built_of_workspace("antumbra")?;
     eprintln!("xtask: ready after {} s", began.elapsed().as_secs());
 
     // The user's own scenes first: that is what they came for. Their paths are relative to where they are.
     let out = crate::root().join("out/demo");
-    let mut compare = Command::new(shell::built_binary()?);
+    let mut compare = Command::new(binary);
     compare
         .envs(driver.variables())
         .arg("compare")
@@ -48,7 +48,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
 
     let index = out.join("index.html");
     println!("Report: {}", index.display());
-    println!("Viewer: cargo run -p antumbra-cli -- view   (or `view path/to/scene.glb`)");
+    println!("Viewer: cargo run --bin antumbra -- view   (or `view path/to/scene.glb`)");
     let has_display = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
     if flags.is_empty() && has_display && find("xdg-open").is_some() {
         // The path is already printed, so a failure to open it is not a failure of the demo.

@@ -39,8 +39,7 @@ pub fn run(names: &[String]) -> Result<(), String> {
         return Err(format!("figures: there is no technique `{name}`; there are {}", known.join(", ")));
     }
     machine::set_up()?;
-    shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
-    let binary = shell::built_binary()?;
+    let binary = shell::built_of_workspace("antumbra")?;
     let figures = crate::root().join("docs/figures");
     std::fs::create_dir_all(&figures).map_err(|error| format!("{}: {error}", figures.display()))?;
     let is_wanted = |technique: &str| names.is_empty() || names.iter().any(|name| name == technique);

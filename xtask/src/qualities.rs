@@ -27,9 +27,9 @@ with one another; `antumbra compare SCENE... --techniques pcss:fast,pcss,pcss:hi
 /// The first step that failed.
 pub fn run() -> Result<(), String> {
     machine::set_up()?;
-    shell::run(cargo().args(["build", "--locked", "--package", "antumbra-cli"]))?;
+    let binary = shell::built_of_workspace("antumbra")?;
     let out = crate::root().join("out/qualities");
-    let mut compare = Command::new(shell::built_binary()?);
+    let mut compare = Command::new(binary);
     compare.arg("compare").args(SCENES).args([
         "--techniques",
         TECHNIQUES,

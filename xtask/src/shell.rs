@@ -67,7 +67,8 @@ pub fn built_binary() -> Result<PathBuf, String> {
     beside_us("antumbra")
 }
 
-/// A program of the workspace, built with the features of everything else, so that the tests find its dependencies built.
+/// A program of the workspace, built with the features of everything else: built alone, many of its dependencies have fewer, and the tests
+/// would build them once more.
 ///
 /// # Errors
 /// Where it does not build.

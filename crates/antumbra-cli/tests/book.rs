@@ -98,7 +98,7 @@ fn ours(command: &Command) -> Vec<Vec<String>> {
     let place = &command.place;
     match words[..] {
         ["antumbra", ref rest @ ..] => vec![rest.iter().map(|word| of_an_array(word)).collect()],
-        ["cargo", "run", "-p", "antumbra-cli", "--", ref rest @ ..] => {
+        ["cargo", "run", "--bin", "antumbra", "--", ref rest @ ..] => {
             vec![rest.iter().map(|word| (*word).to_owned()).collect()]
         }
         // A job for each of the words at the end.
@@ -108,12 +108,13 @@ fn ours(command: &Command) -> Vec<Vec<String>> {
             each.iter().map(|one| job.iter().map(|word| word.replace("{}", one)).collect()).collect()
         }
         ["cargo", "xtask", ..] => Vec::new(),
-        ["cargo", "build", "-p", name] | ["cargo", "install", name] => {
+        ["cargo", "build", "--bin", "antumbra"] => Vec::new(),
+        ["cargo", "install", name] => {
             assert_eq!(name, env!("CARGO_PKG_NAME"), "{place}");
             Vec::new()
         }
         // The workspace's build makes it, and a test of the laboratory runs what it draws.
-        ["cargo", "run", "-p", "antumbra", "--example", name] => {
+        ["cargo", "run", "--example", name] => {
             let manifest = fs::read_to_string(root().join("crates/antumbra/Cargo.toml")).unwrap();
             assert!(
                 manifest.contains(&format!("[[example]]\nname = \"{name}\"")),
@@ -237,22 +238,23 @@ fn commands_within_sentences_name_what_there_is() {
     assert!(found >= 10, "{found}");
 }
 
-/// The two commands come first, and what follows them is what the first has built: another profile would build all of it again.
+/// The two commands come first, and what follows them is what the first has built: another profile would build all of it again, and a package
+/// alone, whose dependencies have fewer features, much of it.
 #[test]
 fn the_readme_has_two_commands_and_one_build() {
     let readme = page("README.md");
     let first: Vec<String> = commands(&readme).iter().take(3).map(|command| command.words.join(" ")).collect();
-    assert_eq!(first, ["cargo xtask demo", "cargo xtask test", "cargo run -p antumbra-cli -- view path/to/scene.glb"]);
+    assert_eq!(first, ["cargo xtask demo", "cargo xtask test", "cargo run --bin antumbra -- view path/to/scene.glb"]);
     let told = [page("README.md"), page("crates/antumbra-cli/README.md")].into_iter().chain(book_pages());
     let printed =
         ["src/commands/view.rs", "../../xtask/src/demo.rs"].map(|path| page(&format!("crates/antumbra-cli/{path}")));
     for page in told.chain(printed) {
-        for line in page.text.lines().filter(|line| line.contains("antumbra-cli")) {
+        for line in page.text.lines().filter(|line| line.contains("--bin antumbra")) {
             assert!(!line.contains("--release") && !line.contains("--profile"), "{}: {line}", page.path);
         }
     }
     let demo = page("xtask/src/demo.rs").text;
-    assert!(demo.contains(r#""--package", "antumbra-cli""#) && !demo.contains("--release"));
+    assert!(demo.contains(r#"built_of_workspace("antumbra")"#) && !demo.contains("--release"));
 }
 
 #[test]

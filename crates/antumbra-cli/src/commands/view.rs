@@ -48,6 +48,6 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
 /// Says how to get a window.
 #[cfg(not(feature = "viewer"))]
 pub fn view(_args: WindowArgs) -> Result<(), Failure> {
-    let what = "this program was built without its window; build it with `cargo build -p antumbra-cli`, which has it";
+    let what = "this program was built without its window; build it with `cargo build --bin antumbra`, which has it";
     Err(Failure::Other(what.into()))
 }
