@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::machine;
-use crate::shell::{self, cargo};
+use crate::shell;
 
 /// The variable that names the folder of test scenes, beside which the cases are.
 const SCENES: &str = "ANTUMBRA_SCENES";

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::driver::{self, Driver};
 use crate::machine;
-use crate::shell::{self, cargo, find};
+use crate::shell::{self, find};
 
 /// The built-in scenes of the demo: what leaks through where one averaged blocker stands for many; one occluder from
 /// contact to far; a close and a distant occluder over one wall; leaves far above, boards close by.

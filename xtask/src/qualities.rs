@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use crate::machine;
-use crate::shell::{self, cargo};
+use crate::shell;
 
 /// Near and far occluders, thin ones and foliage: small enough for a software adapter to be through in a quarter of an hour.
 const SCENES: &[&str] = &["builtin:overlap", "builtin:lantern-wall", "builtin:columns", "builtin:tree"];

@@ -860,8 +860,13 @@ struct map_receiver_MapReceiver {
     slope: vec2f,
     g_per_depth: f32,
     edge_g: f32,
-    faces_away: bool,
     away_margin: f32
+}
+
+const map_receiver_LEAST_MARGIN = 1e-30;
+
+fn map_receiver_faces_away(receiver: map_receiver_MapReceiver) -> bool {
+    return receiver.away_margin > 0.0;
 }
 
 fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiver_MapReceiver {
@@ -869,7 +874,7 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), plane.faces_away, 2.0 * abs(plane.bias));
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_LEAST_MARGIN), plane.faces_away));
 }
 
 fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
@@ -897,8 +902,8 @@ struct map_receiver_BlockingDepths {
 }
 
 fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
-    let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), receiver.faces_away);
-    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, receiver.faces_away));
+    let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), map_receiver_faces_away(receiver));
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
 }
 
 fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
@@ -908,7 +913,7 @@ fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: ve
 
 fn map_receiver_texel_in_front(receiver: map_receiver_MapReceiver, texel: vec2f, passed_depth: f32) -> vec2f {
     let steepness = max(length(receiver.slope), 1e-30);
-    let towards_light = select(1.0, -1.0, receiver.faces_away);
+    let towards_light = select(1.0, -1.0, map_receiver_faces_away(receiver));
     let forward = -towards_light * receiver.slope / steepness;
     let behind = max(towards_light * (map_receiver_plane_depth_at(receiver, texel) - passed_depth), 0.0) / steepness;
     return floor(texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y))));
@@ -926,7 +931,7 @@ fn map_receiver_blocking_g(receiver: map_receiver_MapReceiver, texel: vec2f, sto
 
 fn map_receiver_blocking_g_about(receiver: map_receiver_MapReceiver, texel: vec2f, layer: u32) -> f32 {
     let stored = map_receiver_stored_depth(vec2u(texel), layer);
-    if !receiver.faces_away {
+    if !map_receiver_faces_away(receiver) {
         return map_receiver_blocking_g(receiver, texel, stored);
     }
     let passed_depth = max(stored, receiver.depth);

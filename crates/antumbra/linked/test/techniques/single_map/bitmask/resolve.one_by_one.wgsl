@@ -952,8 +952,13 @@ struct map_receiver_MapReceiver {
     slope: vec2f,
     g_per_depth: f32,
     edge_g: f32,
-    faces_away: bool,
     away_margin: f32
+}
+
+const map_receiver_LEAST_MARGIN = 1e-30;
+
+fn map_receiver_faces_away(receiver: map_receiver_MapReceiver) -> bool {
+    return receiver.away_margin > 0.0;
 }
 
 fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiver_MapReceiver {
@@ -961,7 +966,7 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), plane.faces_away, 2.0 * abs(plane.bias));
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_LEAST_MARGIN), plane.faces_away));
 }
 
 fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
@@ -993,21 +998,13 @@ struct map_receiver_BlockingDepths {
 }
 
 fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
-    let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), receiver.faces_away);
-    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, receiver.faces_away));
+    let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), map_receiver_faces_away(receiver));
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
 }
 
 fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
     let depths = map_receiver_blocking_depths(receiver, vec4f(map_receiver_plane_depth_at(receiver, texel)));
     return vec2f(depths.least.x, depths.most.x);
-}
-
-fn map_receiver_texel_in_front(receiver: map_receiver_MapReceiver, texel: vec2f, passed_depth: f32) -> vec2f {
-    let steepness = max(length(receiver.slope), 1e-30);
-    let towards_light = select(1.0, -1.0, receiver.faces_away);
-    let forward = -towards_light * receiver.slope / steepness;
-    let behind = max(towards_light * (map_receiver_plane_depth_at(receiver, texel) - passed_depth), 0.0) / steepness;
-    return floor(texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y))));
 }
 
 fn map_receiver_is_texel(texel: vec2f) -> bool {
@@ -1018,19 +1015,6 @@ fn map_receiver_blocking_g(receiver: map_receiver_MapReceiver, texel: vec2f, sto
     let blocking = map_receiver_blocking_depths_at(receiver, texel);
     let may_block = stored > blocking.x && stored < blocking.y;
     return select(0.0, max((stored - receiver.depth) * receiver.g_per_depth, 1e-20), may_block);
-}
-
-fn map_receiver_blocking_g_about(receiver: map_receiver_MapReceiver, texel: vec2f, layer: u32) -> f32 {
-    let stored = map_receiver_stored_depth(vec2u(texel), layer);
-    if !receiver.faces_away {
-        return map_receiver_blocking_g(receiver, texel, stored);
-    }
-    let passed_depth = max(stored, receiver.depth);
-    if passed_depth < map_receiver_blocking_depths_at(receiver, texel).y {
-        return map_receiver_blocking_g(receiver, texel, stored);
-    }
-    let in_front = map_receiver_texel_in_front(receiver, texel, passed_depth);
-    return select(0.0, map_receiver_blocking_g(receiver, in_front, map_receiver_stored_depth(vec2u(in_front), layer)), map_receiver_is_texel(in_front));
 }
 
 fn light_place_place_at(light: light_taps_LightPlane, offset: vec2f) -> vec2f {
@@ -1148,7 +1132,7 @@ fn window_depths_in(window: window_Window, square: window_Square) -> window_Dept
     let half = 0.5 * (window_side_of(square) - 1.0);
     let center = vec2f(square.place << vec2u(square.level)) + half;
     let plane = map_receiver_held(window.at, map_receiver_plane_depth_at(window.at, center) + half * dot(abs(window.at.slope), vec2f(1.0)));
-    let is_in_front = ordered.x > plane && !window.at.faces_away;
+    let is_in_front = ordered.x > plane && !map_receiver_faces_away(window.at);
     return window_Depths(select(0.0, max(g.x, 0.0), is_in_front), most);
 }
 
@@ -1161,7 +1145,8 @@ fn window_shown_texel(window: window_Window, square: window_Square) -> vec2u {
 }
 
 fn window_scale_in(window: window_Window, square: window_Square, layer: u32) -> f32 {
-    let g = map_receiver_blocking_g_about(window.at, vec2f(window_shown_texel(window, square)), layer);
+    let texel = window_shown_texel(window, square);
+    let g = map_receiver_blocking_g(window.at, vec2f(texel), map_receiver_stored_depth(texel, layer));
     return select(0.0, 1.0 / max(g, 1e-20), g > 0.0);
 }
 
