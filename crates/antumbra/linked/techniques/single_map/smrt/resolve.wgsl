@@ -1006,11 +1006,19 @@ const bins_TILE_PIXELS = 64u;
 
 const bins_ROOM = 0.5;
 
+const bins_BESIDE = 4.0;
+
 var<workgroup> bins_bins_found: atomic<u32>;
 
 var<workgroup> bins_least_found: array<atomic<u32>, bins_BIN_COUNT>;
 
 var<workgroup> bins_greatest_found: array<atomic<u32>, bins_BIN_COUNT>;
+
+var<workgroup> bins_last_found: atomic<u32>;
+
+var<workgroup> bins_beside_found: atomic<u32>;
+
+var<workgroup> bins_free_found: atomic<u32>;
 
 var<workgroup> bins_found_between: array<vec2f, 2u * bins_BIN_COUNT>;
 
@@ -1051,6 +1059,9 @@ fn bins_empty_bins(lane: u32) {
     }
     if lane == 0u {
         atomicStore(&bins_bins_found, 0u);
+        atomicStore(&bins_last_found, 0u);
+        atomicStore(&bins_beside_found, 0u);
+        atomicStore(&bins_free_found, 0u);
     }
 }
 
@@ -1071,21 +1082,46 @@ fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane,
 }
 
 fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) {
+    if look.hiding_g == map_receiver_NO_G {
+        return;
+    }
     let least = map_receiver_blocking_depths_at(receiver, look.texel).x;
+    let hiding_place = bins_place_among(bins, fan_depth_at_g(receiver, look.hiding_g)) + 1.0;
+    var free = select(0u, 4294967295u << bins_bin_at(hiding_place), hiding_place < f32(bins_BIN_COUNT));
+    var found = 0u;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = map_receiver_stored_depth(vec2u(look.texel), layer);
         if depth <= least {
             break;
         }
-        if fan_g_of(receiver, depth) >= look.hiding_g {
-            let place = bins_place_among(bins, depth);
-            let bin = bins_bin_at(place);
-            let beside = (1u << bins_bin_at(place - bins_ROOM)) | (1u << bins_bin_at(place + bins_ROOM));
-            atomicOr(&bins_bins_found, (1u << bin) | beside);
+        let g = fan_g_of(receiver, depth);
+        let place = bins_place_among(bins, depth);
+        let bin = bins_bin_at(place);
+        let is_last = layer + 1u == behind_LAYER_COUNT;
+        let about = (1u << bin) | (1u << bins_bin_at(place - bins_ROOM)) | (1u << bins_bin_at(place + bins_ROOM));
+        free &= select(~about, 4294967294u << bin, is_last);
+        if g >= look.hiding_g {
+            found |= about;
             atomicMin(&bins_least_found[bin], bins_depth_bits(depth));
             atomicMax(&bins_greatest_found[bin], bins_depth_bits(depth));
+            if is_last {
+                atomicOr(&bins_last_found, 1u << bin);
+            }
+        }
+        else if bins_BESIDE * g >= look.hiding_g {
+            atomicOr(&bins_beside_found, 1u << bin);
         }
     }
+    if found != 0u {
+        atomicOr(&bins_bins_found, found);
+    }
+    atomicOr(&bins_free_found, free);
+}
+
+fn bins_bins_behind_last() -> u32 {
+    let last = atomicLoad(&bins_last_found);
+    let behind = select(0u, 4294967295u >> countLeadingZeros(last), last != 0u);
+    return atomicLoad(&bins_beside_found) & ~atomicLoad(&bins_free_found) & behind;
 }
 
 fn bins_join_bins(lane: u32) {
@@ -1110,7 +1146,7 @@ struct bins_Steps {
 }
 
 fn bins_steps_of(receiver: map_receiver_MapReceiver, bins: bins_Bins, most: u32) -> bins_Steps {
-    var steps = bins_Steps(bins, 1.0, atomicLoad(&bins_bins_found), 0u);
+    var steps = bins_Steps(bins, 1.0, atomicLoad(&bins_bins_found) | bins_bins_behind_last(), 0u);
     steps.some &= 4294967295u << bins_bin_at(bins_place_among(bins, receiver.depth));
     for (var i = 0; i < 5 && countOneBits(steps.some) > most; i++) {
         steps.some = bins_of_pairs(steps.some);
