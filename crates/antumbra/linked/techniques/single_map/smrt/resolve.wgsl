@@ -1071,24 +1071,35 @@ struct bins_SearchTaps {
     scale_shift: f32
 }
 
+struct bins_Marks {
+    found: u32,
+    last: u32,
+    beside: u32,
+    free: u32
+}
+
 fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, count: u32, bins: bins_Bins) {
     let own = floor(receiver.center);
-    bins_mark_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
+    var marks = bins_with_blockers_at(bins_Marks(0u, 0u, 0u, 0u), receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
     for (var i = 0u; i < count; i++) {
         let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;
         let g = most_g * map_receiver_scale_share(tap, search_taps.scale_shift);
-        bins_mark_blockers_at(receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
+        marks = bins_with_blockers_at(marks, receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
     }
+    atomicOr(&bins_bins_found, marks.found);
+    atomicOr(&bins_last_found, marks.last);
+    atomicOr(&bins_beside_found, marks.beside);
+    atomicOr(&bins_free_found, marks.free);
 }
 
-fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) {
+fn bins_with_blockers_at(before: bins_Marks, receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) -> bins_Marks {
+    var marks = before;
     if look.hiding_g == map_receiver_NO_G {
-        return;
+        return marks;
     }
     let least = map_receiver_blocking_depths_at(receiver, look.texel).x;
     let hiding_place = bins_place_among(bins, fan_depth_at_g(receiver, look.hiding_g)) + 1.0;
     var free = select(0u, 4294967295u << bins_bin_at(hiding_place), hiding_place < f32(bins_BIN_COUNT));
-    var found = 0u;
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = map_receiver_stored_depth(vec2u(look.texel), layer);
         if depth <= least {
@@ -1101,21 +1112,17 @@ fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_
         let about = (1u << bin) | (1u << bins_bin_at(place - bins_ROOM)) | (1u << bins_bin_at(place + bins_ROOM));
         free &= select(~about, 4294967294u << bin, is_last);
         if g >= look.hiding_g {
-            found |= about;
+            marks.found |= about;
             atomicMin(&bins_least_found[bin], bins_depth_bits(depth));
             atomicMax(&bins_greatest_found[bin], bins_depth_bits(depth));
-            if is_last {
-                atomicOr(&bins_last_found, 1u << bin);
-            }
+            marks.last |= select(0u, 1u << bin, is_last);
         }
         else if bins_BESIDE * g >= look.hiding_g {
-            atomicOr(&bins_beside_found, 1u << bin);
+            marks.beside |= 1u << bin;
         }
     }
-    if found != 0u {
-        atomicOr(&bins_bins_found, found);
-    }
-    atomicOr(&bins_free_found, free);
+    marks.free |= free;
+    return marks;
 }
 
 fn bins_bins_behind_last() -> u32 {
