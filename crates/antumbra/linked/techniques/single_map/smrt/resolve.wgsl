@@ -1011,11 +1011,19 @@ const bins_TILE_PIXELS = 64u;
 
 const bins_ROOM = 0.5;
 
+const bins_BESIDE = 4.0;
+
 var<workgroup> bins_bins_found: atomic<u32>;
 
 var<workgroup> bins_least_found: array<atomic<u32>, bins_BIN_COUNT>;
 
 var<workgroup> bins_greatest_found: array<atomic<u32>, bins_BIN_COUNT>;
+
+var<workgroup> bins_last_found: atomic<u32>;
+
+var<workgroup> bins_beside_found: atomic<u32>;
+
+var<workgroup> bins_free_found: atomic<u32>;
 
 var<workgroup> bins_found_between: array<vec2f, 2u * bins_BIN_COUNT>;
 
@@ -1056,6 +1064,9 @@ fn bins_empty_bins(lane: u32) {
     }
     if lane == 0u {
         atomicStore(&bins_bins_found, 0u);
+        atomicStore(&bins_last_found, 0u);
+        atomicStore(&bins_beside_found, 0u);
+        atomicStore(&bins_free_found, 0u);
     }
 }
 
@@ -1065,32 +1076,64 @@ struct bins_SearchTaps {
     scale_shift: f32
 }
 
+struct bins_Marks {
+    found: u32,
+    last: u32,
+    beside: u32,
+    free: u32
+}
+
 fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, count: u32, bins: bins_Bins) {
     let own = floor(receiver.center);
-    bins_mark_blockers_at(receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
+    var marks = bins_with_blockers_at(bins_Marks(0u, 0u, 0u, 0u), receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
     for (var i = 0u; i < count; i++) {
         let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;
         let g = most_g * map_receiver_scale_share(tap, search_taps.scale_shift);
-        bins_mark_blockers_at(receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
+        marks = bins_with_blockers_at(marks, receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
     }
+    atomicOr(&bins_bins_found, marks.found);
+    atomicOr(&bins_last_found, marks.last);
+    atomicOr(&bins_beside_found, marks.beside);
+    atomicOr(&bins_free_found, marks.free);
 }
 
-fn bins_mark_blockers_at(receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) {
+fn bins_with_blockers_at(before: bins_Marks, receiver: map_receiver_MapReceiver, look: map_receiver_Look, bins: bins_Bins) -> bins_Marks {
+    var marks = before;
+    if look.hiding_g == map_receiver_NO_G {
+        return marks;
+    }
     let least = map_receiver_blocking_depths_at(receiver, look.texel).x;
+    let hiding_place = bins_place_among(bins, fan_depth_at_g(receiver, look.hiding_g)) + 1.0;
+    var free = select(0u, 4294967295u << bins_bin_at(hiding_place), hiding_place < f32(bins_BIN_COUNT));
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = map_receiver_stored_depth(vec2u(look.texel), layer);
         if depth <= least {
             break;
         }
-        if fan_g_of(receiver, depth) >= look.hiding_g {
-            let place = bins_place_among(bins, depth);
-            let bin = bins_bin_at(place);
-            let beside = (1u << bins_bin_at(place - bins_ROOM)) | (1u << bins_bin_at(place + bins_ROOM));
-            atomicOr(&bins_bins_found, (1u << bin) | beside);
+        let g = fan_g_of(receiver, depth);
+        let place = bins_place_among(bins, depth);
+        let bin = bins_bin_at(place);
+        let is_last = layer + 1u == behind_LAYER_COUNT;
+        let about = (1u << bin) | (1u << bins_bin_at(place - bins_ROOM)) | (1u << bins_bin_at(place + bins_ROOM));
+        free &= select(~about, 4294967294u << bin, is_last);
+        if g >= look.hiding_g {
+            marks.found |= about;
             atomicMin(&bins_least_found[bin], bins_depth_bits(depth));
             atomicMax(&bins_greatest_found[bin], bins_depth_bits(depth));
+            marks.last |= select(0u, 1u << bin, is_last);
+        }
+        else if bins_BESIDE * g >= look.hiding_g {
+            marks.beside |= 1u << bin;
         }
     }
+    marks.free |= free;
+    return marks;
+}
+
+fn bins_bins_behind_last() -> u32 {
+    let last = atomicLoad(&bins_last_found);
+    let behind = select(0u, 4294967295u >> countLeadingZeros(last), last != 0u);
+    return atomicLoad(&bins_beside_found) & ~atomicLoad(&bins_free_found) & behind;
 }
 
 fn bins_join_bins(lane: u32) {
@@ -1115,7 +1158,7 @@ struct bins_Steps {
 }
 
 fn bins_steps_of(receiver: map_receiver_MapReceiver, bins: bins_Bins, most: u32) -> bins_Steps {
-    var steps = bins_Steps(bins, 1.0, atomicLoad(&bins_bins_found), 0u);
+    var steps = bins_Steps(bins, 1.0, atomicLoad(&bins_bins_found) | bins_bins_behind_last(), 0u);
     steps.some &= 4294967295u << bins_bin_at(bins_place_among(bins, receiver.depth));
     for (var i = 0; i < 5 && countOneBits(steps.some) > most; i++) {
         steps.some = bins_of_pairs(steps.some);
