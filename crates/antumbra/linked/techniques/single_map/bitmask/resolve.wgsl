@@ -1018,6 +1018,14 @@ fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: ve
     return vec2f(depths.least.x, depths.most.x);
 }
 
+fn map_receiver_texel_in_front(receiver: map_receiver_MapReceiver, texel: vec2f, passed_depth: f32) -> vec2f {
+    let steepness = max(length(receiver.slope), 1e-30);
+    let towards_light = select(1.0, -1.0, map_receiver_faces_away(receiver));
+    let forward = -towards_light * receiver.slope / steepness;
+    let behind = max(towards_light * (map_receiver_plane_depth_at(receiver, texel) - passed_depth), 0.0) / steepness;
+    return floor(texel + 0.5 + forward * (behind + 0.5 * (abs(forward.x) + abs(forward.y))));
+}
+
 fn map_receiver_is_texel(texel: vec2f) -> bool {
     return all(texel >= vec2f(0.0)) && all(texel < map_light_view.map_size);
 }
@@ -1026,6 +1034,19 @@ fn map_receiver_blocking_g(receiver: map_receiver_MapReceiver, texel: vec2f, sto
     let blocking = map_receiver_blocking_depths_at(receiver, texel);
     let may_block = stored > blocking.x && stored < blocking.y;
     return select(0.0, max((stored - receiver.depth) * receiver.g_per_depth, 1e-20), may_block);
+}
+
+fn map_receiver_blocking_g_about(receiver: map_receiver_MapReceiver, texel: vec2f, layer: u32) -> f32 {
+    let stored = map_receiver_stored_depth(vec2u(texel), layer);
+    if !map_receiver_faces_away(receiver) {
+        return map_receiver_blocking_g(receiver, texel, stored);
+    }
+    let passed_depth = max(stored, receiver.depth);
+    if passed_depth < map_receiver_blocking_depths_at(receiver, texel).y {
+        return map_receiver_blocking_g(receiver, texel, stored);
+    }
+    let in_front = map_receiver_texel_in_front(receiver, texel, passed_depth);
+    return select(0.0, map_receiver_blocking_g(receiver, in_front, map_receiver_stored_depth(vec2u(in_front), layer)), map_receiver_is_texel(in_front));
 }
 
 fn light_place_place_at(light: light_taps_LightPlane, offset: vec2f) -> vec2f {
@@ -1159,10 +1180,12 @@ fn window_shown_texel(window: window_Window, square: window_Square) -> vec2u {
     return min(texel, vec2u(map_light_view.map_size) - 1u);
 }
 
-fn window_scale_in(window: window_Window, square: window_Square, layer: u32) -> f32 {
-    let texel = window_shown_texel(window, square);
-    let g = map_receiver_blocking_g(window.at, vec2f(texel), map_receiver_stored_depth(texel, layer));
+fn window_scale_of(g: f32) -> f32 {
     return select(0.0, 1.0 / max(g, 1e-20), g > 0.0);
+}
+
+fn window_scale_in(window: window_Window, square: window_Square, layer: u32) -> f32 {
+    return window_scale_of(map_receiver_blocking_g_about(window.at, vec2f(window_shown_texel(window, square)), layer));
 }
 
 fn window_scale_beside(window: window_Window, square: window_Square, step: vec2i, layer: u32) -> f32 {
@@ -1170,7 +1193,8 @@ fn window_scale_beside(window: window_Window, square: window_Square, step: vec2i
     if !map_receiver_is_texel(vec2f(place) * window_side_of(square)) {
         return 0.0;
     }
-    return window_scale_in(window, window_Square(vec2u(place), square.level), layer);
+    let texel = window_shown_texel(window, window_Square(vec2u(place), square.level));
+    return window_scale_of(map_receiver_blocking_g(window.at, vec2f(texel), map_receiver_stored_depth(texel, layer)));
 }
 
 fn window_step_of(window: window_Window, side: f32, g: f32, slope: f32) -> f32 {
