@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::machine;
-use crate::shell::{self, cargo};
+use crate::shell;
 
 /// Page whose generated headings name each technique and the scene on which it fails worst.
 const WORST_CASES: &str = "docs/limits.md";
@@ -93,8 +93,7 @@ fn animate(binary: &Path, to: &Path) -> Result<(), String> {
         shell::run(&mut render)?;
         frames.push(image);
     }
-    let mut join = cargo();
-    join.args(["run", "--quiet", "--locked", "--package", "antumbra-animate", "--"]);
+    let mut join = Command::new(shell::built_of_workspace("antumbra-animate")?);
     shell::run(join.arg(to).arg(MOVING_MILLISECONDS).args(frames))
 }
 
