@@ -80,8 +80,8 @@ fn texel_at(fan: fan_Fan, offset: vec2f, g: f32, jitter: vec2f) -> vec2f {
 }
 
 fn blocker_g_in_step(fan: fan_Fan, offset: vec2f, steps: bins_Steps, step: u32, along: f32, jitter: vec2f) -> f32 {
-    let begin_g = fan_g_of(fan.at, bins_begin_of_step(steps, step));
-    let end_g = fan_g_of(fan.at, bins_begin_of_step(steps, step + 1u));
+    let begin_g = map_receiver_g_of(fan.at, bins_begin_of_step(steps, step));
+    let end_g = map_receiver_g_of(fan.at, bins_begin_of_step(steps, step + 1u));
     let read_g = bins_g_in_step(fan.at, steps, step, along);
     let texel = texel_at(fan, offset, read_g, jitter);
     let hit_g = fan_blocker_g_about(fan, texel, read_g, begin_g, end_g);
@@ -207,7 +207,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     let may_be_blocked = open.has_rays && open.most_g > 0.0;
     if may_be_blocked {
         atomicMin(&farthest_bits, bins_depth_bits(open.fan.at.depth));
-        atomicMax(&nearest_bits, bins_depth_bits(fan_depth_at_g(open.fan.at, open.most_g)));
+        atomicMax(&nearest_bits, bins_depth_bits(map_receiver_depth_at_g(open.fan.at, open.most_g)));
     }
     workgroupBarrier();
     let bins = tile_bins();
@@ -940,6 +940,14 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_LEAST_MARGIN), plane.faces_away));
 }
 
+fn map_receiver_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
+    return (depth - receiver.depth) * receiver.g_per_depth;
+}
+
+fn map_receiver_depth_at_g(receiver: map_receiver_MapReceiver, g: f32) -> f32 {
+    return receiver.depth + g / receiver.g_per_depth;
+}
+
 fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
     if layer == 0u {
         return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
@@ -1103,14 +1111,14 @@ fn bins_with_blockers_at(before: bins_Marks, receiver: map_receiver_MapReceiver,
         return marks;
     }
     let least = map_receiver_blocking_depths_at(receiver, look.texel).x;
-    let hiding_place = bins_place_among(bins, fan_depth_at_g(receiver, look.hiding_g)) + 1.0;
+    let hiding_place = bins_place_among(bins, map_receiver_depth_at_g(receiver, look.hiding_g)) + 1.0;
     var free = select(0u, 4294967295u << bins_bin_at(hiding_place), hiding_place < f32(bins_BIN_COUNT));
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = map_receiver_stored_depth(vec2u(look.texel), layer);
         if depth <= least {
             break;
         }
-        let g = fan_g_of(receiver, depth);
+        let g = map_receiver_g_of(receiver, depth);
         let place = bins_place_among(bins, depth);
         let bin = bins_bin_at(place);
         let is_last = layer + 1u == behind_LAYER_COUNT;
@@ -1177,7 +1185,7 @@ fn bins_g_in_step(receiver: map_receiver_MapReceiver, steps: bins_Steps, step: u
     if between.y <= map_receiver_least_depth() {
         between = vec2f(bins_begin_of_step(steps, step), bins_begin_of_step(steps, step + 1u));
     }
-    return max(fan_g_of(receiver, mix(between.x, between.y, along)), 0.0);
+    return max(map_receiver_g_of(receiver, mix(between.x, between.y, along)), 0.0);
 }
 
 fn bins_of_pairs(bits: u32) -> u32 {
@@ -1200,14 +1208,6 @@ fn fan_fan_of(plane: space_ReceiverPlane, z_m: f32, thickness_texels: vec2f) -> 
     return fan_Fan(map_receiver_map_receiver(plane, z_m), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m));
 }
 
-fn fan_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
-    return (depth - receiver.depth) * receiver.g_per_depth;
-}
-
-fn fan_depth_at_g(receiver: map_receiver_MapReceiver, g: f32) -> f32 {
-    return receiver.depth + g / receiver.g_per_depth;
-}
-
 struct fan_Found {
     g: f32,
     behind_g: f32
@@ -1218,11 +1218,11 @@ fn fan_found_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> fan_Fou
     if !map_receiver_is_texel(texel) {
         return found;
     }
-    let begin = max(fan.at.depth, fan_depth_at_g(fan.at, begin_g));
+    let begin = max(fan.at.depth, map_receiver_depth_at_g(fan.at, begin_g));
     let depths = max(map_receiver_blocking_depths_at(fan.at, texel), vec2f(begin));
     for (var layer = 0u; layer < behind_LAYER_COUNT; layer++) {
         let depth = map_receiver_stored_depth(vec2u(texel), layer);
-        let g = fan_g_of(fan.at, depth);
+        let g = map_receiver_g_of(fan.at, depth);
         if depth <= depths.x {
             found.behind_g = select(found.behind_g, g, depth > begin);
             break;
@@ -1243,7 +1243,7 @@ fn fan_blocker_g_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: 
     if found.g != map_receiver_NO_G || found.behind_g == map_receiver_NO_G {
         return found.g;
     }
-    let passed_depth = fan_depth_at_g(fan.at, select(g, found.behind_g, map_receiver_faces_away(fan.at)));
+    let passed_depth = map_receiver_depth_at_g(fan.at, select(g, found.behind_g, map_receiver_faces_away(fan.at)));
     return fan_found_in(fan, map_receiver_texel_in_front(fan.at, texel, passed_depth), begin_g, end_g).g;
 }
 

@@ -963,6 +963,10 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_LEAST_MARGIN), plane.faces_away));
 }
 
+fn map_receiver_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
+    return (depth - receiver.depth) * receiver.g_per_depth;
+}
+
 fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
     if layer == 0u {
         return map_light_view.depth_sign * textureLoad(map_light_map, texel, 0);
@@ -1015,17 +1019,13 @@ fn map_receiver_is_texel(texel: vec2f) -> bool {
 
 fn map_receiver_blocking_g(receiver: map_receiver_MapReceiver, texel: vec2f, stored: f32) -> f32 {
     let blocking = map_receiver_blocking_depths_at(receiver, texel);
-    let may_block = stored > blocking.x && stored < blocking.y;
-    return select(0.0, max((stored - receiver.depth) * receiver.g_per_depth, 1e-20), may_block);
+    return select(0.0, max(map_receiver_g_of(receiver, stored), 1e-20), stored > blocking.x && stored < blocking.y);
 }
 
 fn map_receiver_blocking_g_about(receiver: map_receiver_MapReceiver, texel: vec2f, layer: u32) -> f32 {
     let stored = map_receiver_stored_depth(vec2u(texel), layer);
-    if !map_receiver_faces_away(receiver) {
-        return map_receiver_blocking_g(receiver, texel, stored);
-    }
     let passed_depth = max(stored, receiver.depth);
-    if passed_depth < map_receiver_blocking_depths_at(receiver, texel).y {
+    if !map_receiver_faces_away(receiver) || passed_depth < map_receiver_blocking_depths_at(receiver, texel).y {
         return map_receiver_blocking_g(receiver, texel, stored);
     }
     let in_front = map_receiver_texel_in_front(receiver, texel, passed_depth);
