@@ -212,7 +212,7 @@ fn sides_that_face_away_from_a_lamp_s_middle_see_the_rest_of_it() {
     let light = Light::new(LightShape::Rectangle { size_m: Vec2::splat(2.4) }, Vec3::Y * 3.0, Vec3::ZERO);
     let camera = Camera { eye: Vec3::new(2.2, 0.7, 0.9), target: Vec3::new(0.5, 0.6, 0.0), ..Camera::base() };
     let Some(place) = Place::new(&scene, &camera, light) else { return };
-    place.holds("sides of posts", &[("smrt", 0.03), ("pcss", 0.03), ("bitmask", 0.03), ("sample_based", 0.02)]);
+    place.holds("sides of posts", &[("smrt", 0.03), ("pcss", 0.03), ("bitmask", 0.02), ("sample_based", 0.02)]);
 }
 
 /// A room of walls of five millimetres around the receivers, and the lamp outside.
