@@ -273,6 +273,8 @@ techniques! {
     Smrt,
     /// A bit for each point of the light, set by the texels of three layers.
     Bitmask,
+    /// Outlines of what blocks in one layer of the light map, and their area on the light: penumbrae without noise.
+    Backprojection,
     /// Percentage-closer soft shadows over the pixel's footprint too.
     PcssAnisotropic,
     /// A map for each of many points of the light: truth, at the price of as many passes.

@@ -115,6 +115,8 @@ shaders! {
     /// The same with every square split that may be too wide.
     #[cfg(test)]
     BITMASK_RESOLVE_ONE_BY_ONE = "techniques/single_map/bitmask/resolve" with "one_by_one";
+    /// `backprojection`: the area that texels hide.
+    BACKPROJECTION_RESOLVE = "techniques/single_map/backprojection/resolve";
     /// Micro-patches of given squares.
     #[cfg(test)]
     PATCH_PROBE = "techniques/single_map/micro_patches/probe";

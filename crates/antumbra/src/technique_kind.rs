@@ -22,7 +22,8 @@ use crate::techniques::ray_traced::RayTraced;
 use crate::techniques::receiver_lists::{alias_free::AliasFree, sample_based::SampleBased};
 #[cfg(feature = "single_map")]
 use crate::techniques::single_map::{
-    bitmask::Bitmask, hard::Hard, pcf::Pcf, pcss::Pcss, pcss_anisotropic::PcssAnisotropic, smrt::Smrt,
+    backprojection::Backprojection, bitmask::Bitmask, hard::Hard, pcf::Pcf, pcss::Pcss,
+    pcss_anisotropic::PcssAnisotropic, smrt::Smrt,
 };
 #[cfg(feature = "summed")]
 use crate::techniques::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
@@ -221,6 +222,15 @@ techniques! {
         good_for: "occluders at any depths, fused without double counting",
         fails_where: "cost; staircases of texels where penumbrae are narrow; casters behind the last layer",
         worst_case: "tree", "leaves behind the third layer are missing, and speckles of light remain",
+    }
+    "single_map", Backprojection, "backprojection", "single_map::backprojection", {
+        title: "Backprojection",
+        source: "Guennebaud, Barthe, Paulin 2006, EGSR; 2007, CGF 26(3)",
+        penumbra: "from the area of the light inside outlines of the map's texels",
+        light_maps: "1",
+        good_for: "one layer of occluders, without noise where texels are few",
+        fails_where: "occluders one behind another: light leaks in, or areas are counted twice",
+        worst_case: "tree", "leaves behind the first layer are missing, and those the map shows apart are added up",
     }
     "light_views", MultiView, "multi_view", "light_views::multi_view", {
         title: "One depth map per light sample",

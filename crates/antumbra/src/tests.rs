@@ -67,6 +67,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<techniques::filterable::lvsm::gpu_types::LvsmHistogramUniform>(),
         entry::<techniques::filterable::lvsm::gpu_types::LvsmUniform>(),
         entry::<techniques::filterable::moment::gpu_types::MomentUniform>(),
+        entry::<techniques::single_map::backprojection::gpu_types::BackprojectionUniform>(),
         entry::<techniques::single_map::bitmask::gpu_types::BitmaskUniform>(),
         entry::<techniques::single_map::hard::gpu_types::HardUniform>(),
         entry::<techniques::multi_layer::gpu_types::FilterStep>(),
@@ -211,7 +212,7 @@ fn what_papers_print_is_within_ranges_and_differs() {
         assert!(texts.clone().all(|text| text.ends_with('.')), "{kind}: {:?}", texts.collect::<Vec<_>>());
     }
     // The papers' own techniques, and what they compare with: `vssm` and `cssm` among them.
-    assert_eq!(printed_count, 11);
+    assert_eq!(printed_count, 12);
 }
 
 #[test]

@@ -38,6 +38,7 @@ impl Assumes {
             Kind::Pcss | Kind::MultiLayer => Self::SeveralDepths,
             Kind::Smrt
             | Kind::Bitmask
+            | Kind::Backprojection
             | Kind::MultiView
             | Kind::Reprojection
             | Kind::ReprojectionLayered

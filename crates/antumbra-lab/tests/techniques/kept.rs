@@ -419,6 +419,7 @@ kept! {
     pcss: Pcss,
     smrt: Smrt,
     bitmask: Bitmask,
+    backprojection: Backprojection,
     multi_view: MultiView,
     vsm: Vsm,
     lvsm: Lvsm,

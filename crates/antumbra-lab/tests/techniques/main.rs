@@ -2,6 +2,7 @@
 //! on a software adapter, with a little room; they may be tightened, never loosened. `kept` holds masks against what they were.
 
 mod as_printed;
+mod backprojection;
 mod baselines;
 mod bitmask;
 mod common;

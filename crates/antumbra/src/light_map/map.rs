@@ -83,7 +83,7 @@ bindings! {
     }
 
     /// The map, with a pyramid of it and layers of casters behind it.
-    struct LayersBindings = "light map with layers behind it", COMPUTE, group 1 of [PCSS_RESOLVE, SMRT_RESOLVE, BITMASK_RESOLVE],
+    struct LayersBindings = "light map with layers behind it", COMPUTE, group 1 of [PCSS_RESOLVE, SMRT_RESOLVE, BITMASK_RESOLVE, BACKPROJECTION_RESOLVE],
         with searched: PyramidBindings
     {
         4 further_layers: TextureArray(texels::DEPTH),

@@ -70,6 +70,7 @@ techniques! {
     pcss: Pcss,
     smrt: Smrt,
     bitmask: Bitmask,
+    backprojection: Backprojection,
     multi_view: MultiView,
     vsm: Vsm,
     lvsm: Lvsm,

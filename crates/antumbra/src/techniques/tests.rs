@@ -28,6 +28,7 @@ fn half_plane_under_a_rectangle_light() {
         // A quarter of the rays in the same penumbra, and means of them.
         (TechniqueKind::Smrt, &[("samples", "256")][..], 0.004),
         (TechniqueKind::Bitmask, &[("samples", "256")][..], 0.003),
+        (TechniqueKind::Backprojection, &[], 0.005),
         (TechniqueKind::MultiLayer, &[], 0.02),
         (TechniqueKind::MultiView, &[("samples", "64")][..], 0.007),
         (TechniqueKind::MultiView, &[("samples", "256"), ("sample_set", "stratified")][..], 0.004),
@@ -87,6 +88,7 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
         TechniqueKind::Pcss,
         TechniqueKind::Smrt,
         TechniqueKind::Bitmask,
+        TechniqueKind::Backprojection,
         TechniqueKind::RayTraced,
     ];
     for kind in kinds {
@@ -107,6 +109,7 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
             // What the rays converge to. Means over pixels have tests of their own: a quarter of the rays, nearer to the truth.
             (TechniqueKind::Smrt, &[("samples", "256"), ("smooth", "false")][..]),
             (TechniqueKind::Bitmask, &[("samples", "256")][..]),
+            (TechniqueKind::Backprojection, &[("squares", "64")][..]),
             (TechniqueKind::RayTraced, &[("samples", "256")][..]),
         ] {
             let error = rmse(&pixels, &case.run(gpu, kind, settings), disk);
@@ -139,6 +142,7 @@ fn a_sun_s_penumbra_grows_with_distance_alone() {
         (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256"), ("map_size", "2048")][..]),
         (TechniqueKind::Smrt, &[("samples", "256"), ("map_size", "2048")][..]),
         (TechniqueKind::Bitmask, &[("samples", "256"), ("map_size", "2048")][..]),
+        (TechniqueKind::Backprojection, &[("squares", "64"), ("map_size", "2048")][..]),
         (TechniqueKind::RayTraced, &[("samples", "256")][..]),
     ] {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), truth);
@@ -323,7 +327,7 @@ fn a_host_s_depth_map_may_be_infinitely_deep() {
     let size_px = UVec2::splat(512);
     let fov_y = 2.0 * 1.2f32.atan();
     let near_m = 0.3;
-    let take_depth = "hard pcf pcss smrt bitmask pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
+    let take_depth = "hard pcf pcss smrt bitmask backprojection pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
     for name in take_depth.split(' ') {
         let kind = TechniqueKind::from_name(name).expect("a technique");
         let masks = [

@@ -14,6 +14,10 @@ const TRAFFIC: &str = "builtin:street";
 /// The traffic's map, figure 7's and table 1's last.
 const MAP_4096: Settings = &[("map_size", "4096")];
 const MAP_512: Settings = &[("map_size", "512")];
+/// Guennebaud, Barthe, Paulin 2006 and 2007; Schwarz, Stamminger 2007, of one map.
+const TEXELS_2006: Settings = &[("occluders", "patches"), ("squares", "64"), ("rotate", "false")];
+const OUTLINES_2007: Settings = &[("squares", "64")];
+const BITS_2007: Settings = &[("samples", "256"), ("layers", "1"), ("gaps", "all")];
 /// Why images as published err.
 const R_AND_MU: &str = "R and μ exclude one another. With 20 bits the exponent that keeps every depth is 13.9, \
                         and contacts leak, the more the deeper the scene; tiles with their own range keep both. \
@@ -345,6 +349,23 @@ pub const PAPER: Paper = Paper {
                 &[Rule::Alike(Ms, &["ESSM, 0.6 m", "ESSM, 1.2 m", "ESSM, 2.4 m"], 1.5)],
             )
             .on_any_adapter()],
+            note: "",
+        },
+        Exhibit {
+            id: "section2-backprojection",
+            shows: "Texels of the map projected back onto the light: their areas added up, as bits, and inside outlines",
+            rows: &[
+                error("texels, added up", PLANTS, "backprojection").with(TEXELS_2006).at(128, 128),
+                error("outlines", PLANTS, "backprojection").with(OUTLINES_2007).at(128, 128),
+                error("bits", PLANTS, "bitmask").with(BITS_2007).at(128, 128),
+            ],
+            claims: &[claim(
+                "Backprojection of texels over-estimates shadows; contours and bitmasks remove most of that.",
+                &[
+                    Rule::RatioAtMost(Rmse, "outlines", "texels, added up", 0.75),
+                    Rule::RatioAtMost(Rmse, "bits", "texels, added up", 0.75),
+                ],
+            )],
             note: "",
         },
     ],

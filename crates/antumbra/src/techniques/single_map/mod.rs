@@ -12,6 +12,7 @@ use crate::gpu::{
 };
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
 
+pub mod backprojection;
 pub mod bitmask;
 pub mod hard;
 mod micro_patches;

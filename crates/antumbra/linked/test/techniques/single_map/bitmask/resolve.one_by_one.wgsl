@@ -1090,6 +1090,15 @@ fn patch_widest_of(low: vec2f, high: vec2f, scales: vec3f) -> patch_Patch {
     return patch_Patch(min(min(low * scales.x, low * scales.y), low * scales.z), max(max(high * scales.x, high * scales.y), high * scales.z));
 }
 
+fn surface_step_surface_steps(inverse_z: f32, side: f32, g: vec4f, slope: f32) -> vec4f {
+    let per_slope = map_light_view.texel_in_plane * side;
+    return slope * space_SURFACE_SLOPE * per_slope * select(vec4f(1.0), g + inverse_z, map_light_view.perspective == 1u);
+}
+
+fn surface_step_surface_step(inverse_z: f32, side: f32, g: f32, slope: f32) -> f32 {
+    return surface_step_surface_steps(inverse_z, side, vec4f(g), slope).x;
+}
+
 struct window_Window {
     at: map_receiver_MapReceiver,
     inverse_z: f32,
@@ -1182,11 +1191,6 @@ fn window_scale_beside(window: window_Window, square: window_Square, step: vec2i
     return window_scale_of(map_receiver_blocking_g(window.at, vec2f(texel), map_receiver_stored_depth(texel, layer)));
 }
 
-fn window_step_of(window: window_Window, side: f32, g: f32, slope: f32) -> f32 {
-    let per_slope = map_light_view.texel_in_plane * side;
-    return slope * space_SURFACE_SLOPE * per_slope * select(1.0, g + window.inverse_z, map_light_view.perspective == 1u);
-}
-
 fn window_joining_row(window: window_Window, square: window_Square, y: i32, layer: u32, g: f32, step: f32) -> vec3f {
     let scales = vec3f(window_scale_beside(window, square, vec2i(-1, y), layer), window_scale_beside(window, square, vec2i(0, y), layer), window_scale_beside(window, square, vec2i(1, y), layer));
     let steps = abs(1.0 / max(scales, vec3f(1e-30)) - g);
@@ -1195,7 +1199,7 @@ fn window_joining_row(window: window_Window, square: window_Square, y: i32, laye
 
 fn window_neighbours_of(window: window_Window, square: window_Square, scale: f32, layer: u32, slope: f32) -> patch_Neighbours {
     let g = 1.0 / scale;
-    let step = window_step_of(window, window_side_of(square), g, slope);
+    let step = surface_step_surface_step(window.inverse_z, window_side_of(square), g, slope);
     return patch_Neighbours(window_joining_row(window, square, -1, layer, g, step), window_joining_row(window, square, 0, layer, g, step).xz, window_joining_row(window, square, 1, layer, g, step));
 }
 
@@ -1217,7 +1221,7 @@ fn window_own_patch(window: window_Window, square: window_Square, scale: f32) ->
 fn window_widest_patch(window: window_Window, square: window_Square, scale: f32, slope: f32) -> patch_Patch {
     let sides = window_sides_of(window, square);
     let g = 1.0 / scale;
-    let step = window_step_of(window, window_side_of(square), g, slope);
+    let step = surface_step_surface_step(window.inverse_z, window_side_of(square), g, slope);
     let scales = vec3f(1.0 / (g + step), scale, 1.0 / max(g - step, 1e-20));
     return window_beyond_edge(window, square, scale, patch_widest_of(sides.low, sides.high, scales));
 }
