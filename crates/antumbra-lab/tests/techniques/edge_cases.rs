@@ -147,7 +147,7 @@ pub(crate) fn usual_bound(kind: TechniqueKind) -> f32 {
         TechniqueKind::Pcss => 0.044,
         TechniqueKind::Smrt => 0.078,
         TechniqueKind::Bitmask => 0.06,
-        TechniqueKind::Backprojection => 0.001,
+        TechniqueKind::Backprojection => 0.059,
         TechniqueKind::MultiView => 0.036,
         TechniqueKind::Vsm => 0.149,
         TechniqueKind::Lvsm | TechniqueKind::Evsm => 0.15,

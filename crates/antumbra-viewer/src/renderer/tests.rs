@@ -383,7 +383,7 @@ fn light_maps_are_seen_as_the_light_sees() {
     assert!(maps.len() > 1 && line.contains(&format!("{} maps", maps.len())), "{line}");
     assert!(maps.iter().enumerate().all(|(i, map)| maps[..i].iter().all(|other| other.depth != map.depth)));
     assert_eq!(renderer.take_error(), None);
-    assert_eq!(with_map, 18, "six of one map, six that are filtered, six that are summed");
+    assert_eq!(with_map, 19, "seven of one map, six that are filtered, six that are summed");
 }
 
 /// Whoever goes through the list of techniques gets the last one, and leaves few behind that compile.
