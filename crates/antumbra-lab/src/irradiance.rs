@@ -1,19 +1,102 @@
 //! Irradiance of surfaces by a light of unit radiance: traced, and unshadowed by the shader of the picture.
 //!
-//! What a renderer shows is irradiance, of which a mask is a factor. Traced irradiance is the truth for the product of both.
+//! What a renderer shows of a white diffuse surface is irradiance over π, and a mask is a factor of it: [`IrradianceTruth`] is the truth for
+//! the product of both.
 
 use std::f64::consts::PI;
 use std::num::NonZero;
 use std::thread;
 
-use antumbra_light::{Light, LightPoint, LightShape};
+use antumbra_light::{Light, LightPoint, LightShape, SampleSet};
 use antumbra_reference::{ReceiverPoint, Receivers, ReferenceError, SampledLight, Tracer, VisibilityOptions};
 use antumbra_render::shading::{IRRADIANCE_WGSL, LightBuffers};
-use glam::{DVec3, Vec3, Vec4};
+use antumbra_scene::{Scene, Setup};
+use glam::{DVec3, UVec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
 
 use crate::device::{DeviceError, LabDevice};
+use crate::error::LabError;
+use crate::picture::{Visibility, VisibilityValues};
 use crate::readback::read_f32;
+use crate::truth::{SurfacePoint, is_same_surface};
+use crate::view::View;
+
+/// A light's irradiance of all that a camera sees.
+#[derive(Clone, Debug)]
+pub struct IrradianceTruth {
+    /// By pixel, `None` for background and where the depth buffer shows another surface than the camera's ray meets: traced, and analytic
+    /// without shadows.
+    pixels: Vec<Option<(TracedIrradiance, f64)>>,
+}
+
+impl IrradianceTruth {
+    /// Traces `rays` light points from every pixel of a view of the setup, of its light of this index.
+    ///
+    /// # Errors
+    /// Where the scene or the light cannot be traced, or the device failed.
+    pub fn new(
+        lab: &LabDevice,
+        scene: &Scene,
+        setup: &Setup,
+        size_px: UVec2,
+        light: usize,
+        rays: u32,
+    ) -> Result<Self, LabError> {
+        let (camera, light) = (&setup.camera, &setup.lights[light]);
+        let tracer = Tracer::new(scene)?;
+        let mut receivers = tracer.primary(camera, size_px);
+        let drawn = View::new(lab, scene, setup, size_px)?.surface_points()?;
+        for (hit, drawn) in receivers.points.iter_mut().zip(drawn) {
+            let of = |hit: &ReceiverPoint| SurfacePoint { position: hit.position, normal: hit.normal };
+            *hit = hit.filter(|hit| drawn.is_some_and(|drawn| is_same_surface(&of(hit), &drawn, camera.eye)));
+        }
+        let options = VisibilityOptions { samples: rays, set: SampleSet::Stratified, ..VisibilityOptions::default() };
+        let traced = traced(&tracer, &receivers, light, &options)?;
+        let frame = light.frame();
+        let hits = receivers.points.iter().flatten();
+        let places: Vec<_> = hits.clone().map(|hit| (hit.position, hit.normal)).collect();
+        let mut analytic = analytic(lab, light, &places)?
+            .into_iter()
+            .zip(hits)
+            .map(|(irradiance, hit)| if light.reaches(&frame, hit.position) { f64::from(irradiance) } else { 0.0 });
+        Ok(Self { pixels: traced.into_iter().map(|traced| Some((traced?, analytic.next()?))).collect() })
+    }
+
+    /// How many pixels count.
+    pub fn count(&self) -> usize {
+        self.pixels.iter().flatten().count()
+    }
+
+    /// The root mean square error of analytic irradiance times a mask, as a part of the mean analytic irradiance. Of colours green counts.
+    pub fn rmse(&self, mask: &Visibility) -> f64 {
+        self.rmse_of(|i, _| match &mask.values {
+            VisibilityValues::One(values) => values[i].into(),
+            VisibilityValues::Three(values) => values[i].y.into(),
+        })
+    }
+
+    /// The same of the traced visibility: what the plain product errs by where visibility is exact.
+    pub fn rmse_of_visibility(&self) -> f64 {
+        self.rmse_of(|_, traced| traced.visibility)
+    }
+
+    /// The same of the traced ratio: how far analytic irradiance without shadows and its sum over points are apart.
+    pub fn rmse_of_ratio(&self) -> f64 {
+        self.rmse_of(|_, traced| traced.arriving / traced.unshadowed.max(f64::MIN_POSITIVE))
+    }
+
+    fn rmse_of(&self, factor: impl Fn(usize, &TracedIrradiance) -> f64) -> f64 {
+        let (mut squares, mut sum) = (0.0, 0.0);
+        for (i, pixel) in self.pixels.iter().enumerate() {
+            if let Some((traced, analytic)) = pixel {
+                squares += (factor(i, traced) * analytic - traced.arriving).powi(2);
+                sum += analytic;
+            }
+        }
+        let count = self.count() as f64;
+        (squares / count).sqrt() / (sum / count)
+    }
+}
 
 /// What a light of unit radiance gives a surface, summed over points of the light.
 #[derive(Clone, Copy, Debug, PartialEq)]

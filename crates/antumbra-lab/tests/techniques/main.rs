@@ -18,6 +18,7 @@ mod reprojection;
 mod roughness;
 mod sample_based;
 mod sample_sets;
+mod shading;
 mod soft;
 mod translucent;
 mod view_samples;
