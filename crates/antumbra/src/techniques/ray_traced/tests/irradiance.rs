@@ -4,16 +4,16 @@ use antumbra_light::{EmissionTexture, LightShape};
 use glam::{Vec2, Vec3};
 
 use crate::TechniqueKind;
-use crate::testing::{Case, gpu, half_plane_ratio_errors};
+use crate::testing::{Case, gpu, half_plane_ratio_errors, is_software};
 
 /// In one pass and in many: what earlier passes have found is weighed against what they have not.
 #[test]
 fn the_ratio_is_lambert_s_in_one_pass_and_in_many() {
     let Some(gpu) = gpu() else { return };
-    for (samples, most) in [("16", 0.03), ("1024", 0.004)] {
+    for (samples, most) in [("16", 0.02), ("1024", 0.002)] {
         let [ours, apart] = half_plane_ratio_errors(gpu, TechniqueKind::RayTraced, &[("samples", samples)]);
         println!("{samples} rays: {ours:.5}; visibility alone {apart:.4}");
-        assert!(ours < most && apart > 0.05, "{samples} rays: {ours}; visibility {apart}");
+        assert!(ours < most && apart > 0.03, "{samples} rays: {ours}; visibility {apart}");
     }
 }
 
@@ -50,8 +50,9 @@ fn every_shape_has_the_ratio_of_its_bits() {
         let shape = &case.light.shape;
         println!("{shape:?}: {} apart, from visibility {}", apart(&rays, &bits), apart(&rays, &visible));
         assert!(partly > 100, "{shape:?}: {partly} pixels in penumbra");
-        // A point on an edge may be open to one and hidden to the other.
-        assert!(apart(&rays, &bits) < 0.03, "{shape:?}: {}", apart(&rays, &bits));
+        // On a graphics card a point on an edge may be open to one and hidden to the other.
+        let most = if is_software(gpu) { 1e-5 } else { 0.03 };
+        assert!(apart(&rays, &bits) < most, "{shape:?}: {}", apart(&rays, &bits));
         assert!(apart(&rays, &visible) > 1e-3, "{shape:?}");
     }
 }
