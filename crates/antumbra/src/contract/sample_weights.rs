@@ -1,16 +1,16 @@
-//! What light samples count, of techniques that test each by itself.
+//! Weights of light samples, in techniques that test each sample by itself.
 
 use std::fmt;
 
 use super::{ParamSpec, ParamType, param_choice};
 
 param_choice! {
-    /// What each light sample counts in a receiver's visibility.
+    /// Weight of a light sample in a receiver's mask.
     pub enum SampleWeights {
-        /// Its luminance: lighting and visibility are apart.
+        /// Luminance: the mask is visibility, and lighting is separate.
         Emission = "emission",
-        /// What it gives the receiver: emission, both cosines, the distance. The mask is then the part of the light's own irradiance that
-        /// arrives, 0 where the light is wholly below the horizon: analytic irradiance times the mask is what arrives.
+        /// Irradiance: emission times both cosines over the squared distance. The mask is the fraction of the light's unshadowed irradiance
+        /// that arrives, by which analytic irradiance is multiplied; 0 where all of the light is below the horizon.
         Irradiance = "irradiance",
     }
 }

@@ -52,6 +52,11 @@ fn visibility_of(start: Start, point: vec4f) -> vec3f {
     return traversal_passes(sight, start.offset_m);
 }
 
+fn given_to(start: Start, point: vec4f) -> f32 {
+    let facing = irradiance_facing_of_points(inputs_light_source, start.x);
+    return irradiance_given_by_point(inputs_light_source, facing, start.normal, point.xyz - point.w * start.x);
+}
+
 const MOST_PACKED = 1023.0;
 
 fn pack(passed: vec3f) -> u32 {
@@ -123,12 +128,11 @@ fn trace(@builtin(global_invocation_id) id: vec3u) {
     var seen = vec3f();
     var sum = 0.0;
     let point_count = traversal_rays.point_count;
-    let facing = irradiance_facing_of_points(inputs_light_source, start.x);
     for (var i = 0u; i < point_count; i++) {
         let point = point_of(traversal_rays.first_point + i, shift, start.x);
         var weight = point.weight;
         if traversal_rays.weighs_irradiance == 1u {
-            weight *= irradiance_given_by_point(inputs_light_source, facing, start.normal, point.at.xyz - point.at.w * start.x);
+            weight *= given_to(start, point.at);
         }
         seen += weight * with_earlier(pixel, i, visibility_of(start, point.at));
         sum += weight;
