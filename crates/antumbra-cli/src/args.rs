@@ -97,6 +97,16 @@ impl Ground {
     }
 }
 
+/// What the shading of a light is multiplied by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum ShadingFactor {
+    /// The part of the irradiance that arrives, where the technique has it; else visibility
+    #[default]
+    Ratio,
+    /// Visibility
+    Product,
+}
+
 /// View of a scene.
 #[derive(Debug, Args)]
 pub struct ViewArgs {
@@ -154,6 +164,9 @@ pub struct RenderArgs {
     /// Bends smooth normals so that shading ends where triangles face away from the light
     #[arg(long)]
     pub coherent: bool,
+    /// Factor of a light's shading: the part of its irradiance that arrives, where the technique has it (weights=irradiance), or visibility
+    #[arg(long, value_name = "BY", value_enum, ignore_case = true, default_value = "ratio")]
+    pub shading: ShadingFactor,
     /// Number of frames to draw; the last is written. Techniques that accumulate converge
     #[arg(long, value_name = "N", default_value = "1", value_parser = values::frames)]
     pub frames: u32,

@@ -55,6 +55,7 @@ pages! {
     laboratory = "docs/laboratory.md", "long";
     measurements = "docs/measurements.md", "long";
     reproducibility = "docs/reproducibility.md";
+    shading = "docs/shading.md";
     start = "docs/start.md";
     sweep = "docs/sweep.md", "long";
     viewer = "docs/viewer.md";
@@ -115,11 +116,11 @@ fn ours(command: &Command) -> Vec<Vec<String>> {
         }
         // The workspace's build makes it, and a test of the laboratory runs what it draws.
         ["cargo", "run", "--example", name] => {
-            let manifest = fs::read_to_string(root().join("crates/antumbra/Cargo.toml")).unwrap();
-            assert!(
-                manifest.contains(&format!("[[example]]\nname = \"{name}\"")),
-                "{place}: there is no example {name}"
-            );
+            let declares = |package: &str| {
+                let manifest = fs::read_to_string(root().join("crates").join(package).join("Cargo.toml")).unwrap();
+                manifest.contains(&format!("[[example]]\nname = \"{name}\""))
+            };
+            assert!(["antumbra", "antumbra-lab"].into_iter().any(declares), "{place}: there is no example {name}");
             Vec::new()
         }
         _ => panic!("{place}: no test knows how to run `{}`", command.words.join(" ")),

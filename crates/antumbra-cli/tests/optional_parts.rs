@@ -34,6 +34,7 @@ const WALKS: &[Walk] = &[
             "--light lamp",
             "--shadow-distance 20",
             "--coherent",
+            "--shading product",
             "--frames 2",
             "--timings t.json",
             "--adapter ADAPTER",

@@ -33,6 +33,30 @@ fn render_writes_a_picture_its_visibility_and_its_times() {
     assert!(timings["adapter"].as_str().is_some_and(|name| !name.is_empty()));
 }
 
+/// Pictures are by the part of the irradiance that arrives, and what is written beside them is visibility all the same.
+#[test]
+fn render_shades_by_the_ratio_and_writes_visibility() {
+    let dir = tempfile::tempdir().unwrap();
+    if adapter().is_none() {
+        return;
+    }
+    for factor in ["ratio", "product"] {
+        let words = format!(
+            "render builtin:hall --technique ray_traced --set samples=8 --size 67x41 --shading {factor} -o {factor}.png \
+             --visibility {factor}.exr --timings {factor}.json"
+        );
+        let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let read = |name: &str| fs::read(dir.path().join(name)).unwrap();
+    assert_eq!(read("ratio.exr"), read("product.exr"));
+    assert_ne!(read("ratio.png"), read("product.png"));
+    for (factor, weights) in [("ratio", "irradiance"), ("product", "emission")] {
+        let timings: serde_json::Value = serde_json::from_slice(&read(&format!("{factor}.json"))).unwrap();
+        assert_eq!(timings["parameters"]["weights"], weights);
+    }
+}
+
 #[test]
 fn reference_writes_one_channel_or_three() {
     let dir = tempfile::tempdir().unwrap();

@@ -15,6 +15,7 @@
 //! - [`gpu_scene`] — a scene on the GPU: the room of that name in `antumbra-render`, as [`picture`] is.
 //! - [`receivers`], [`shading`] — that crate's passes, waited for.
 //! - [`readback`] — textures back on the CPU.
+//! - [`irradiance`] — what a light gives surfaces: traced, and by the picture's own shader.
 //!
 //! And these are what the commands do:
 //!
@@ -47,6 +48,7 @@ pub mod device;
 pub mod error;
 pub mod identity;
 pub mod image_io;
+pub mod irradiance;
 pub mod limits;
 pub mod metrics;
 pub mod motion;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use antumbra::contract::{ParamSpec, ParamValue};
+use antumbra::contract::{ParamSpec, ParamValue, SampleWeights};
 use antumbra::{
     AnyShadow, Casters, Denoise, Error, Frame, Gpu, Mask, MaskChannels, Opacity, Overflow, PassTime, PassTimer,
     Prepared, Quality, Receivers, Recorder, TechniqueKind, WarmUp,
@@ -131,6 +131,18 @@ impl TechniqueChoice {
             settings: self.settings.iter().cloned().chain(exact).collect(),
             extras: Extras::default(),
         })
+    }
+
+    /// The same with masks for shading alone: the part of a light's own irradiance that arrives ([`SampleWeights::Irradiance`]), where the
+    /// technique has it and no setting says otherwise.
+    pub fn for_shading(&self) -> Self {
+        let (key, irradiance) = (SampleWeights::KEY, SampleWeights::Irradiance.to_string());
+        let is_set = self.settings.iter().any(|(set, _)| set == key);
+        if is_set || !SampleWeights::is_parameter_of(self.kind.param_specs()) {
+            return self.clone();
+        }
+        let weights = [(key.to_owned(), irradiance)];
+        Self { settings: self.settings.iter().cloned().chain(weights).collect(), ..self.clone() }
     }
 
     /// The settings as they would be given to `compare` or `bench`: ` --set pcss.map_size=2048`.
@@ -633,6 +645,19 @@ mod tests {
                 .map(TechniqueChoice::from_name),
             [const { None }; 8]
         );
+    }
+
+    #[test]
+    fn masks_for_shading_are_by_irradiance_unless_someone_says_otherwise() {
+        let irradiance = [("weights".to_owned(), "irradiance".to_owned())];
+        for kind in TechniqueKind::ALL.iter().copied() {
+            let choice = TechniqueChoice::default_of(kind);
+            let has_it = matches!(kind, TechniqueKind::RayTraced | TechniqueKind::SampleBased | TechniqueKind::Smrt);
+            assert_eq!(choice.for_shading().settings, &irradiance[..usize::from(has_it)], "{kind}");
+        }
+        let settings = [("samples", "8"), ("weights", "emission")].map(|(key, value)| (key.into(), value.into()));
+        let set = TechniqueChoice::with_settings(TechniqueKind::Smrt, settings.to_vec());
+        assert_eq!(set.for_shading(), set);
     }
 
     #[test]

@@ -53,10 +53,7 @@ impl LightTruth {
         let mut others = 0;
         for ((judged, hit), seen) in self.judged.iter_mut().zip(self.first_hits.iter()).zip(seen) {
             let is_same = match (hit, seen) {
-                (Some(hit), Some(seen)) => {
-                    hit.position.distance(seen.position) <= SAME_SURFACE * hit.position.distance(eye)
-                        && hit.normal.dot(seen.normal) >= SAME_FACE
-                }
+                (Some(hit), Some(seen)) => is_same_surface(hit, seen, eye),
                 (hit, seen) => hit.is_none() && seen.is_none(),
             };
             others += usize::from(*judged && !is_same);
@@ -166,6 +163,12 @@ fn until(
 fn first_hits(receivers: &Receivers) -> Arc<[Option<SurfacePoint>]> {
     let surface_of = |point: ReceiverPoint| SurfacePoint { position: point.position, normal: point.normal };
     receivers.points.iter().map(|hit| hit.map(surface_of)).collect()
+}
+
+/// Whether what a camera's ray meets and what the depth buffer shows are one face of one surface.
+pub(crate) fn is_same_surface(hit: &SurfacePoint, seen: &SurfacePoint, eye: Vec3) -> bool {
+    hit.position.distance(seen.position) <= SAME_SURFACE * hit.position.distance(eye)
+        && hit.normal.dot(seen.normal) >= SAME_FACE
 }
 
 /// Positions of one surface differ by less, as a part of the distance to the camera: a pixel is about as wide, and depth

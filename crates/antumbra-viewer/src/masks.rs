@@ -12,7 +12,7 @@ use glam::UVec2;
 use crate::device::device_descriptor;
 use crate::message::one_line;
 use crate::renderer::{Compile, Renderer};
-use crate::state::{Side, State};
+use crate::state::{Show, Side, State};
 
 /// The size of masks: software devices take a while for more.
 pub const SIZE_PX: UVec2 = UVec2::new(96, 64);
@@ -166,6 +166,8 @@ impl Masks {
         let mut state = State::new(case.side.kind(), TechniqueKind::Hard);
         state.open(case.scene, &scene, None);
         state.setup.lights.truncate(1);
+        // For the picture masks are weighed by irradiance.
+        state.show = Show::Visibility;
         let mut renderer = Renderer::new(&self.gpu, Compile::AtOnce);
         renderer.open(&scene, state.scene.as_ref().map_or(0, |open| open.generation));
         self.open = Some((case.scene, renderer, state));

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
-use glam::{Mat4, UVec2, Vec2, Vec3};
+use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
 
 use crate::TechniqueKind;
 use crate::contract::{DepthConvention, Error, Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, Receivers};
@@ -421,6 +421,37 @@ pub(crate) fn half_plane_visibility(x: f32, w: f32) -> f32 {
         return if first_visible < 0.0 { 1.0 } else { 0.0 };
     }
     ((0.5 * w - first_visible) / w).clamp(0.0, 1.0)
+}
+
+/// Irradiance of a point of the ground from a rectangle of unit radiance that looks straight down, by its edges: Lambert's
+/// formula, Σ θᵢ Γᵢ · n / 2π.
+pub(crate) fn lambert_irradiance(p: DVec3, height: f64, [x0, x1]: [f64; 2], [z0, z1]: [f64; 2]) -> f64 {
+    if x0 >= x1 {
+        return 0.0;
+    }
+    let corners = [(x0, z0), (x1, z0), (x1, z1), (x0, z1)].map(|(x, z)| (DVec3::new(x, height, z) - p).normalize());
+    let edge = |i: usize| {
+        let (a, b) = (corners[i], corners[(i + 1) % 4]);
+        a.dot(b).acos() * a.cross(b).normalize().y
+    };
+    ((0..4).map(edge).sum::<f64>() / std::f64::consts::TAU).abs()
+}
+
+/// How far a technique's masks are from the part of a wide light's irradiance that the half-plane leaves: weighted by irradiance, and by
+/// emission. Root mean squares; the light is as wide as it is high above the ground.
+pub(crate) fn half_plane_ratio_errors(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> [f64; 2] {
+    let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::splat(4.0) });
+    let pixels = case.ground_pixels(|p| p.x.abs() < 2.0 && p.z.abs() < 1.2);
+    assert!(pixels.len() > 500);
+    ["irradiance", "emission"].map(|weights| {
+        let mask = case.run(gpu, kind, &[settings, &[("weights", weights)]].concat());
+        let square = |(i, p): &(usize, Vec3)| {
+            let first_seen = f64::from(-p.x) * (1.0 - 0.375) / 0.375;
+            let of = |from: f64| lambert_irradiance(p.as_dvec3(), 4.0, [from.max(-2.0), 2.0], [-2.0, 2.0]);
+            (f64::from(mask[*i]) - of(first_seen) / of(-2.0)).powi(2)
+        };
+        (pixels.iter().map(square).sum::<f64>() / pixels.len() as f64).sqrt()
+    })
 }
 
 pub(crate) const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 1.0) };

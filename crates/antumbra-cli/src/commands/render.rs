@@ -2,16 +2,17 @@
 
 use std::time::Duration;
 
+use antumbra::Error;
 use antumbra_lab::error::LabError;
 use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_picture};
 use antumbra_lab::output_files::check_json_path;
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
-use antumbra_lab::technique_run::{Drawn, TechniqueRun, Timing, create, parameters_of};
+use antumbra_lab::technique_run::{Drawn, TechniqueChoice, TechniqueRun, Timing, create, parameters_of};
 use antumbra_lab::view::View;
 use serde_json::json;
 
-use crate::args::RenderArgs;
+use crate::args::{RenderArgs, ShadingFactor};
 use crate::commands::{
     COMMIT, LoadedScene, choices, end_shadows, light_index, load_scene, narrowest, open_device, write_json,
     write_visibilities,
@@ -35,15 +36,30 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     end_shadows(&mut setup.camera, args.shadow_distance);
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let lab = open_device(&args.adapter)?;
-    let mut technique = create(&lab.gpu(), &choice)?;
+    create(&lab.gpu(), &choice)?;
     bars.begin("drawing", 0);
     let make_view = if args.coherent { View::coherent } else { View::new };
     let view = make_view(&lab, &scene, &setup, args.view.size)?;
     let lights = 0..setup.lights.len();
-    let drawn = lights.clone().map(|light| view.draw(&mut technique, light, args.frames));
-    let drawn = drawn.collect::<Result<Vec<_>, _>>()?;
-    let visibilities: Vec<&Visibility> = drawn.iter().map(|drawn| &drawn.visibility).collect();
-    let picture = view.shade(&visibilities)?;
+    let draw = |choice: &TechniqueChoice| {
+        let mut technique = view.create(choice)?;
+        lights.clone().map(|light| view.draw(&mut technique, light, args.frames)).collect::<Result<Vec<_>, _>>()
+    };
+    let mut shading = match args.shading {
+        ShadingFactor::Ratio => choice.for_shading(),
+        ShadingFactor::Product => choice.clone(),
+    };
+    let drawn = match draw(&shading) {
+        // Weights take memory. Nobody asked for them.
+        Err(LabError::Technique(Error::Unsupported { .. })) if shading != choice => {
+            shading = choice.clone();
+            draw(&shading)?
+        }
+        drawn => drawn?,
+    };
+    let picture = view.shade(&visibilities_of(&drawn))?;
+    // A mask by irradiance is no visibility.
+    let apart = if args.visibility.is_some() && shading != choice { Some(draw(&choice)?) } else { None };
     bars.end();
     for (light, Drawn { auto_map_sizes, .. }) in setup.lights.iter().zip(&drawn) {
         if !auto_map_sizes.is_empty() {
@@ -54,13 +70,15 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
 
     write_picture(&args.output, &picture.to_srgb8())?;
     if let Some(path) = &args.visibility {
-        write_visibilities(path, &setup.lights, &visibilities, chosen, bars)?;
+        let drawn = apart.as_deref().unwrap_or(&drawn);
+        write_visibilities(path, &setup.lights, &visibilities_of(drawn), chosen, bars)?;
     }
     if let Some(path) = &args.timings {
         // By a state of its own: what is written is as it would be without.
+        let technique = create(&lab.gpu(), &shading)?;
         let timed = |light: usize| {
             let TechniqueRun { timings, memory_bytes, auto_map_sizes, .. } =
-                view.run(&mut view.create(&choice)?, light, &TIMED)?;
+                view.run(&mut view.create(&shading)?, light, &TIMED)?;
             Ok(json!({
                 "light": setup.lights[light].name,
                 "timings": timings,
@@ -85,4 +103,8 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
         write_json(path, &timings)?;
     }
     Ok(())
+}
+
+fn visibilities_of(drawn: &[Drawn]) -> Vec<&Visibility> {
+    drawn.iter().map(|drawn| &drawn.visibility).collect()
 }

@@ -12,9 +12,20 @@ use crate::technique_run::TechniqueChoice;
 pub(super) const QUALITIES: [Quality; 4] = [Quality::Fast, Quality::Balanced, Quality::High, Quality::Best];
 
 /// Not searched: what is for hosts or debugging (`show`, `resolve`, `keep_bits`, `count_tests`), what picks among equals
-/// (`seed`), what gives another mask in each frame (`jitter`, `accumulate`, `splits_per_frame`) or on each run (`synchronized`).
-const LEFT_ALONE: [&str; 9] =
-    ["show", "resolve", "keep_bits", "count_tests", "seed", "jitter", "accumulate", "splits_per_frame", "synchronized"];
+/// (`seed`), what gives another mask in each frame (`jitter`, `accumulate`, `splits_per_frame`) or on each run (`synchronized`), and
+/// what makes masks something else than visibility, by which they are judged (`weights`).
+const LEFT_ALONE: [&str; 10] = [
+    "show",
+    "resolve",
+    "keep_bits",
+    "count_tests",
+    "seed",
+    "jitter",
+    "accumulate",
+    "splits_per_frame",
+    "synchronized",
+    "weights",
+];
 
 /// A technique with the parameters that differ from its defaults, in the order of their declarations.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

@@ -2,89 +2,15 @@
 
 use antumbra::Mask;
 use antumbra_light::{LightShape, SampleSet};
-use antumbra_render::shading::{IRRADIANCE_WGSL, LightBuffers};
 use antumbra_scene::{AlphaMode, Instance, Material, Mesh, Scene};
 use glam::{Mat4, Vec2};
-use wgpu::util::DeviceExt;
 
 use super::*;
+use crate::irradiance::analytic;
 use crate::picture::Visibility;
 use crate::test_support::{camera_at, lab_or_skip, quad};
 
-/// Runs `irradiance` of the shader at points with normals.
-const PROBE: &str = "
-struct Receiver { pos_in_world: vec3f, normal_in_world: vec3f, }
-@group(0) @binding(0) var<uniform> light: Light;
-@group(0) @binding(1) var<storage, read> light_points: array<vec4f>;
-@group(0) @binding(2) var<storage, read> receivers: array<Receiver>;
-@group(0) @binding(3) var results: texture_storage_2d<r32float, write>;
-@compute @workgroup_size(1) fn probe(@builtin(global_invocation_id) id: vec3u) {
-    let receiver = receivers[id.x];
-    textureStore(results, id.xy, vec4f(irradiance(light, receiver.pos_in_world, receiver.normal_in_world)));
-}
-";
-
-fn probe(lab: &LabDevice, light: &Light, receivers: &[(Vec3, Vec3)]) -> Vec<f32> {
-    let device = &lab.device;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("probe"),
-        source: wgpu::ShaderSource::Wgsl([IRRADIANCE_WGSL, PROBE].concat().into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("probe"),
-        layout: None,
-        module: &module,
-        entry_point: None,
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    let buffers = LightBuffers::new(device, light, Vec3::ZERO);
-    let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("probe"),
-        contents: buffers.uniform_bytes(),
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
-    let contents: Vec<Vec4> = receivers.iter().flat_map(|(x, n)| [x.extend(0.0), n.extend(0.0)]).collect();
-    let storage = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("probe"),
-        contents: bytemuck::cast_slice(&contents),
-        usage: wgpu::BufferUsages::STORAGE,
-    });
-    let results = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("probe"),
-        size: wgpu::Extent3d { width: receivers.len() as u32, height: 1, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
-        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
-    let resources = [
-        uniform.as_entire_binding(),
-        buffers.points.as_entire_binding(),
-        storage.as_entire_binding(),
-        wgpu::BindingResource::TextureView(&results.create_view(&wgpu::TextureViewDescriptor::default())),
-    ];
-    let entries: Vec<_> =
-        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("probe"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &entries,
-    });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(receivers.len() as u32, 1, 1);
-    }
-    lab.queue.submit([encoder.finish()]);
-    crate::readback::read_f32(lab, &results).unwrap()
-}
-
-/// The same by summing over points of the light, in double precision.
+/// Irradiance by summing over points of the light, in double precision.
 fn summed(light: &Light, x: Vec3, normal: Vec3) -> f64 {
     let frame = light.frame();
     let points = SampleSet::R2.points(1 << 15, 1);
@@ -135,7 +61,7 @@ fn receivers() -> Vec<(Vec3, Vec3)> {
 
 fn assert_irradiance(lab: &LabDevice, light: &Light, tolerance: f64) {
     let receivers = receivers();
-    for ((x, n), got) in receivers.iter().zip(probe(lab, light, &receivers)) {
+    for ((x, n), got) in receivers.iter().zip(analytic(lab, light, &receivers).unwrap()) {
         let want = summed(light, *x, *n);
         // Of what the receiver would get if it faced the light: what is cut by the horizon may be small.
         let facing = summed(light, *x, (light.center - *x).normalize());

@@ -19,6 +19,7 @@ mod reprojection;
 mod roughness;
 mod sample_based;
 mod sample_sets;
+mod shading;
 mod soft;
 mod translucent;
 mod view_samples;

@@ -428,12 +428,19 @@ impl Renderer {
             self.drawn = None;
         }
         let what = self.scene.as_ref().map_or(WarmUp::default(), |scene| scene.what);
-        for (side, work) in state.shown_sides().iter().zip(&mut self.sides) {
+        for (side, work) in self.drawn_sides(state).iter().zip(&mut self.sides) {
             if work.collect(&self.gpu) {
                 self.drawn = None;
             }
             work.request(&self.gpu, side, what, &self.compile);
         }
+    }
+
+    /// The sides as they are drawn: with masks for shading where nothing but the picture shows them. Everything else is told of visibility.
+    fn drawn_sides(&self, state: &State) -> Vec<Side> {
+        let is_picture = state.show == Show::Shaded && self.pointer_px.is_none();
+        let drawn = |side: &Side| if is_picture { side.for_shading() } else { side.clone() };
+        state.shown_sides().iter().map(drawn).collect()
     }
 
     /// Draws the sides, where anything that they are drawn from has changed or has not settled.
@@ -447,7 +454,7 @@ impl Renderer {
             is_seen: view.seen_version == Some(view.camera_version),
             is_exposed: scene.is_exposed,
             lights: state.setup.lights.clone(),
-            sides: state.shown_sides().to_vec(),
+            sides: self.drawn_sides(state),
             ready: self.sides.iter().filter(|side| side.kind().is_some()).count() as u64,
         };
         let frames = match &self.drawn {
@@ -461,7 +468,7 @@ impl Renderer {
         let shading =
             Shading::new(&self.gpu, &self.programs, &view.images, view.behind.clone(), lights, &scene.exposure);
         let frame = SideFrame { scene: &scene.scene, images: &view.images, shading: &shading, lights };
-        for (side, work) in state.shown_sides().iter().zip(&mut self.sides) {
+        for (side, work) in from.sides.iter().zip(&mut self.sides) {
             work.draw(&self.gpu, encoder, side, &frame);
         }
         self.version += 1;

@@ -149,6 +149,29 @@ fn views_and_sides_show_what_they_say() {
     assert!(half(&split, true).chunks_exact(4).all(|texel| texel[0] == 0 || texel[0] == 255), "not a hard shadow");
 }
 
+/// Pictures are shaded by the part of the irradiance that arrives; other views and the inspector get visibility.
+#[test]
+fn pictures_have_ratios_and_other_views_have_visibility() {
+    let Some((mut renderer, mut state)) = fixture("builtin:hall") else { return };
+    state.sides[0].set_kind(TechniqueKind::RayTraced);
+    state.sides[0].set("samples", "16");
+    let mut mask_of = |show, pointer_px| {
+        state.show = show;
+        renderer.inspect(pointer_px);
+        settle(&mut renderer, &state);
+        renderer.read_masks(&state);
+        settle(&mut renderer, &state);
+        renderer.take_mask(0, 0).unwrap().1
+    };
+    let shaded = mask_of(Show::Shaded, None);
+    let visibility = mask_of(Show::Visibility, None);
+    let apart = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(apart(&shaded, &visibility) > 0.02, "{}", apart(&shaded, &visibility));
+    // Masks of three channels are of half floats.
+    assert!(apart(&mask_of(Show::Shaded, Some(UVec2::new(20, 30))), &visibility) < 1e-3);
+    assert!(apart(&mask_of(Show::Shaded, None), &shaded) < 1e-6);
+}
+
 #[test]
 fn the_error_view_is_of_the_truth() {
     let Some((mut renderer, mut state)) = fixture("builtin:overlap") else { return };

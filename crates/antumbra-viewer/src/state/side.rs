@@ -1,6 +1,6 @@
 //! One side of the picture: a technique with its parameters, checked against their declarations as they are set.
 
-use antumbra::contract::{ParamSpec, ParamValue};
+use antumbra::contract::{ParamSpec, ParamValue, SampleWeights};
 use antumbra::{Quality, TechniqueKind};
 
 /// A technique, how much it may spend, and the value of every parameter.
@@ -93,6 +93,16 @@ impl Side {
             Quality::Balanced => self.kind.name().into(),
             quality => format!("{}:{quality}", self.kind.name()),
         }
+    }
+
+    /// The same with masks for shading alone: the part of a light's own irradiance that arrives ([`SampleWeights::Irradiance`]), where the
+    /// technique has it.
+    pub fn for_shading(&self) -> Self {
+        let mut side = self.clone();
+        if SampleWeights::is_parameter_of(self.kind.param_specs()) {
+            side.set(SampleWeights::KEY, &SampleWeights::Irradiance.to_string());
+        }
+        side
     }
 
     /// The parameters that are not as the quality has them, as text.

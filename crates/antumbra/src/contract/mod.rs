@@ -23,6 +23,7 @@ mod params;
 mod points;
 mod quality;
 mod receivers;
+mod sample_weights;
 
 pub(crate) use casters::tints;
 pub use casters::{DepthMapCaster, MeshCaster, MeshVersion, Opacity, PreparedCasters, SurfaceCoverage, SurfaceTexture};
@@ -41,3 +42,4 @@ pub use points::{PointBuffer, PointReceivers, PointWidths};
 pub use quality::{Departure, Printed, Quality};
 pub(crate) use receivers::SeenPoint;
 pub use receivers::{Camera, DepthConvention, PreparedReceivers, Receivers, Surfaces};
+pub use sample_weights::SampleWeights;

@@ -51,6 +51,12 @@ macro_rules! params_in_full {
                 more "Another set of samples of the same quality.";
         ] $rest $($body)* }
     };
+    ($head:tt [$($done:tt)*] $rest:tt shared weights, more $more:literal; $($body:tt)*) => {
+        $crate::contract::params_in_full! { $head [ $($done)*
+            /// What each light sample counts in a receiver's visibility.
+            weights: $crate::contract::SampleWeights = $crate::contract::SampleWeights::Emission, more $more;
+        ] $rest $($body)* }
+    };
     ($head:tt [$($done:tt)*] $rest:tt shared bias_scale; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Scale of the automatic bias.

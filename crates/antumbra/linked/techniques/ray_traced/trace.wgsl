@@ -52,6 +52,11 @@ fn visibility_of(start: Start, point: vec4f) -> vec3f {
     return traversal_passes(sight, start.offset_m);
 }
 
+fn given_to(start: Start, point: vec4f) -> f32 {
+    let facing = irradiance_facing_of_points(inputs_light_source, start.x);
+    return irradiance_given_by_point(inputs_light_source, facing, start.normal, point.xyz - point.w * start.x);
+}
+
 const MOST_PACKED = 1023.0;
 
 fn pack(passed: vec3f) -> u32 {
@@ -85,6 +90,27 @@ fn add(pixel: vec2u, share: vec3f) {
     }
 }
 
+fn add_irradiance(pixel: vec2u, arriving: vec3f, given: f32) {
+    var all = given;
+    if traversal_rays.point_count < traversal_rays.all_points {
+        let size = inputs_receiver_view.size_px;
+        let at = traversal_rays.passed_stride * size.x * size.y + pixel.y * size.x + pixel.x;
+        if traversal_rays.first_point > 0u {
+            all += bitcast<f32>(passed_before[at]);
+        }
+        passed_before[at] = bitcast<u32>(all);
+    }
+    if all <= 0.0 {
+        inputs_write_visibility(pixel, 0.0);
+        return;
+    }
+    var part = arriving / all;
+    if traversal_rays.first_point > 0u {
+        part += inputs_read_visibility_rgb(pixel) * ((all - given) / all);
+    }
+    inputs_write_visibility_rgb(pixel, min(part, vec3f(1.0)));
+}
+
 @compute @workgroup_size(8, 8)
 fn trace(@builtin(global_invocation_id) id: vec3u) {
     let pixel = id.xy;
@@ -104,13 +130,23 @@ fn trace(@builtin(global_invocation_id) id: vec3u) {
     let point_count = traversal_rays.point_count;
     for (var i = 0u; i < point_count; i++) {
         let point = point_of(traversal_rays.first_point + i, shift, start.x);
-        seen += point.weight * with_earlier(pixel, i, visibility_of(start, point.at));
-        sum += point.weight;
+        var weight = point.weight;
+        if traversal_rays.weighs_irradiance == 1u {
+            weight *= given_to(start, point.at);
+        }
+        seen += weight * with_earlier(pixel, i, visibility_of(start, point.at));
+        sum += weight;
         if traversal_turns_left == 0u {
             break;
         }
     }
-    if traversal_rays.is_last_group == 1u {
+    if traversal_rays.is_last_group == 0u {
+        return;
+    }
+    if traversal_rays.weighs_irradiance == 1u {
+        add_irradiance(pixel, seen, sum);
+    }
+    else {
         add(pixel, traversal_rays.share * seen / max(sum, 1e-20));
     }
 }
@@ -330,6 +366,22 @@ fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
     }
     let pos_in_world = inputs_position_in_world(pixel, depth);
     return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+fn irradiance_facing_of_points(light: light_LightSource, x: vec3f) -> vec3f {
+    if light.kind == light_KIND_SPHERE {
+        return -normalize(light.center_in_world - x);
+    }
+    return light.axis_in_world;
+}
+
+fn irradiance_given_by_point(light: light_LightSource, facing: vec3f, normal: vec3f, d: vec3f) -> f32 {
+    let inverse_squared = 1.0 / max(dot(d, d), 1e-30);
+    let towards = sqrt(inverse_squared) * d;
+    let arriving = max(dot(normal, towards), 0.0);
+    let has_surface = light.kind != light_KIND_ELLIPSOID && light.kind != light_KIND_POINTS;
+    let leaving = select(1.0, max(-dot(facing, towards), 0.0), has_surface);
+    return arriving * leaving * inverse_squared;
 }
 
 const light_KIND_RECTANGLE = 0u;
@@ -624,7 +676,7 @@ struct traversal_RayBatch {
     rotate: u32,
     most_turns: u32,
     passed_stride: u32,
-    padding_0: u32
+    weighs_irradiance: u32
 }
 
 @group(1) @binding(0)

@@ -68,7 +68,7 @@ gpu_structs! {
         rotate: u32,
         most_turns: u32,
         passed_stride: u32,
-        padding_0: u32,
+        weighs_irradiance: u32,
     }
 }
 

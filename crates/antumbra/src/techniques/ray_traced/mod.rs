@@ -9,6 +9,10 @@
 //! casters may have moved. All of it is made on the device: the processor's work does not grow with the triangles. Source of the
 //! trees, and why not another: `tree/mod.rs`.
 //!
+//! With `weights=irradiance` a ray counts what its point of the light gives the receiver: the mask is the part of the light's own
+//! irradiance that arrives, by which a host multiplies an area light (Heitz, Hill, McGuire, "Combining Analytic Direct Illumination and
+//! Stochastic Shadows", I3D 2018). An emission texture weighs by its luminance.
+//!
 //! A ray has a place in each tree's order of nodes and nothing else: no stack. It ends where nothing of the light is left. Casters
 //! with textures are asked where a triangle is met, twelve textures a pass, with further passes where there are more; what passes several
 //! tinted surfaces is their product along each ray.
@@ -35,7 +39,7 @@ use glam::{Vec3, Vec4};
 
 use antumbra_light::{Light, LightShape};
 
-use crate::contract::{CastersKey, Error, MeshCaster, Opacity, PreparedFrame};
+use crate::contract::{CastersKey, Error, MeshCaster, Opacity, PreparedFrame, SampleWeights};
 use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, sized_buffer, upload_with_room,
@@ -208,6 +212,7 @@ impl RayTraced {
         let tables =
             upload_with_room(stage, &mut self.tables, "antumbra ray tables", bytemuck::cast_slice(table)).clone();
         let surfaces = textures.groups(stage, &self.surfaces_layout, &self.no_texture);
+        let weighs_irradiance = params.weights == SampleWeights::Irradiance;
         let most_turns = stage.device.most_turns();
         let most_rays = if most_turns < TURNS_OF_CARDS { PASS_RAYS } else { PASS_RAYS_OF_CARDS };
         let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
@@ -215,7 +220,8 @@ impl RayTraced {
             (most_rays, 0)
         } else {
             let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
-            let rays = (most_bytes / 4 / pixels.max(1)).min(u64::from(most_rays)) as u32;
+            let words = most_bytes / 4 / pixels.max(1);
+            let rays = words.saturating_sub(weighs_irradiance.into()).min(u64::from(most_rays)) as u32;
             (rays, rays)
         };
         if pass_rays == 0 {
@@ -226,7 +232,8 @@ impl RayTraced {
                 remedy: "use a smaller mask or fewer textures, or ask for a larger max_storage_buffer_binding_size",
             });
         }
-        let passed_bytes = 4 * (pixels * u64::from(passed_stride)).max(1);
+        let keeps_sums = weighs_irradiance && points.len() > pass_rays as usize;
+        let passed_bytes = 4 * (pixels * (u64::from(passed_stride) + u64::from(keeps_sums))).max(1);
         let usage = wgpu::BufferUsages::STORAGE;
         let passed = sized_buffer(stage, &mut self.passed, "antumbra ray passed", passed_bytes, usage).clone();
         let all_weight = points.iter().map(|point| f64::from(point.weight)).sum::<f64>().max(f64::MIN_POSITIVE);
@@ -248,7 +255,7 @@ impl RayTraced {
                     rotate: is_rotated.into(),
                     most_turns,
                     passed_stride,
-                    padding_0: 0,
+                    weighs_irradiance: weighs_irradiance.into(),
                 };
                 let traced = Traced {
                     rays: &stage.uniform("antumbra rays", &rays),

@@ -11,6 +11,8 @@ params! {
         /// Distribution of the rays' ends over the light.
         sample_set: SampleSet = SampleSet::Sobol,
             more "sobol is the most even for powers of two, r2 and stratified for other numbers.";
+        shared weights, more "irradiance: the mask is the part of an area light's own irradiance that arrives; with more rays than a \
+                              pass has, 4 bytes a pixel.";
         /// Random offset of the samples at each pixel, except for lights of points and emission textures.
         rotate: bool = true,
             more "true shows noise, false shows bands.";

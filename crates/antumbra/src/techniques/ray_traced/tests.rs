@@ -1,5 +1,6 @@
 //! Trees against their twin, then masks against closed forms and brute force.
 
+mod irradiance;
 mod measure;
 
 use antumbra_light::{Aabb, Light, LightShape, SampleSet, hash_u32};

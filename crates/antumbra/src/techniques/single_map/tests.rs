@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 use super::taps::Taps;
 use crate::TechniqueKind;
 use crate::shadow::Casters;
-use crate::testing::{Case, gpu, rmse, test_ground};
+use crate::testing::{Case, gpu, half_plane_ratio_errors, rmse, test_ground};
 
 /// How high the light's centre stands above the ground, and half its size.
 const HEIGHT_M: f32 = 0.1;
@@ -77,4 +77,13 @@ fn what_the_horizon_leaves_of_a_light_is_its_closed_form() {
             assert!(error < 0.01, "{kind}, {:?}: rmse {error} about {share}", case.light.shape);
         }
     }
+}
+
+#[test]
+fn rays_through_the_map_have_lambert_s_part_of_the_irradiance() {
+    let Some(gpu) = gpu() else { return };
+    let settings = [("map_size", "1024"), ("samples", "1024"), ("smooth", "false")];
+    let [ours, apart] = half_plane_ratio_errors(gpu, TechniqueKind::Smrt, &settings);
+    println!("{ours:.5}; visibility alone {apart:.4}");
+    assert!(ours < 0.002 && apart > 0.03, "{ours}; visibility {apart}");
 }

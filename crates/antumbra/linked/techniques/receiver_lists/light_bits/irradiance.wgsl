@@ -12,16 +12,6 @@ var<storage, read> places: array<vec2u>;
 @group(1) @binding(3)
 var<storage, read> emitters: array<vec4f>;
 
-fn given_by(rays: points_Rays, normal: vec3f, at: vec3f) -> f32 {
-    let d = rays.to_center + at.x * rays.right + at.y * rays.up + at.z * rays.axis;
-    let inverse_squared = 1.0 / max(dot(d, d), 1e-30);
-    let towards = sqrt(inverse_squared) * d;
-    let arriving = max(dot(normal, towards), 0.0);
-    let has_surface = inputs_light_source.kind != light_KIND_ELLIPSOID && inputs_light_source.kind != light_KIND_POINTS;
-    let leaving = select(1.0, max(-dot(rays.axis, towards), 0.0), has_surface);
-    return arriving * leaving * inverse_squared;
-}
-
 fn passed_by_tints(pixel: vec2u, open_weight: f32) -> vec3f {
     if settings.first_passed == 0u {
         return vec3f(1.0);
@@ -48,7 +38,8 @@ fn irradiance(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < settings.point_count; i++) {
         let place = emitters[2u * i];
         let emission = vec4f(emitters[2u * i + 1u].rgb, place.w);
-        let given = given_by(rays, receiver.normal_in_world, place.xyz) * emission;
+        let d = rays.to_center + place.x * rays.right + place.y * rays.up + place.z * rays.axis;
+        let given = irradiance_given_by_point(inputs_light_source, rays.axis, receiver.normal_in_world, d) * emission;
         let open = f32((bits[first_word + i / 32u] >> (i & 31u)) & 1u);
         all += given;
         seen += open * given;
@@ -221,6 +212,15 @@ fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
     }
     let pos_in_world = inputs_position_in_world(pixel, depth);
     return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+fn irradiance_given_by_point(light: light_LightSource, facing: vec3f, normal: vec3f, d: vec3f) -> f32 {
+    let inverse_squared = 1.0 / max(dot(d, d), 1e-30);
+    let towards = sqrt(inverse_squared) * d;
+    let arriving = max(dot(normal, towards), 0.0);
+    let has_surface = light.kind != light_KIND_ELLIPSOID && light.kind != light_KIND_POINTS;
+    let leaving = select(1.0, max(-dot(facing, towards), 0.0), has_surface);
+    return arriving * leaving * inverse_squared;
 }
 
 const light_KIND_RECTANGLE = 0u;

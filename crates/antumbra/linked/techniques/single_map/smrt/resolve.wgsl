@@ -20,6 +20,8 @@ var<uniform> smrt: SmrtUniform;
 
 override IS_SMOOTHED: bool = false;
 
+override WEIGHS_IRRADIANCE: bool = false;
+
 @group(3) @binding(0)
 var noisy: texture_storage_2d<r32uint, write>;
 
@@ -42,7 +44,8 @@ struct Open {
     least_magnification: f32,
     pixel_m: f32,
     fan: fan_Fan,
-    light: light_taps_LightPlane
+    light: light_taps_LightPlane,
+    receiver: inputs_Receiver
 }
 
 fn known(visibility: f32) -> Open {
@@ -72,7 +75,8 @@ fn opened(receiver: inputs_Receiver, pixel: vec2u) -> Open {
     let texel_magnification = per_g * map_light_view.texel_in_plane / (2.0 * smrt.narrow_half_extent);
     let light = light_taps_light_plane(receiver, receiver_in_light, shift);
     let pixel_m = inputs_snapped_m(1.0, receiver.pos_in_world);
-    return Open(true, share, shift, blocker_range_largest_g(plane, extent), per_g, texel_magnification, pixel_m, fan, light);
+    let seen = select(share, 1.0, WEIGHS_IRRADIANCE);
+    return Open(true, seen, shift, blocker_range_largest_g(plane, extent), per_g, texel_magnification, pixel_m, fan, light, receiver);
 }
 
 fn texel_at(fan: fan_Fan, offset: vec2f, g: f32, jitter: vec2f) -> vec2f {
@@ -130,12 +134,21 @@ fn findings(rays: Rays) -> u32 {
     return select(0u, FREE, rays.free > 0.0 || rays.weight <= 0.0) | select(0u, BLOCKED, rays.free < rays.weight || rays.weight <= 0.0);
 }
 
+fn weight_at(receiver: inputs_Receiver, place: vec3f) -> f32 {
+    let emitted = light_taps_weight_of(place);
+    if !WEIGHS_IRRADIANCE {
+        return emitted;
+    }
+    let facing = irradiance_facing_of_points(inputs_light_source, receiver.pos_in_world);
+    return emitted * irradiance_given_by_point(inputs_light_source, facing, receiver.normal_in_world, light_taps_segment_to(receiver, place));
+}
+
 fn follow(open: Open, steps: bins_Steps, before: Rays, begin: u32, end: u32) -> Rays {
     let first = vec3f(open.shift, fract(open.shift.x + GOLDEN * open.shift.y));
     var sums = before;
     for (var i = begin; i < min(end, smrt.ray_count); i++) {
         let place = end_of(open.light, light_taps_taps[smrt.tile_search_count + i].xyz);
-        let weight = light_taps_weight_of(place);
+        let weight = weight_at(open.receiver, place);
         let is_above = light_taps_is_above_horizon(open.light, place);
         sums.weight += select(0.0, weight, is_above || !horizon_has_horizon_share());
         if is_above {
@@ -400,6 +413,22 @@ fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
     }
     let pos_in_world = inputs_position_in_world(pixel, depth);
     return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+fn irradiance_facing_of_points(light: light_LightSource, x: vec3f) -> vec3f {
+    if light.kind == light_KIND_SPHERE {
+        return -normalize(light.center_in_world - x);
+    }
+    return light.axis_in_world;
+}
+
+fn irradiance_given_by_point(light: light_LightSource, facing: vec3f, normal: vec3f, d: vec3f) -> f32 {
+    let inverse_squared = 1.0 / max(dot(d, d), 1e-30);
+    let towards = sqrt(inverse_squared) * d;
+    let arriving = max(dot(normal, towards), 0.0);
+    let has_surface = light.kind != light_KIND_ELLIPSOID && light.kind != light_KIND_POINTS;
+    let leaving = select(1.0, max(-dot(facing, towards), 0.0), has_surface);
+    return arriving * leaving * inverse_squared;
 }
 
 const light_KIND_RECTANGLE = 0u;
@@ -822,6 +851,12 @@ fn light_taps_half_axes(receiver: inputs_Receiver) -> mat3x3f {
         return mat3x3f(right * inputs_light_source.half_right, cross(towards, right) * inputs_light_source.half_right, vec3f());
     }
     return mat3x3f(inputs_light_source.right_in_world * inputs_light_source.half_right, inputs_light_source.up_in_world * inputs_light_source.half_up, inputs_light_source.axis_in_world * inputs_light_source.half_axis);
+}
+
+fn light_taps_segment_to(receiver: inputs_Receiver, place: vec3f) -> vec3f {
+    let is_sun = light_taps_LIGHT_KIND == light_KIND_SUN;
+    let to_center = select(inputs_light_source.center_in_world - receiver.pos_in_world, -inputs_light_source.axis_in_world, is_sun);
+    return to_center + light_taps_half_axes(receiver) * place;
 }
 
 fn light_taps_in_light(v: vec3f) -> vec3f {

@@ -53,8 +53,9 @@ mod params;
 #[cfg(test)]
 mod tests;
 
+pub use crate::contract::SampleWeights;
 pub use crate::techniques::receiver_lists::Traversal;
-pub use params::{RegionOfInfluence, SampleBasedParams, SampleEvaluation, SampleWeights};
+pub use params::{RegionOfInfluence, SampleBasedParams, SampleEvaluation};
 
 /// Exact soft shadows.
 #[derive(Debug)]

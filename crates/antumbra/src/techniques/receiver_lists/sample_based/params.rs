@@ -23,16 +23,6 @@ param_choice! {
     }
 }
 
-param_choice! {
-    /// What each light sample of [`SampleBased`](super::SampleBased) counts.
-    pub enum SampleWeights {
-        /// Its luminance: lighting and visibility are apart, as published.
-        Emission = "emission",
-        /// What it gives the receiver: emission in colour, both cosines, the distance. The paper's equation 1.
-        Irradiance = "irradiance",
-    }
-}
-
 params! {
     /// Parameters of [`SampleBased`](super::SampleBased).
     pub struct SampleBasedParams {
@@ -74,9 +64,7 @@ params! {
         /// Skips triangles of closed meshes that face all of the light.
         cull_facing: bool = true,
             more "Saves up to half of the triangles, changes nothing else.";
-        /// What each light sample counts in a receiver's visibility.
-        weights: SampleWeights = SampleWeights::Emission,
-            more "irradiance is equation 1: the mask is the part of an area light's own irradiance that arrives, channel by channel; \
+        shared weights, more "irradiance is equation 1: the mask is the part of an area light's own irradiance that arrives, channel by channel; \
                   costs a pass, and 4 bytes a pixel for each 32 samples.";
         shared sub;
         /// Random rotation of the light samples at each pixel, where the light's shape allows.

@@ -39,6 +39,9 @@
 //!    penumbra, whose width follows from the light's shape and the nearest blocker that the rays found. In narrower ones all
 //!    rays are followed, and means reach less far.
 //!
+//! With `weights=irradiance` a ray counts what its point of the light gives the receiver, as in [`ray_traced`](crate::techniques::ray_traced):
+//! the mask is the part of the light's own irradiance that arrives, and the horizon's share is part of that irradiance, not of the mask.
+//!
 //! A rectangle's rays end in the same cell of the light for all of a tile's pixels at a time, at a place of each pixel's own within
 //! it: neighbours read nearby texels, which costs a graphics card a seventh less than places all over the light.
 //!
@@ -74,7 +77,7 @@
 use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec2;
 
-use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
+use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame, SampleWeights};
 use crate::frame::smoothing::{PreparedSmoothing, Smoothing};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
@@ -118,7 +121,7 @@ impl Technique for Smrt {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let defaults = SmrtParams::default();
-        let constants = constants(TapsProgram::usual(defaults.layers), defaults.smooth);
+        let constants = constants(TapsProgram::usual(defaults.layers), defaults.smooth, defaults.weights);
         let layouts = vec![Smoothing::written_layout(gpu)];
         let resolve =
             MapResolve::with_groups(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers, layouts);
@@ -160,7 +163,7 @@ impl Technique for Smrt {
         let search = (search_taps, TapUse::Search, tile_search_count);
         let lists = TapLists([search, (taps, TapUse::Filter, params.samples)]);
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
-        let pass = ResolvePass { map, constants: &constants(program, is_smooth), is_sparse: false };
+        let pass = ResolvePass { map, constants: &constants(program, is_smooth, params.weights), is_sparse: false };
         let smoothing = self.smoothing.prepare(stage, frame.receivers.size_px, is_smooth);
         let resolve = lists.with_kernel(|kernel| self.resolve.prepare(stage, frame, &pass, &uniform, kernel))?;
         Ok(PreparedSmrt { resolve, smoothing })
@@ -181,9 +184,12 @@ impl Technique for Smrt {
 }
 
 /// Of the resolve's shader, by their names.
-fn constants(taps: TapsProgram, is_smooth: bool) -> [(&'static str, f64); 5] {
+fn constants(taps: TapsProgram, is_smooth: bool, weights: SampleWeights) -> [(&'static str, f64); 6] {
     let [kind, layers, emission, progressive] = taps.constants();
-    [kind, layers, emission, progressive, ("IS_SMOOTHED", f64::from(u8::from(is_smooth)))]
+    let is = |is| f64::from(u8::from(is));
+    let weighs_irradiance = weights == SampleWeights::Irradiance;
+    let smoothed = ("IS_SMOOTHED", is(is_smooth));
+    [kind, layers, emission, progressive, smoothed, ("WEIGHS_IRRADIANCE", is(weighs_irradiance))]
 }
 
 /// Along each side of the unit square, cells with equal numbers of the rays' ends, whatever part of the rays is followed: any 16

@@ -21,6 +21,7 @@ params! {
         /// Distribution of the rays' ends over the light.
         sample_set: SampleSet = SampleSet::Sobol,
             more "sobol is the most even for powers of two, r2 and stratified for other numbers.";
+        shared weights, more "irradiance: the mask is the part of an area light's own irradiance that arrives.";
         /// Number of peeled layers of casters that rays may hit; one with a host's map.
         layers: u32 = 3, in 1..=4,
             more "Less light leaks below stacked occluders; each layer is one more pass over the casters and one more map.";

@@ -7,21 +7,7 @@ use super::super::{SampleBased, SampleBasedParams, SampleWeights};
 use crate::contract::{Mask, MaskChannels};
 use crate::gpu::{Gpu, Recorder};
 use crate::shadow::{Casters, Frame, Shadow};
-use crate::testing::{Case, Mesh, SIZE, gpu, read_layer, read_storage};
-
-/// Irradiance of a point of the ground from a rectangle of unit radiance that looks straight down, by its edges: Lambert's
-/// formula, Σ θᵢ Γᵢ · n / 2π.
-fn irradiance(p: DVec3, height: f64, [x0, x1]: [f64; 2], [z0, z1]: [f64; 2]) -> f64 {
-    if x0 >= x1 {
-        return 0.0;
-    }
-    let corners = [(x0, z0), (x1, z0), (x1, z1), (x0, z1)].map(|(x, z)| (DVec3::new(x, height, z) - p).normalize());
-    let edge = |i: usize| {
-        let (a, b) = (corners[i], corners[(i + 1) % 4]);
-        a.dot(b).acos() * a.cross(b).normalize().y
-    };
-    ((0..4).map(edge).sum::<f64>() / std::f64::consts::TAU).abs()
-}
+use crate::testing::{Case, Mesh, SIZE, gpu, lambert_irradiance, read_layer, read_storage};
 
 /// A case's mask in three channels, with the bits behind it and their points' order.
 fn masks(gpu: &Gpu, case: &Case, params: SampleBasedParams) -> ([Vec<f32>; 3], Vec<u32>, Vec<u32>) {
@@ -61,7 +47,7 @@ fn half_planes_leave_lambert_s_part_of_each_color() {
     for (i, p) in &pixels {
         let first_seen = f64::from(-p.x) * (1.0 - 0.375) / 0.375;
         // The part of a half of the light, from x0 to x1.
-        let of = |[x0, x1]: [f64; 2], from: f64| irradiance(p.as_dvec3(), 4.0, [x0.max(from), x1], [-2.0, 2.0]);
+        let of = |[x0, x1]: [f64; 2], from: f64| lambert_irradiance(p.as_dvec3(), 4.0, [x0.max(from), x1], [-2.0, 2.0]);
         let [left, right] = [[-2.0, 0.0], [0.0, 2.0]];
         let parts = [left, right].map(|half| of(half, first_seen) / of(half, -2.0));
         let [left_mask, right_mask] = if red_is_right { [&blue, &red] } else { [&red, &blue] };
