@@ -73,6 +73,9 @@ fn an_outline_goes_about_all_that_touches() {
     assert!(patches > 5.0 * outlines, "rmse {patches} by patches");
 }
 
+/// A light with its name, a bound on rmse, the share that lies beyond a line by the line's offset and angle, and what else it has.
+type Lit<'a> = (&'a str, LightShape, f32, &'a dyn Fn(f32, f32) -> f32, &'a dyn Fn(&mut Light));
+
 /// The edge of a half plane, turned about the light's axis: Green's form of the square and of the disc for edges of every slant, and
 /// points where they have none.
 #[test]
@@ -89,8 +92,7 @@ fn edges_of_every_slant_have_their_area() {
         (c.acos() - c * (1.0 - c * c).sqrt()) / std::f32::consts::PI
     };
     let even = |light: &mut Light| light.emission = Some(EmissionTexture::gray(3, 2, vec![0.7; 6]));
-    type Share<'a> = &'a dyn Fn(f32, f32) -> f32;
-    let lights: [(&str, LightShape, f32, Share<'_>, &dyn Fn(&mut Light)); 4] = [
+    let lights: [Lit<'_>; 4] = [
         ("rectangle", RECTANGLE, 0.004, &square, &|_| ()),
         ("disk", LightShape::Disk { radius_m: 0.5 }, 0.004, &disc, &|_| ()),
         ("sphere", LightShape::Sphere { radius_m: 0.5 }, 0.006, &disc, &|_| ()),
