@@ -817,11 +817,12 @@ const squares_MOST_SQUARES = 70u;
 
 const squares_MOST_RINGS = 14u;
 
+const squares_LARGEST_SPAN = 1000000.0;
+
 struct squares_Ring {
     at: map_receiver_MapReceiver,
     inverse_z: f32,
-    extent: vec2f,
-    most_g: f32,
+    reach: vec2f,
     level: u32,
     is_inner: bool,
     first: vec2i,
@@ -835,33 +836,35 @@ fn squares_side_of(ring: squares_Ring) -> f32 {
     return f32(1u << ring.level);
 }
 
-fn squares_first_at(ring: squares_Ring, g: f32) -> vec2i {
-    return vec2i(floor(clamp(ring.at.center - ring.extent * g, vec2f(-1.0), vec2f(map_light_view.map_size + 1.0)) / squares_side_of(ring)));
+fn squares_first_within(ring: squares_Ring, reach: vec2f) -> vec2i {
+    return vec2i(floor(clamp(ring.at.center - reach, vec2f(-1.0), vec2f(map_light_view.map_size + 1.0)) / squares_side_of(ring)));
 }
 
-fn squares_last_at(ring: squares_Ring, g: f32) -> vec2i {
-    return vec2i(floor(clamp(ring.at.center + ring.extent * g, vec2f(-1.0), vec2f(map_light_view.map_size + 1.0)) / squares_side_of(ring)));
+fn squares_last_within(ring: squares_Ring, reach: vec2f) -> vec2i {
+    return vec2i(floor(clamp(ring.at.center + reach, vec2f(-1.0), vec2f(map_light_view.map_size + 1.0)) / squares_side_of(ring)));
 }
 
 fn squares_with_inside(ring: squares_Ring) -> squares_Ring {
     var open = ring;
-    open.inside_first = squares_first_at(ring, 0.5 * ring.most_g);
-    open.inside_last = select(squares_last_at(ring, 0.5 * ring.most_g), open.inside_first - 1, ring.level == 0u);
+    open.inside_first = squares_first_within(ring, 0.5 * ring.reach);
+    open.inside_last = select(squares_last_within(ring, 0.5 * ring.reach), open.inside_first - 1, ring.level == 0u);
     return open;
 }
 
 fn squares_outermost(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, most_g: f32, along: u32, share: vec2f) -> squares_Ring {
-    var ring = squares_Ring(at, 1.0 / z_m, extent, most_g, 0u, false, vec2i(), vec2i(), vec2i(), vec2i(), share);
-    let span = squares_last_at(ring, most_g) - squares_first_at(ring, most_g);
-    ring.level = 32u - countLeadingZeros(u32(max(span.x, span.y)) / along);
-    ring.first = squares_first_at(ring, most_g) - 1;
-    ring.last = squares_last_at(ring, most_g) + 1;
+    let farthest = max(abs(at.center), abs(map_light_view.map_size - at.center)) + 1.0;
+    let reach = min(extent * most_g, farthest);
+    var ring = squares_Ring(at, 1.0 / z_m, reach, 0u, false, vec2i(), vec2i(), vec2i(), vec2i(), share);
+    let span = 2.0 * max(reach.x, reach.y);
+    ring.level = min(32u - countLeadingZeros(u32(min(span, squares_LARGEST_SPAN)) / along), squares_MOST_RINGS - 1u);
+    ring.first = squares_first_within(ring, reach) - 1;
+    ring.last = squares_last_within(ring, reach) + 1;
     return squares_with_inside(ring);
 }
 
 fn squares_inside_of(ring: squares_Ring) -> squares_Ring {
     var inside = ring;
-    inside.most_g = 0.5 * ring.most_g;
+    inside.reach = 0.5 * ring.reach;
     inside.level = ring.level - 1u;
     inside.is_inner = true;
     inside.first = 2 * ring.inside_first;
@@ -873,7 +876,7 @@ fn squares_may_block_inside(ring: squares_Ring, plane: space_ReceiverPlane) -> b
     if ring.level == 0u {
         return false;
     }
-    let reach = 0.5 * ring.most_g * ring.extent + squares_side_of(ring);
+    let reach = 0.5 * ring.reach + squares_side_of(ring);
     return blocker_range_g_of_depth(plane, blocker_range_nearest_depth(plane.uv, reach / map_light_view.map_size)) > 0.0;
 }
 

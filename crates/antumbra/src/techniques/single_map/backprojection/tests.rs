@@ -122,6 +122,20 @@ fn edges_of_every_slant_have_their_area() {
     }
 }
 
+/// A plate close below the light, in which the light takes all of the map at every scale: rings are no larger than loops go.
+#[test]
+fn a_cover_that_fills_the_map_hides_all() {
+    let Some(gpu) = gpu() else { return };
+    let mut case = Case::half_plane(gpu, RECTANGLE);
+    case.meshes[1] = Mesh::horizontal(gpu, Vec2::splat(-1.2), Vec2::splat(1.2), 3.9);
+    let pixels = case.ground_pixels(|p| p.x.abs().max(p.z.abs()) < 2.5);
+    for squares in ["4", "16", "64"] {
+        let error = rmse(&pixels, &case.run(gpu, KIND, &[("squares", squares)]), |_| 0.0);
+        println!("{squares} squares: rmse {error:.4}");
+        assert!(error < 1e-3, "{squares} squares: rmse {error}");
+    }
+}
+
 #[test]
 fn loops_hold_every_number_of_squares() {
     let spec = BackprojectionParams::specs().iter().find(|spec| spec.key == "squares").expect("a parameter");
