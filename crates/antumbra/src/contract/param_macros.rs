@@ -51,10 +51,11 @@ macro_rules! params_in_full {
                 more "Another set of samples of the same quality.";
         ] $rest $($body)* }
     };
+    // By the name that the caller imports: the type is declared by one of these macros itself.
     ($head:tt [$($done:tt)*] $rest:tt shared weights, more $more:literal; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// What each light sample counts in a receiver's visibility.
-            weights: $crate::contract::SampleWeights = $crate::contract::SampleWeights::Emission, more $more;
+            weights: SampleWeights = SampleWeights::Emission, more $more;
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared bias_scale; $($body:tt)*) => {

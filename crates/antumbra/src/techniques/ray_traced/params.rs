@@ -1,6 +1,6 @@
 use antumbra_light::SampleSet;
 
-use crate::contract::params;
+use crate::contract::{SampleWeights, params};
 
 params! {
     /// Parameters of [`RayTraced`](super::RayTraced).

@@ -1,6 +1,6 @@
 use antumbra_light::SampleSet;
 
-use crate::contract::{param_choice, params};
+use crate::contract::{SampleWeights, param_choice, params};
 use crate::techniques::receiver_lists::Traversal;
 
 param_choice! {

@@ -1,6 +1,6 @@
 use antumbra_light::SampleSet;
 
-use crate::contract::{MapSize, params};
+use crate::contract::{MapSize, SampleWeights, params};
 
 params! {
     /// Parameters of [`Smrt`](super::Smrt).
