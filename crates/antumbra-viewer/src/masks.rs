@@ -166,7 +166,7 @@ impl Masks {
         let mut state = State::new(case.side.kind(), TechniqueKind::Hard);
         state.open(case.scene, &scene, None);
         state.setup.lights.truncate(1);
-        // For the picture masks are weighed by irradiance.
+        // *Shaded* has ratio masks.
         state.show = Show::Visibility;
         let mut renderer = Renderer::new(&self.gpu, Compile::AtOnce);
         renderer.open(&scene, state.scene.as_ref().map_or(0, |open| open.generation));

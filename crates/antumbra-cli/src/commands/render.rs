@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use antumbra::Error;
+use antumbra::{AnyShadow, Error};
 use antumbra_lab::error::LabError;
 use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_picture};
 use antumbra_lab::output_files::check_json_path;
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
-use antumbra_lab::technique_run::{Drawn, TechniqueChoice, TechniqueRun, Timing, create, parameters_of};
+use antumbra_lab::technique_run::{Drawn, TechniqueRun, Timing, create, parameters_of};
 use antumbra_lab::view::View;
 use serde_json::json;
 
@@ -36,30 +36,31 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     end_shadows(&mut setup.camera, args.shadow_distance);
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let lab = open_device(&args.adapter)?;
-    create(&lab.gpu(), &choice)?;
-    bars.begin("drawing", 0);
-    let make_view = if args.coherent { View::coherent } else { View::new };
-    let view = make_view(&lab, &scene, &setup, args.view.size)?;
-    let lights = 0..setup.lights.len();
-    let draw = |choice: &TechniqueChoice| {
-        let mut technique = view.create(choice)?;
-        lights.clone().map(|light| view.draw(&mut technique, light, args.frames)).collect::<Result<Vec<_>, _>>()
-    };
     let mut shading = match args.shading {
         ShadingFactor::Ratio => choice.for_shading(),
         ShadingFactor::Product => choice.clone(),
     };
-    let drawn = match draw(&shading) {
+    let mut technique = create(&lab.gpu(), &shading)?;
+    bars.begin("drawing", 0);
+    let make_view = if args.coherent { View::coherent } else { View::new };
+    let view = make_view(&lab, &scene, &setup, args.view.size)?;
+    let lights = 0..setup.lights.len();
+    let draw = |technique: &mut AnyShadow| {
+        lights.clone().map(|light| view.draw(technique, light, args.frames)).collect::<Result<Vec<_>, _>>()
+    };
+    let drawn = match draw(&mut technique) {
         // Weights take memory. Nobody asked for them.
         Err(LabError::Technique(Error::Unsupported { .. })) if shading != choice => {
             shading = choice.clone();
-            draw(&shading)?
+            technique = view.create(&shading)?;
+            draw(&mut technique)?
         }
         drawn => drawn?,
     };
     let picture = view.shade(&visibilities_of(&drawn))?;
     // A mask by irradiance is no visibility.
-    let apart = if args.visibility.is_some() && shading != choice { Some(draw(&choice)?) } else { None };
+    let apart =
+        if args.visibility.is_some() && shading != choice { Some(draw(&mut view.create(&choice)?)?) } else { None };
     bars.end();
     for (light, Drawn { auto_map_sizes, .. }) in setup.lights.iter().zip(&drawn) {
         if !auto_map_sizes.is_empty() {
@@ -75,7 +76,6 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     }
     if let Some(path) = &args.timings {
         // By a state of its own: what is written is as it would be without.
-        let technique = create(&lab.gpu(), &shading)?;
         let timed = |light: usize| {
             let TechniqueRun { timings, memory_bytes, auto_map_sizes, .. } =
                 view.run(&mut view.create(&shading)?, light, &TIMED)?;

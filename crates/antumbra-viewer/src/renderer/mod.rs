@@ -436,7 +436,7 @@ impl Renderer {
         }
     }
 
-    /// The sides as they are drawn: with masks for shading where nothing but the picture shows them. Everything else is told of visibility.
+    /// The sides as they are drawn: with ratio masks in *shaded* while no pixel is inspected, with visibility otherwise.
     fn drawn_sides(&self, state: &State) -> Vec<Side> {
         let is_picture = state.show == Show::Shaded && self.pointer_px.is_none();
         let drawn = |side: &Side| if is_picture { side.for_shading() } else { side.clone() };

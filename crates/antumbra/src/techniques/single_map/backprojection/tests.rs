@@ -122,7 +122,8 @@ fn edges_of_every_slant_have_their_area() {
     }
 }
 
-/// A plate close below the light, in which the light takes all of the map at every scale: rings are no larger than loops go.
+/// A plate close below the light, in which the light takes all of the map at every scale: rings are no larger than loops go. Half of the plate
+/// leaves half of the light.
 #[test]
 fn a_cover_that_fills_the_map_hides_all() {
     let Some(gpu) = gpu() else { return };
@@ -134,6 +135,12 @@ fn a_cover_that_fills_the_map_hides_all() {
         println!("{squares} squares: rmse {error:.4}");
         assert!(error < 1e-3, "{squares} squares: rmse {error}");
     }
+    case.meshes[1] = Mesh::horizontal(gpu, Vec2::splat(-1.2), Vec2::new(0.0, 1.2), 3.9);
+    // The segment to the light point o is at x + (o − x) · 3.9/4 there.
+    let truth = |p: Vec3| 0.5 + p.x * 0.1 / 3.9;
+    let error = rmse(&pixels, &case.run(gpu, KIND, &[("squares", "64")]), truth);
+    println!("half of it: rmse {error:.4}");
+    assert!(error < 0.01, "half of it: rmse {error}");
 }
 
 #[test]
