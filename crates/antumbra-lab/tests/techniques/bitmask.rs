@@ -1,74 +1,25 @@
-//! `bitmask` against the ray tracer: scenes, every kind of light, and what its parameters buy.
+//! `bitmask` against the ray tracer: scenes, and every kind of light.
 
 use antumbra::TechniqueKind;
-use antumbra_lab::metrics::Metrics;
-use antumbra_light::{EmissionTexture, Light, LightShape};
-use glam::{Vec2, Vec3};
 
-use crate::common::{Judged, lab};
+use crate::texels::{keeps_its_figures, knows_every_light};
 
 const KIND: TechniqueKind = TechniqueKind::Bitmask;
 
-fn metrics_of(judged: &Judged, settings: &[(&str, &str)]) -> Metrics {
-    judged.metrics(&judged.run(lab().expect("asked for before"), KIND, settings))
-}
-
-fn rmse_of(judged: &Judged, settings: &[(&str, &str)]) -> f64 {
-    metrics_of(judged, settings).rmse.expect("judged pixels")
-}
-
 #[test]
 fn bitmask_keeps_its_figures() {
-    if lab().is_none() {
-        return;
-    }
-    // Bounds on rmse and on the light in umbrae.
-    for (spec, bound, leak_bound) in [
+    let bounds = [
         ("builtin:overlap", 0.0162, 0.0024),
         ("builtin:leaning-plank", 0.0085, 0.0009),
         ("builtin:lantern-wall", 0.0123, 0.001),
         ("builtin:columns", 0.0147, 0.0015),
         ("builtin:window", 0.0203, 0.0018),
         ("builtin:tree", 0.07, 0.059),
-    ] {
-        let metrics = metrics_of(&Judged::new(spec, |_| {}), &[]);
-        let (rmse, leak) = (metrics.rmse.expect("judged pixels"), metrics.umbra_leak.unwrap_or(0.0));
-        println!("{spec}: rmse {rmse:.4}, umbra leak {leak:.4}");
-        assert!(rmse <= bound, "{spec}: rmse {rmse} against {bound}");
-        assert!(leak <= leak_bound, "{spec}: umbra leak {leak} against {leak_bound}");
-    }
+    ];
+    keeps_its_figures(KIND, &bounds);
 }
-
-/// A light with its name, and a bound on rmse.
-type Lit<'a> = (&'a str, f64, &'a dyn Fn(&mut Light));
 
 #[test]
 fn every_kind_of_light_is_known() {
-    if lab().is_none() {
-        return;
-    }
-    let all_around = |light: &mut Light, shape: LightShape| {
-        (light.shape, light.fov_rad, light.cone) = (shape, None, None);
-    };
-    let lights: [Lit<'_>; 6] = [
-        ("disk", 0.0146, &|light| light.shape = LightShape::Disk { radius_m: 0.4 }),
-        ("sphere", 0.0152, &|light| all_around(light, LightShape::Sphere { radius_m: 0.3 })),
-        ("ellipsoid", 0.022, &|light| all_around(light, LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) })),
-        ("sun", 0.0142, &|light| all_around(light, LightShape::Sun { angular_diameter_rad: 0.05 })),
-        ("points", 0.047, &|light| {
-            let across = 0.2 * Vec3::Y.cross(light.axis).normalize_or(Vec3::X);
-            let positions_m = [-across, across, 0.2 * Vec3::Y].map(|offset| light.center + offset).to_vec();
-            all_around(light, LightShape::Points { positions_m });
-        }),
-        ("picture", 0.0201, &|light| {
-            light.shape = LightShape::Rectangle { size_m: Vec2::new(0.8, 0.5) };
-            let luminance = (0..12).map(|i| (i % 5) as f32).collect();
-            light.emission = Some(EmissionTexture::gray(4, 3, luminance));
-        }),
-    ];
-    for (name, bound, change) in lights {
-        let rmse = rmse_of(&Judged::with_truth_of("builtin:columns", 256, change), &[]);
-        println!("{name}: rmse {rmse:.4}");
-        assert!(rmse <= bound, "{name}: rmse {rmse} against {bound}");
-    }
+    knows_every_light(KIND, [0.0146, 0.0152, 0.022, 0.0142, 0.047, 0.0201, 0.0159]);
 }

@@ -21,6 +21,7 @@ mod sample_based;
 mod sample_sets;
 mod shading;
 mod soft;
+mod texels;
 mod translucent;
 mod view_samples;
 mod wide_lights;

@@ -1,7 +1,5 @@
 // Linked from src/techniques/single_map/backprojection/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
-const R2 = vec2f(0.754877666, 0.569840291);
-
 fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     if receiver.is_background {
         return 1.0;
@@ -22,7 +20,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let texels = light_taps_texels_per_offset();
     let reach = abs(texels[0]) * extent.x + abs(texels[1]) * extent.y;
     let at = map_receiver_map_receiver(plane, pos_in_light.z);
-    var ring = squares_outermost(at, pos_in_light.z, reach, most_g, settings_backprojection.squares, fract(shift + R2));
+    var ring = squares_outermost(at, pos_in_light.z, reach, most_g, settings_backprojection.squares, shown_texel_shown_share(shift));
     let whole = light_area_whole_of(light);
     var above = share * whole;
     if !horizon_has_horizon_share() {
@@ -906,15 +904,8 @@ fn squares_carried_on(ring: squares_Ring, place: vec2f) -> vec2f {
     return select(low, vec2f(squares_FAR_OFF), texel > vec2f(map_light_view.map_size + margin));
 }
 
-const squares_GOLDEN = 0.618033989;
-
-fn squares_shown_texel(ring: squares_Ring, place: vec2i, side: f32) -> vec2f {
-    let share = fract(ring.share + squares_GOLDEN * vec2f(place.yx & vec2i(63)));
-    return floor((vec2f(place) + share) * side);
-}
-
-fn squares_shown_g(ring: squares_Ring, place: vec2i, side: f32) -> f32 {
-    let texel = squares_shown_texel(ring, place, side);
+fn squares_shown_g(ring: squares_Ring, place: vec2i, level: u32) -> f32 {
+    let texel = vec2f(shown_texel_shown_texel(place, level, ring.share));
     let g = map_receiver_blocking_g_about(ring.at, clamp(texel, vec2f(), vec2f(map_light_view.map_size - 1.0)), 0u);
     return select(0.0, g, map_receiver_is_texel(texel) || g > ring.at.edge_g);
 }
@@ -925,12 +916,12 @@ fn squares_g_in(ring: squares_Ring, square: vec2u) -> f32 {
     if is_outside || (all(place >= ring.inside_first) && all(place <= ring.inside_last)) {
         return 0.0;
     }
-    let own = squares_shown_g(ring, place, squares_side_of(ring));
+    let own = squares_shown_g(ring, place, ring.level);
     let outwards = vec2i(place == ring.last) - vec2i(place == ring.first);
     if own <= 0.0 || !ring.is_inner || all(outwards == vec2i()) {
         return own;
     }
-    let beside = squares_shown_g(ring, (place + outwards) >> vec2u(1u), 2.0 * squares_side_of(ring));
+    let beside = squares_shown_g(ring, (place + outwards) >> vec2u(1u), ring.level + 1u);
     return select(own, beside, beside > 0.0);
 }
 
@@ -1177,6 +1168,19 @@ fn patch_joined(low: vec2f, high: vec2f, own: f32, around: patch_Neighbours) -> 
     let left = vec3f(around.below.x, around.beside.x, around.above.x);
     let right = vec3f(around.below.z, around.beside.y, around.above.z);
     return patch_Patch(vec2f(patch_reach_of(low.x, own, left).x, patch_reach_of(low.y, own, around.below).x), vec2f(patch_reach_of(high.x, own, right).y, patch_reach_of(high.y, own, around.above).y));
+}
+
+const shown_texel_GOLDEN = 0.618033989;
+
+const shown_texel_R2 = vec2f(0.754877666, 0.569840291);
+
+fn shown_texel_shown_share(shift: vec2f) -> vec2f {
+    return shift + shown_texel_R2;
+}
+
+fn shown_texel_shown_texel(place: vec2i, level: u32, share: vec2f) -> vec2i {
+    let within = fract(share + shown_texel_GOLDEN * vec2f(place.yx & vec2i(63)));
+    return (place << vec2u(level)) + vec2i(within * f32(1u << level));
 }
 
 fn surface_step_surface_steps(inverse_z: f32, side: f32, g: vec4f, slope: f32) -> vec4f {

@@ -2,8 +2,6 @@
 
 const LEVELS = 13u;
 
-const R2 = vec2f(0.754877666, 0.569840291);
-
 struct Hidden {
     words: array<u32, settings_MOST_WORDS>
 }
@@ -179,7 +177,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let texels = light_taps_texels_per_offset();
     let reach = abs(texels[0]) * extent.x + abs(texels[1]) * extent.y;
     let at = map_receiver_map_receiver(plane, pos_in_light.z);
-    var window = window_window_of(at, pos_in_light.z, reach, most_g, settings_bitmask.patches, shift + R2);
+    var window = window_window_of(at, pos_in_light.z, reach, most_g, settings_bitmask.patches, shown_texel_shown_share(shift));
     var hidden = below_horizon(light, share);
     for (var part = 0u; part < min(behind_LAYER_COUNT, 2u) && !is_all_hidden(hidden); part++) {
         if part == 1u {
@@ -1090,6 +1088,19 @@ fn patch_widest_of(low: vec2f, high: vec2f, scales: vec3f) -> patch_Patch {
     return patch_Patch(min(min(low * scales.x, low * scales.y), low * scales.z), max(max(high * scales.x, high * scales.y), high * scales.z));
 }
 
+const shown_texel_GOLDEN = 0.618033989;
+
+const shown_texel_R2 = vec2f(0.754877666, 0.569840291);
+
+fn shown_texel_shown_share(shift: vec2f) -> vec2f {
+    return shift + shown_texel_R2;
+}
+
+fn shown_texel_shown_texel(place: vec2i, level: u32, share: vec2f) -> vec2i {
+    let within = fract(share + shown_texel_GOLDEN * vec2f(place.yx & vec2i(63)));
+    return (place << vec2u(level)) + vec2i(within * f32(1u << level));
+}
+
 fn surface_step_surface_steps(inverse_z: f32, side: f32, g: vec4f, slope: f32) -> vec4f {
     let per_slope = map_light_view.texel_in_plane * side;
     return slope * space_SURFACE_SLOPE * per_slope * select(vec4f(1.0), g + inverse_z, map_light_view.perspective == 1u);
@@ -1166,12 +1177,8 @@ fn window_depths_in(window: window_Window, square: window_Square) -> window_Dept
     return window_Depths(select(0.0, max(g.x, 0.0), is_in_front), most);
 }
 
-const window_GOLDEN = 0.618033989;
-
-fn window_shown_texel(window: window_Window, square: window_Square) -> vec2u {
-    let share = fract(window.share + window_GOLDEN * vec2f(square.place.yx & vec2u(63u)));
-    let texel = (square.place << vec2u(square.level)) + vec2u(share * window_side_of(square));
-    return min(texel, vec2u(map_light_view.map_size) - 1u);
+fn window_texel_of(window: window_Window, place: vec2i, level: u32) -> vec2u {
+    return min(vec2u(shown_texel_shown_texel(place, level, window.share)), vec2u(map_light_view.map_size) - 1u);
 }
 
 fn window_scale_of(g: f32) -> f32 {
@@ -1179,7 +1186,7 @@ fn window_scale_of(g: f32) -> f32 {
 }
 
 fn window_scale_in(window: window_Window, square: window_Square, layer: u32) -> f32 {
-    return window_scale_of(map_receiver_blocking_g_about(window.at, vec2f(window_shown_texel(window, square)), layer));
+    return window_scale_of(map_receiver_blocking_g_about(window.at, vec2f(window_texel_of(window, vec2i(square.place), square.level)), layer));
 }
 
 fn window_scale_beside(window: window_Window, square: window_Square, step: vec2i, layer: u32) -> f32 {
@@ -1187,7 +1194,7 @@ fn window_scale_beside(window: window_Window, square: window_Square, step: vec2i
     if !map_receiver_is_texel(vec2f(place) * window_side_of(square)) {
         return 0.0;
     }
-    let texel = window_shown_texel(window, window_Square(vec2u(place), square.level));
+    let texel = window_texel_of(window, place, square.level);
     return window_scale_of(map_receiver_blocking_g(window.at, vec2f(texel), map_receiver_stored_depth(texel, layer)));
 }
 
