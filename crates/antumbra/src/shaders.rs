@@ -93,8 +93,8 @@ shaders! {
     PACKED_BLUR = "primitives/packed_map/blur";
     /// One of a packed map's mips.
     PACKED_HALVE = "primitives/packed_map/halve";
-    /// Four of them.
-    PACKED_HALVE_FOUR = "primitives/packed_map/halve_four";
+    /// Several of them.
+    PACKED_HALVE_SEVERAL = "primitives/packed_map/halve_several";
     /// The truth of the filterable techniques.
     FILTERABLE_EXACT = "techniques/filterable/exact";
     /// The same of a multisampled map.

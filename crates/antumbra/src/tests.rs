@@ -57,6 +57,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<techniques::summed::summed_area_table::gpu_types::TableUniform>(),
         entry::<primitives::lloyd::LloydUniform>(),
         entry::<primitives::packed_map::BlurUniform>(),
+        entry::<primitives::packed_map::MipsUniform>(),
         entry::<light_map::texel_lists::gpu_types::ListSort>(),
         entry::<light_map::texel_lists::gpu_types::ListSurface>(),
         entry::<light_map::texel_lists::gpu_types::ListView>(),

@@ -29,6 +29,8 @@ struct LightMapUniform {
     farthest_m: f32,
     packing: u32,
     size_texels: [u32; 2],
+    origin_texels: [u32; 2],
+    padding: [u32; 2],
     depth_warp: [f32; 4],
     empty_color: [f32; 4],
 }
@@ -95,7 +97,9 @@ pub struct ShownMap {
     pub map: DrawnMap,
     /// The texture.
     pub view: wgpu::TextureView,
-    /// Width and height, texels.
+    /// Its corner in the texture, and its width and height, texels.
+    pub origin_px: UVec2,
+    /// See [`origin_px`](Self::origin_px).
     pub size_px: UVec2,
     /// `None` of depths.
     texels: Option<LevelTexels>,
@@ -110,11 +114,11 @@ impl ShownMap {
         let layer = layer.min(map.layers_behind.len());
         let level = if layer > 0 { 0 } else { level.min(map.levels.len()) };
         let behind = layer.checked_sub(1).map(|i| map.layers_behind[i].clone());
-        let (view, size_px, texels) = match level.checked_sub(1).map(|i| map.levels[i].clone()) {
-            Some(MapLevel { view, size_px, texels }) => (view, size_px, Some(texels)),
-            None => (behind.unwrap_or_else(|| map.depth.clone()), map.size_px, None),
+        let (view, origin_px, size_px, texels) = match level.checked_sub(1).map(|i| map.levels[i].clone()) {
+            Some(MapLevel { view, origin_px, size_px, texels }) => (view, origin_px, size_px, Some(texels)),
+            None => (behind.unwrap_or_else(|| map.depth.clone()), UVec2::ZERO, map.size_px, None),
         };
-        Self { map, view, size_px, texels, level, layer }
+        Self { map, view, origin_px, size_px, texels, level, layer }
     }
 
     /// Whether it was made of the map.
@@ -404,6 +408,8 @@ fn uniform_of(gpu: &Gpu, shown: &ShownMap, corner: Vec2, side_px: f32) -> wgpu::
         farthest_m: map.range_m[1],
         packing: packing_of(shown.texels),
         size_texels: shown.size_px.to_array(),
+        origin_texels: shown.origin_px.to_array(),
+        padding: [0; 2],
         depth_warp: [constant, by_u, by_v, 0.0],
         empty_color: [empty[0], empty[1], empty[2], 1.0],
     };

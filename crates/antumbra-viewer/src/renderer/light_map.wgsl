@@ -13,6 +13,8 @@ struct LightMap {
     // How channels lie in a filtered map's words.
     packing: u32,
     size_texels: vec2u,
+    // Where a filtered map's level begins in its texture.
+    origin_texels: vec2u,
     // What depths were multiplied with before they were stored: of the place, x + y u + z v.
     depth_warp: vec4f,
     // Where nothing casts; sRGB.
@@ -77,7 +79,7 @@ fn fragment_extremes(@builtin(position) position: vec4f) -> @location(0) vec4f {
 }
 
 fn first_channel(texel: vec2u) -> f32 {
-    let word = textureLoad(words, texel, 0).x;
+    let word = textureLoad(words, map.origin_texels + texel, 0).x;
     switch map.packing {
         case 1u: {
             return unpack2x16float(word).x;

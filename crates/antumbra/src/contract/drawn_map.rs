@@ -43,7 +43,9 @@ pub struct DrawnMap {
 pub struct MapLevel {
     /// 2D texture view.
     pub view: wgpu::TextureView,
-    /// The texels that stand for the map, from the texture's first.
+    /// Corner of the level in the texture, texels.
+    pub origin_px: UVec2,
+    /// Width and height of the level: the texels that stand for the map.
     pub size_px: UVec2,
     /// Content of the texels.
     pub texels: LevelTexels,

@@ -56,5 +56,5 @@ pub(crate) use shared_constants::shared_constants;
 pub(crate) use shared_values::SharedValues;
 pub use stage::Stage;
 pub(crate) use stage::{Keep, Resource, StagedUploads};
-pub(crate) use textures::{array_view, level_views, slice_views, texture_of, white_texture};
+pub(crate) use textures::{array_view, slice_views, texture_of, white_texture};
 pub(crate) use trial::{ViewKind, storage_complaint};

@@ -30,22 +30,6 @@ pub(crate) fn slice_views(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<wgpu::Textu
     (0..texture.depth_or_array_layers()).map(slice).collect()
 }
 
-/// Each level of a texture alone, with all its layers.
-pub(crate) fn level_views(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
-    let level = |base_mip_level| {
-        gpu.device.create_view(
-            texture,
-            &wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2Array),
-                base_mip_level,
-                mip_level_count: Some(1),
-                ..wgpu::TextureViewDescriptor::default()
-            },
-        )
-    };
-    (0..texture.mip_level_count()).map(level).collect()
-}
-
 /// One white texel, in the place of a surface's texture.
 pub(crate) fn white_texture(gpu: &Gpu) -> wgpu::TextureView {
     texture_of(gpu, "antumbra white", wgpu::TextureFormat::Rgba8Unorm, 1, &[255; 4])

@@ -80,7 +80,7 @@ fn visibility(found: lookup_MapReceiver) -> f32 {
         return found.known;
     }
     let footprint = found.footprint;
-    let last = textureNumLevels(lookup_packed_map) - 1u;
+    let last = lookup_settings.level_count - 1u;
     let level = min(u32(footprint.level), last);
     let between = footprint.level - f32(level);
     var sum = 0.0;
@@ -465,11 +465,12 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
+fn levels_level_size(map_size: vec2u, level: u32) -> vec2u {
+    return map_size >> vec2u(level);
+}
+
 @group(1) @binding(1)
 var<uniform> lookup_settings: source_FilterUniform;
-
-@group(1) @binding(2)
-var lookup_packed_map: texture_2d_array<u32>;
 
 @group(1) @binding(5)
 var<uniform> lookup_snapped_texels: f32;
@@ -526,8 +527,7 @@ fn lookup_sides_in_uv(receiver: inputs_Receiver, pixel: vec2u) -> array<vec2f, 2
 }
 
 fn lookup_footprint_of(receiver: inputs_Receiver, pixel: vec2u, uv: vec2f) -> lookup_Footprint {
-    let levels = textureNumLevels(lookup_packed_map);
-    if levels == 1u {
+    if lookup_settings.level_count == 1u {
         return lookup_Footprint(uv, vec2f(), 1u, 0.0);
     }
     let sides = lookup_sides_in_uv(receiver, pixel);
@@ -542,7 +542,7 @@ fn lookup_footprint_of(receiver: inputs_Receiver, pixel: vec2u, uv: vec2f) -> lo
     let minor = sqrt(max(middle - spread, 0.0));
     let most = f32(lookup_settings.max_anisotropy);
     let count = clamp(ceil(major / max(minor, 1.0)), 1.0, most);
-    let level = clamp(log2(max(major / count, 1.0)), 0.0, f32(levels - 1u));
+    let level = clamp(log2(max(major / count, 1.0)), 0.0, f32(lookup_settings.level_count - 1u));
     var axis = select(vec2f(xy, middle + spread - xx), vec2f(middle + spread - yy, xy), xx > yy);
     axis = select(vec2f(), normalize(axis), dot(axis, axis) > 1e-20);
     return lookup_Footprint(uv, axis * (major / count) / map_light_view.map_size, u32(count), level);
@@ -585,7 +585,7 @@ fn lookup_map_receiver(pixel: vec2u) -> lookup_MapReceiver {
 }
 
 fn lookup_level_size(level: u32) -> vec2i {
-    return max(vec2i(map_light_view.map_size) >> vec2u(level), vec2i(1));
+    return vec2i(levels_level_size(vec2u(map_light_view.map_size), level));
 }
 
 struct source_FilterUniform {
@@ -598,7 +598,7 @@ struct source_FilterUniform {
     near_m: f32,
     far_m: f32,
     depth_axis: vec3f,
-    padding: f32
+    level_count: u32
 }
 
 override source_IS_DISTANCE: bool = false;

@@ -190,6 +190,7 @@ impl DepthPyramid {
                 mip_level_count: Some(1),
                 ..wgpu::TextureViewDescriptor::default()
             }),
+            origin_px: UVec2::ZERO,
             size_px: levels.map_size.map(|texels| texels.div_ceil(2 << base_mip_level)),
             texels: LevelTexels::Extremes,
         };

@@ -11,14 +11,19 @@ use glam::{IVec2, UVec2};
 use crate::contract::{LevelTexels, MapLevel};
 use crate::gpu::{
     Bindings, Cached, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline_without_zeroing,
-    create_uniform, gpu_structs, level_views, slice_views, texels, texture_bytes, upload_storage, write_uniform,
+    create_uniform, gpu_structs, slice_views, texels, texture_bytes, upload_storage, write_uniform,
 };
 use crate::shaders;
 
 #[cfg(test)]
 pub(crate) mod cpu;
+mod kernel;
+mod mips;
 #[cfg(test)]
 mod tests;
+
+pub(crate) use kernel::Kernel;
+use mips::{MipPipelines, Mips, full_level_count, level_origin, level_size};
 
 /// How channels are stored. The numbers are those of `primitives/packing.wesl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +39,11 @@ pub(crate) enum Packing {
 }
 
 impl Packing {
+    /// The constant of every pipeline that packs or unpacks words.
+    fn constants(self) -> [(&'static str, f64); 1] {
+        [("PACKING", f64::from(self as u32))]
+    }
+
     /// Channels in a word.
     pub(crate) fn channels(self) -> u32 {
         match self {
@@ -64,65 +74,19 @@ impl Packing {
     }
 }
 
-/// A symmetric kernel of unit sum.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Kernel {
-    /// `2 · radius + 1` weights.
-    pub(crate) weights: Vec<f32>,
-}
-
-impl Kernel {
-    /// The box of `width` texels; its outermost texels count for the part that it covers.
-    pub(crate) fn boxed(width: f32) -> Self {
-        let half = f64::from(0.5 * width.max(1.0));
-        let radius = (half - 0.5).ceil().max(0.0) as i32;
-        Self::of(radius, |i| (half - (f64::from(i.abs()) - 0.5)).clamp(0.0, 1.0))
-    }
-
-    /// The Gaussian with the standard deviation of a box of `width` texels, cut at three of them: the integral over each
-    /// texel.
-    pub(crate) fn gaussian(width: f32) -> Self {
-        if width <= 1.0 {
-            return Self::boxed(1.0);
-        }
-        let sigma = f64::from(width) / 12f64.sqrt();
-        let radius = (3.0 * sigma).ceil() as i32;
-        // Simpson's rule over the texel.
-        let at = |x: f64| (-0.5 * (x / sigma).powi(2)).exp();
-        Self::of(radius, |i| {
-            let x = f64::from(i);
-            (at(x - 0.5) + 4.0 * at(x) + at(x + 0.5)) / 6.0
-        })
-    }
-
-    fn of(radius: i32, weight: impl Fn(i32) -> f64) -> Self {
-        let weights: Vec<f64> = (-radius..=radius).map(weight).collect();
-        let sum: f64 = weights.iter().sum();
-        Self { weights: weights.into_iter().map(|w| (w / sum) as f32).collect() }
-    }
-
-    /// The weights, then their running sums from 0 before the first to 1 at the last.
-    fn with_running_sums(&self) -> Vec<f32> {
-        let mut sum = 0.0;
-        let sums = self.weights.iter().map(|weight| {
-            sum += f64::from(*weight);
-            sum as f32
-        });
-        self.weights.iter().copied().chain([0.0]).chain(sums).collect()
-    }
-
-    /// Texels to each side of the centre.
-    pub(crate) fn radius(&self) -> u32 {
-        self.weights.len() as u32 / 2
-    }
-}
-
 gpu_structs! {
     /// One direction of a blur.
     pub(crate) struct BlurUniform {
         direction: IVec2,
         radius: i32,
         padding: u32,
+    }
+
+    /// Levels that one dispatch makes.
+    pub(crate) struct MipsUniform {
+        map_size: UVec2,
+        before: u32,
+        count: u32,
     }
 }
 
@@ -133,19 +97,6 @@ bindings! {
         2 source: TextureArray(texels::UINT),
         3 target_layers: WrittenArray(PackedMap::FORMAT),
     }
-
-    struct Halve = "packed mips", COMPUTE, group 0 of [PACKED_HALVE] {
-        0 previous: TextureArray(texels::UINT),
-        1 level: WrittenArray(PackedMap::FORMAT),
-    }
-
-    struct HalveFour = "four packed mips", COMPUTE, group 0 of [PACKED_HALVE_FOUR] {
-        0 previous: TextureArray(texels::UINT),
-        1 first_level: WrittenArray(PackedMap::FORMAT),
-        2 second_level: WrittenArray(PackedMap::FORMAT),
-        3 third_level: WrittenArray(PackedMap::FORMAT),
-        4 fourth_level: WrittenArray(PackedMap::FORMAT),
-    }
 }
 
 /// What a map is allocated for.
@@ -153,7 +104,7 @@ bindings! {
 struct Shape {
     size: UVec2,
     words: u32,
-    levels: u32,
+    level_count: u32,
     blurred: bool,
     /// Whether passes that draw write it.
     drawn: bool,
@@ -162,51 +113,30 @@ struct Shape {
 #[derive(Debug)]
 struct Maps {
     shape: Shape,
+    /// The first level of every word.
     texture: wgpu::Texture,
-    /// Of every level, for reading.
-    all: wgpu::TextureView,
-    /// Of the first level, for writing.
     first: wgpu::TextureView,
     /// Rows, then columns; none without a blur.
     blurs: Vec<wgpu::BindGroup>,
     /// What rows write and columns read, shared by all maps of the size, is kept for as long as it is bound.
     _rows: Option<Arc<wgpu::Texture>>,
-    mips: Vec<Mips>,
+    /// None of a map of one level.
+    mips: Option<Mips>,
     /// Of the first level of each word, where passes that draw write it.
     drawn: Vec<wgpu::TextureView>,
-}
-
-/// What makes some levels from the one before them.
-#[derive(Debug)]
-struct Mips {
-    bind_group: wgpu::BindGroup,
-    step: MipStep,
-    /// Of the first of them.
-    size: UVec2,
-}
-
-/// A dispatch that makes mip levels, by the level before them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum MipStep {
-    /// The next level, of any size.
-    One(u32),
-    /// The next four, where the level before has multiples of 16 texels.
-    Four(u32),
 }
 
 #[derive(Clone, Debug)]
 struct Pipelines {
     blur: wgpu::ComputePipeline,
-    halve: wgpu::ComputePipeline,
-    halve_four: wgpu::ComputePipeline,
+    mips: MipPipelines,
 }
 
 /// A map, its blur and its mips.
 #[derive(Debug)]
 pub(crate) struct PackedMap {
     blur_layout: wgpu::BindGroupLayout,
-    halve_layout: wgpu::BindGroupLayout,
-    halve_four_layout: wgpu::BindGroupLayout,
+    mips_layout: wgpu::BindGroupLayout,
     /// For the packing that is prepared.
     pipelines: Cached<Packing, Pipelines>,
     rows: wgpu::Buffer,
@@ -225,22 +155,17 @@ pub(crate) struct PreparedPackedMap {
 }
 
 impl Pipelines {
-    /// `layouts` are of the blur, of one level and of four.
-    fn new(gpu: &Gpu, layouts: [&wgpu::BindGroupLayout; 3], packing: Packing) -> Self {
-        let constants = [("PACKING", f64::from(packing as u32))];
-        let make = |label, wgsl, layout| compute_pipeline_without_zeroing(gpu, label, wgsl, &constants, &[layout]);
+    fn new(gpu: &Gpu, blur: &wgpu::BindGroupLayout, mips: &wgpu::BindGroupLayout, packing: Packing) -> Self {
+        let constants = packing.constants();
         Self {
-            blur: make("packed blur", shaders::PACKED_BLUR, layouts[0]),
-            halve: make("packed mips", shaders::PACKED_HALVE, layouts[1]),
-            halve_four: make("four packed mips", shaders::PACKED_HALVE_FOUR, layouts[2]),
+            blur: compute_pipeline_without_zeroing(gpu, "packed blur", shaders::PACKED_BLUR, &constants, &[blur]),
+            mips: MipPipelines::new(gpu, mips, packing),
         }
     }
 }
 
-/// Texels along each side of what a workgroup makes: of the blur, of one level, and of the first of four.
+/// Texels along each side of what a workgroup of the blur makes.
 const BLUR_TILE: u32 = 16;
-const HALVE_TILE: u32 = 8;
-const HALVE_FOUR_TILE: u32 = 16;
 
 impl PackedMap {
     /// The texture's format.
@@ -250,8 +175,7 @@ impl PackedMap {
         Self {
             pipelines: Cached::default(),
             blur_layout: Blur::layout(gpu),
-            halve_layout: Halve::layout(gpu),
-            halve_four_layout: HalveFour::layout(gpu),
+            mips_layout: MipPipelines::layout(gpu),
             rows: create_uniform::<BlurUniform>(gpu, "antumbra blur rows"),
             columns: create_uniform::<BlurUniform>(gpu, "antumbra blur columns"),
             weights: None,
@@ -275,29 +199,33 @@ impl PackedMap {
         kernel: &Kernel,
         with_mips: bool,
     ) -> PreparedPackedMap {
-        let levels = if with_mips { size.max_element().ilog2() + 1 } else { 1 };
-        let shape = Shape { size, words, levels, blurred: kernel.radius() > 0, drawn: self.is_drawn };
+        let level_count = if with_mips { full_level_count(size) } else { 1 };
+        let shape = Shape { size, words, level_count, blurred: kernel.radius() > 0, drawn: self.is_drawn };
         for (buffer, direction) in [(&self.rows, IVec2::X), (&self.columns, IVec2::Y)] {
             let uniform = BlurUniform { direction, radius: kernel.radius() as i32, padding: 0 };
             write_uniform(stage, buffer, &uniform);
         }
-        let layouts = [&self.blur_layout, &self.halve_layout, &self.halve_four_layout];
-        let pipelines = self.pipelines.get_or_make(packing, || Pipelines::new(stage, layouts, packing)).clone();
+        let layouts = (&self.blur_layout, &self.mips_layout);
+        let pipelines =
+            self.pipelines.get_or_make(packing, || Pipelines::new(stage, layouts.0, layouts.1, packing)).clone();
         let weights = kernel.with_running_sums();
         let bytes = size_of_val(weights.as_slice()) as u64;
         let weights_stay = self.weights.as_ref().is_some_and(|buffer| buffer.size() == bytes);
         let weights = upload_storage(stage, &mut self.weights, "antumbra blur weights", &weights).clone();
         let made = self.maps.take().filter(|maps| weights_stay && maps.shape == shape);
         let maps = made.unwrap_or_else(|| Arc::new(self.allocate(stage, shape, &weights)));
+        if let Some(mips) = &maps.mips {
+            mips.upload(stage);
+        }
         self.maps = Some(Arc::clone(&maps));
         PreparedPackedMap { maps, weights, pipelines }
     }
 
     fn allocate(&self, gpu: &Gpu, shape: Shape, weights: &wgpu::Buffer) -> Maps {
         let texture = gpu.device.create_texture(&descriptor("antumbra packed map", shape));
-        let levels = level_views(gpu, &texture);
+        let first = array_view(gpu, &texture);
         let rows = shape.blurred.then(|| {
-            let shape = Shape { levels: 1, drawn: false, ..shape };
+            let shape = Shape { drawn: false, ..shape };
             gpu.device.scratch_texture(Scratch::BlurredRows, &descriptor("antumbra blurred rows", shape))
         });
         let blurs = rows.iter().flat_map(|rows| {
@@ -305,50 +233,34 @@ impl PackedMap {
             let blur = |uniform, source, target_layers| {
                 Blur { blur: uniform, weights, source, target_layers }.kept_group(gpu, &self.blur_layout)
             };
-            [blur(&self.rows, &levels[0], &rows), blur(&self.columns, &rows, &levels[0])]
+            [blur(&self.rows, &first, &rows), blur(&self.columns, &rows, &first)]
         });
         Maps {
             shape,
             blurs: blurs.collect(),
-            mips: mip_steps(shape.size, shape.levels).map(|step| self.mips(gpu, shape, &levels, step)).collect(),
+            mips: (shape.level_count > 1)
+                .then(|| Mips::new(gpu, &self.mips_layout, &first, shape.size, shape.words, shape.level_count)),
             _rows: rows,
-            all: array_view(gpu, &texture),
-            first: levels[0].clone(),
             drawn: if shape.drawn { slice_views(gpu, &texture) } else { Vec::new() },
+            first,
             texture,
         }
-    }
-
-    /// A dispatch that makes levels of a map.
-    fn mips(&self, gpu: &Gpu, shape: Shape, levels: &[wgpu::TextureView], step: MipStep) -> Mips {
-        let (MipStep::One(before) | MipStep::Four(before)) = step;
-        let level = |i: u32| &levels[(before + i) as usize];
-        let bind_group = match step {
-            MipStep::One(_) => Halve { previous: level(0), level: level(1) }.kept_group(gpu, &self.halve_layout),
-            MipStep::Four(_) => HalveFour {
-                previous: level(0),
-                first_level: level(1),
-                second_level: level(2),
-                third_level: level(3),
-                fourth_level: level(4),
-            }
-            .kept_group(gpu, &self.halve_four_layout),
-        };
-        Mips { bind_group, step, size: shape.level_size(before + 1) }
     }
 
     /// Each level's first word alone, for whoever wants to look at it.
     pub(crate) fn drawn(&self) -> Vec<MapLevel> {
         let (Some(maps), Some((packing, _))) = (&self.maps, self.pipelines.pair()) else { return Vec::new() };
-        let level = |base_mip_level: u32| MapLevel {
-            view: maps.texture.create_view(&wgpu::TextureViewDescriptor {
+        let first_word = |texture: &wgpu::Texture| {
+            texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
-                base_mip_level,
-                mip_level_count: Some(1),
                 array_layer_count: Some(1),
                 ..wgpu::TextureViewDescriptor::default()
-            }),
-            size_px: maps.shape.level_size(base_mip_level),
+            })
+        };
+        let level = |level: u32| MapLevel {
+            view: first_word(maps.mips.as_ref().filter(|_| level > 0).map_or(&maps.texture, Mips::texture)),
+            origin_px: level_origin(maps.shape.size, level),
+            size_px: level_size(maps.shape.size, level),
             texels: match packing {
                 Packing::Float32 => LevelTexels::Float32,
                 Packing::Float16 => LevelTexels::Float16,
@@ -356,15 +268,17 @@ impl PackedMap {
                 Packing::Unorm8 => LevelTexels::Unorm8,
             },
         };
-        (0..maps.shape.levels).map(level).collect()
+        (0..maps.shape.level_count).map(level).collect()
     }
 
     /// Bytes of the map with its levels; what rows of its blur are written to is shared by all maps.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        self.maps.as_ref().map_or(0, |maps| texture_bytes(&maps.texture))
+        self.maps.as_ref().map_or(0, |maps| {
+            texture_bytes(&maps.texture) + maps.mips.as_ref().map_or(0, |mips| texture_bytes(mips.texture()))
+        })
     }
 
-    /// The texture, for tests.
+    /// The first level's texture, for tests.
     #[cfg(test)]
     pub(crate) fn texture(&self) -> &wgpu::Texture {
         &self.maps.as_ref().expect("a map was prepared").texture
@@ -377,14 +291,19 @@ impl PreparedPackedMap {
         &self.maps.drawn
     }
 
-    /// The first level of every word, for writing.
-    pub(crate) fn target(&self) -> &wgpu::TextureView {
+    /// The first level of every word.
+    pub(crate) fn first(&self) -> &wgpu::TextureView {
         &self.maps.first
     }
 
-    /// Every level of every word, for reading.
-    pub(crate) fn view(&self) -> &wgpu::TextureView {
-        &self.maps.all
+    /// The further levels of every word, side by side (`levels.wesl`); of a map of one level something else, which is not read.
+    pub(crate) fn mips(&self) -> &wgpu::TextureView {
+        self.maps.mips.as_ref().map_or(&self.maps.first, Mips::view)
+    }
+
+    /// How many levels there are.
+    pub(crate) fn level_count(&self) -> u32 {
+        self.maps.shape.level_count
     }
 
     /// The kernel's weights, and their running sums.
@@ -396,8 +315,6 @@ impl PreparedPackedMap {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let Self { maps, pipelines, .. } = self;
         let Shape { size, words, .. } = maps.shape;
-        // A pass for each dispatch, here and below: within one, wgpu 30 loses a texture array's layouts from level to level, as
-        // the validation layers see it.
         for (i, group) in maps.blurs.iter().enumerate() {
             recorder.compute_apart("blur", Span::of(i, maps.blurs.len()), |pass| {
                 pass.set_pipeline(&pipelines.blur);
@@ -405,42 +322,10 @@ impl PreparedPackedMap {
                 pass.dispatch_workgroups(size.x.div_ceil(BLUR_TILE), size.y.div_ceil(BLUR_TILE), words);
             });
         }
-        for (i, Mips { bind_group, step, size }) in maps.mips.iter().enumerate() {
-            recorder.compute_apart("mips", Span::of(i, maps.mips.len()), |pass| {
-                let (pipeline, tile) = match step {
-                    MipStep::One(_) => (&pipelines.halve, HALVE_TILE),
-                    MipStep::Four(_) => (&pipelines.halve_four, HALVE_FOUR_TILE),
-                };
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, bind_group, &[]);
-                pass.dispatch_workgroups(size.x.div_ceil(tile), size.y.div_ceil(tile), words);
-            });
+        if let Some(mips) = &maps.mips {
+            mips.record(recorder, &pipelines.mips);
         }
     }
-}
-
-impl Shape {
-    fn level_size(&self, level: u32) -> UVec2 {
-        (self.size >> level).max(UVec2::ONE)
-    }
-}
-
-/// The dispatches that make all levels after the first: four at once where sizes allow, if need be some of them once more.
-fn mip_steps(size: UVec2, levels: u32) -> impl Iterator<Item = MipStep> {
-    let is_start = move |level: u32| {
-        let texels = size >> level;
-        level + 4 < levels && texels % 16 == UVec2::ZERO && texels.min_element() > 0
-    };
-    let mut made = 0;
-    std::iter::from_fn(move || {
-        if made + 1 >= levels {
-            return None;
-        }
-        let start = (made.saturating_sub(3)..=made).rev().find(|level| is_start(*level));
-        let step = start.map_or(MipStep::One(made), MipStep::Four);
-        made = start.map_or(made + 1, |level| level + 4);
-        Some(step)
-    })
 }
 
 /// The texture of a map, or of one between the directions of its blur.
@@ -448,7 +333,7 @@ fn descriptor(label: &str, shape: Shape) -> wgpu::TextureDescriptor<'_> {
     wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width: shape.size.x, height: shape.size.y, depth_or_array_layers: shape.words },
-        mip_level_count: shape.levels,
+        mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format: PackedMap::FORMAT,

@@ -3,9 +3,11 @@
 use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
 
-use super::{Kernel, MipStep, PackedMap, Packing, cpu, mip_steps};
+use super::mips::{MipStep, full_level_count, level_origin, level_size, mip_steps, mips_size};
+use super::{Kernel, PackedMap, Packing, cpu};
+use crate::contract::MapLevel;
 use crate::gpu::{Recorder, Stage};
-use crate::testing::{gpu, read_texture};
+use crate::testing::{gpu, read_slice};
 
 fn random_map(size: UVec2) -> Vec<f32> {
     (0..size.x * size.y).map(|i| unit_f32(hash_u32(i ^ 0x2b1d))).collect()
@@ -44,24 +46,39 @@ fn twins_keep_means_and_planes() {
 }
 
 #[test]
-fn every_level_is_made_and_four_at_once_where_sizes_allow() {
+fn every_level_is_made_and_several_at_once_where_sizes_allow() {
     for size in
         [1, 2, 5, 16, 48, 64, 100, 1024, 1448, 2048, 4096].map(UVec2::splat).into_iter().chain([UVec2::new(32, 80)])
     {
-        let levels = size.max_element().ilog2() + 1;
         let mut made = 0;
-        for step in mip_steps(size, levels) {
-            let (before, count) = match step {
-                MipStep::One(before) => (before, 1),
-                MipStep::Four(before) => (before, 4),
-            };
-            assert!(before <= made && before + count > made, "{size}: {step:?} after level {made}");
-            made = before + count;
+        for MipStep { before, count } in mip_steps(size, full_level_count(size)) {
+            assert_eq!(before, made, "{size}");
+            assert!(count == 1 || level_size(size, before) % (1 << count) == UVec2::ZERO, "{size}: {count} at once");
+            made += count;
         }
-        assert_eq!(made + 1, levels, "{size}");
+        assert_eq!(made + 1, full_level_count(size), "{size}");
     }
-    for (texels, dispatches) in [(256, 2), (1024, 3), (4096, 3), (100, 6)] {
-        assert_eq!(mip_steps(UVec2::splat(texels), texels.ilog2() + 1).count(), dispatches, "{texels}");
+    for (texels, dispatches) in [(64, 1), (256, 2), (1024, 2), (4096, 2), (100, 4)] {
+        let size = UVec2::splat(texels);
+        assert_eq!(mip_steps(size, full_level_count(size)).count(), dispatches, "{texels}");
+    }
+}
+
+#[test]
+fn levels_lie_beside_each_other() {
+    for size in [2, 3, 5, 100, 255, 1024].map(UVec2::splat).into_iter().chain([UVec2::new(32, 80), UVec2::new(7, 129)])
+    {
+        let levels = (1..full_level_count(size)).map(|level| (level_origin(size, level), level_size(size, level)));
+        let levels: Vec<_> = levels.collect();
+        let room = mips_size(size);
+        for (i, (corner, extent)) in levels.iter().enumerate() {
+            let end = corner + extent;
+            assert!(extent.min_element() > 0 && end.cmple(room).all(), "{size}: {corner} to {end} of {room}");
+            for (other, other_extent) in &levels[..i] {
+                let apart = corner.cmpge(other + other_extent) | other.cmpge(end);
+                assert!(apart.any(), "{size}: {corner} and {other}");
+            }
+        }
     }
 }
 
@@ -93,10 +110,9 @@ fn gpu_equals_twins_over_a_ladder_of_sizes() {
 
         let stored: Vec<f32> = bits.iter().map(|word| unpack(*word, packing)).collect();
         let (mut want, mut level_size) = (cpu::blur(&stored, size, kernel), size);
-        for level in 0..packed.texture().mip_level_count() {
-            let bytes = read_layer(gpu, packed.texture(), level, level_size);
-            let got: Vec<f32> =
-                bytemuck::pod_collect_to_vec::<u8, u32>(&bytes).iter().map(|w| unpack(*w, packing)).collect();
+        for (level, map_level) in (0..).zip(packed.drawn()) {
+            assert_eq!(map_level.size_px, level_size);
+            let got: Vec<f32> = read_level(gpu, &map_level).iter().map(|word| unpack(*word, packing)).collect();
             // Each level, and each direction of the blur, rounds once.
             let tolerance = 1e-5 + (level + 2) as f32 * packing.step();
             for (k, (got, want)) in got.iter().zip(&want).enumerate() {
@@ -110,30 +126,12 @@ fn gpu_equals_twins_over_a_ladder_of_sizes() {
     }
 }
 
-fn read_layer(gpu: &crate::Gpu, texture: &wgpu::Texture, level: u32, size: UVec2) -> Vec<u8> {
-    // Copies go layer by layer: take the second word's into a texture of its own.
-    let copy = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("test layer"),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: PackedMap::FORMAT,
-        usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
-    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_texture_to_texture(
-        wgpu::TexelCopyTextureInfo {
-            mip_level: level,
-            origin: wgpu::Origin3d { x: 0, y: 0, z: 1 },
-            ..texture.as_image_copy()
-        },
-        copy.as_image_copy(),
-        copy.size(),
-    );
-    gpu.queue().submit([encoder.finish()]);
-    read_texture(gpu, &copy, 0, size)
+/// The second word of a level.
+fn read_level(gpu: &crate::Gpu, level: &MapLevel) -> Vec<u32> {
+    let UVec2 { x, y } = level.origin_px;
+    let source =
+        wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x, y, z: 1 }, ..level.view.texture().as_image_copy() };
+    bytemuck::pod_collect_to_vec(&read_slice(gpu, source, level.size_px))
 }
 
 fn pack(value: f32, packing: Packing) -> u32 {

@@ -14,6 +14,6 @@ gpu_structs! {
         near_m: f32,
         far_m: f32,
         depth_axis: Vec3,
-        padding: f32,
+        level_count: u32,
     }
 }

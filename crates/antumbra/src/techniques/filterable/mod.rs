@@ -90,6 +90,7 @@ pub(crate) struct Filterable<P> {
     packed: PackedMap,
     params_layout: wgpu::BindGroupLayout,
     resolve_layout: wgpu::BindGroupLayout,
+    gather_sampler: wgpu::Sampler,
     resolve: wgpu::ComputePipeline,
     /// Constants of the basis, of the pipeline that resolves, where it has any.
     constants: Vec<(&'static str, f64)>,
@@ -131,6 +132,8 @@ impl<P: GpuStruct> Filterable<P> {
             inputs,
             params_layout,
             resolve_layout,
+            // Takes texels as they are, and at the map's ends the outermost.
+            gather_sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             map_pipelines: [const { None }; 4],
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
             filter_uniform: create_uniform::<FilterUniform>(gpu, "antumbra filter"),
@@ -255,7 +258,7 @@ impl<P: GpuStruct> Filterable<P> {
                 near_m: map.range.near_m,
                 far_m: map.range.far_m,
                 depth_axis: map.range.axis,
-                padding: 0.0,
+                level_count: packed.level_count(),
             },
         );
         write_uniform(stage, &self.params_uniform, params);

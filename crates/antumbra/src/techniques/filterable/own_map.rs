@@ -64,9 +64,10 @@ impl<P: GpuStruct> Filterable<P> {
     }
 }
 
-/// What a map takes with the basis of most techniques: depths, and four channels in two words with their levels.
+/// What a map takes with the basis of most techniques: depths, and four channels in two words with their levels, which take
+/// three eighths as much again.
 fn bytes_of(size: u32, sample_count: u32) -> u64 {
-    const OF_BASIS: u32 = 8 * 4 / 3;
+    const OF_BASIS: u32 = 8 * 11 / 8;
     u64::from(4 * sample_count + OF_BASIS) * u64::from(size).pow(2)
 }
 

@@ -132,9 +132,9 @@ macro_rules! filterable_params {
                     more "Blurs every shadow edge more, whatever the light's size; blur time grows in proportion.";
                 /// Mip chain of the map, with trilinear lookups.
                 mips: bool = true,
-                    more "Distant receivers are filtered over their pixel's footprint, for a third more memory.";
+                    more "Distant receivers are filtered over their pixel's footprint, for three eighths more memory.";
                 /// Maximum number of probes along a pixel's footprint; needs `mips`.
-                anisotropy: u32 = 16, in 1..=16,
+                anisotropy: u32 = 8, in 1..=16,
                     more "Sharper shadows on surfaces seen at a grazing angle; 1 is trilinear alone.";
                 $($own)*
                 /// Direction in which depth is measured.

@@ -1,7 +1,7 @@
 //! Bindings and pipelines of the passes over a light map and its receivers.
 
 use super::Filterable;
-use crate::gpu::{Bindings, Gpu, GpuStruct, Stage, bindings, compute_entry, compute_pipeline, texels};
+use crate::gpu::{Bindings, Gpu, GpuStruct, Stage, bindings, compute_entry, compute_pipeline, samples, texels};
 use crate::primitives::packed_map::{PackedMap, PreparedPackedMap};
 use crate::shaders;
 
@@ -14,18 +14,22 @@ bindings! {
         3 packed_target: WrittenArray(PackedMap::FORMAT),
     }
 
-    /// Of passes over the receivers that read the filtered map.
-    pub(super) struct Filtered = "filtered map", COMPUTE, group 1 of [VSM_RESOLVE] {
+    /// Of passes over the receivers that ask the map.
+    pub(super) struct Lookup = "lookup", COMPUTE {
         0 light_view: Uniform,
         1 settings: Uniform,
-        2 packed_map: TextureArray(texels::UINT),
         5 snapped_texels: Uniform,
     }
 
-    /// The same with what the filtered map was made of.
-    struct Exact = "exact", COMPUTE, group 1 of [FILTERABLE_EXACT, FILTERABLE_EXACT_MULTISAMPLED],
-        with filtered: Filtered
-    {
+    /// Of those that read the filtered map.
+    pub(super) struct Filtered = "filtered map", COMPUTE, group 1 of [VSM_RESOLVE], with lookup: Lookup {
+        2 packed_map: TextureArray(texels::UINT),
+        6 packed_mips: TextureArray(texels::UINT),
+        7 gather_sampler: Sampler(samples::TAKES),
+    }
+
+    /// Of those that read what the filtered map would be made of.
+    struct Exact = "exact", COMPUTE, group 1 of [FILTERABLE_EXACT, FILTERABLE_EXACT_MULTISAMPLED], with lookup: Lookup {
         3 depth_map: Texture(texels::DEPTH),
         4 weights: Storage,
     }
@@ -77,17 +81,17 @@ impl<P: GpuStruct> Filterable<P> {
         is_exact: bool,
     ) -> BindGroups {
         let (view, settings) = (&self.view_uniform, &self.filter_uniform);
-        let (packed_map, snapped_texels) = (packed.view(), stage.snapped_texels());
-        let filtered = Filtered { light_view: view, settings, packed_map, snapped_texels };
-        let encoded = Encoded { map_view: view, settings, light_map, packed_target: packed.target() };
+        let lookup = Lookup { light_view: view, settings, snapped_texels: stage.snapped_texels() };
+        let encoded = Encoded { map_view: view, settings, light_map, packed_target: packed.first() };
         BindGroups {
             encode: encoded.group(stage, &pipelines.encode_layout),
             depth: Depth { light_view: view, settings, depth_map: light_map }.group(stage, &pipelines.depth_layout),
             resolve: if is_exact {
-                Exact { filtered, depth_map: light_map, weights: packed.weights() }
-                    .group(stage, &pipelines.exact_layout)
+                Exact { lookup, depth_map: light_map, weights: packed.weights() }.group(stage, &pipelines.exact_layout)
             } else {
-                filtered.group(stage, &self.resolve_layout)
+                let (packed_map, packed_mips) = (packed.first(), packed.mips());
+                Filtered { lookup, packed_map, packed_mips, gather_sampler: &self.gather_sampler }
+                    .group(stage, &self.resolve_layout)
             },
             params: Basis { parameters: &self.params_uniform, buffer }.group(stage, &self.params_layout),
         }

@@ -101,7 +101,7 @@ struct source_FilterUniform {
     near_m: f32,
     far_m: f32,
     depth_axis: vec3f,
-    padding: f32
+    level_count: u32
 }
 
 override source_IS_DISTANCE: bool = false;

@@ -467,6 +467,21 @@ fn moment_hausdorff(m: vec4f, u: f32) -> moment_Blocked {
     return moment_Blocked(saturate(share), select(u, sum / max(share, 1e-6), share > 1e-6));
 }
 
+fn levels_level_size(map_size: vec2u, level: u32) -> vec2u {
+    return map_size >> vec2u(level);
+}
+
+fn levels_level_origin(map_size: vec2u, level: u32) -> vec2u {
+    if level <= 1u {
+        return vec2u();
+    }
+    return vec2u(map_size.x >> 1u, (map_size.y >> 1u) - (map_size.y >> (level - 1u)));
+}
+
+fn levels_mips_size(map_size: vec2u) -> vec2u {
+    return vec2u((map_size.x >> 1u) + (map_size.x >> 2u), map_size.y >> 1u);
+}
+
 const packing_PACKING_FLOAT32 = 0u;
 
 const packing_PACKING_FLOAT16 = 1u;
@@ -497,6 +512,12 @@ var<uniform> lookup_settings: source_FilterUniform;
 
 @group(1) @binding(2)
 var lookup_packed_map: texture_2d_array<u32>;
+
+@group(1) @binding(6)
+var lookup_packed_mips: texture_2d_array<u32>;
+
+@group(1) @binding(7)
+var lookup_gather_sampler: sampler;
 
 @group(1) @binding(5)
 var<uniform> lookup_snapped_texels: f32;
@@ -553,8 +574,7 @@ fn lookup_sides_in_uv(receiver: inputs_Receiver, pixel: vec2u) -> array<vec2f, 2
 }
 
 fn lookup_footprint_of(receiver: inputs_Receiver, pixel: vec2u, uv: vec2f) -> lookup_Footprint {
-    let levels = textureNumLevels(lookup_packed_map);
-    if levels == 1u {
+    if lookup_settings.level_count == 1u {
         return lookup_Footprint(uv, vec2f(), 1u, 0.0);
     }
     let sides = lookup_sides_in_uv(receiver, pixel);
@@ -569,7 +589,7 @@ fn lookup_footprint_of(receiver: inputs_Receiver, pixel: vec2u, uv: vec2f) -> lo
     let minor = sqrt(max(middle - spread, 0.0));
     let most = f32(lookup_settings.max_anisotropy);
     let count = clamp(ceil(major / max(minor, 1.0)), 1.0, most);
-    let level = clamp(log2(max(major / count, 1.0)), 0.0, f32(levels - 1u));
+    let level = clamp(log2(max(major / count, 1.0)), 0.0, f32(lookup_settings.level_count - 1u));
     var axis = select(vec2f(xy, middle + spread - xx), vec2f(middle + spread - yy, xy), xx > yy);
     axis = select(vec2f(), normalize(axis), dot(axis, axis) > 1e-20);
     return lookup_Footprint(uv, axis * (major / count) / map_light_view.map_size, u32(count), level);
@@ -611,28 +631,32 @@ fn lookup_map_receiver(pixel: vec2u) -> lookup_MapReceiver {
     return found;
 }
 
-fn lookup_word_at(texel: vec2i, word: u32, level: u32) -> vec4f {
-    return packing_unpack_word(textureLoad(lookup_packed_map, texel, word, level).x, lookup_settings.packing);
+fn lookup_level_size(level: u32) -> vec2i {
+    return vec2i(levels_level_size(vec2u(map_light_view.map_size), level));
 }
 
-fn lookup_level_size(level: u32) -> vec2i {
-    return max(vec2i(map_light_view.map_size) >> vec2u(level), vec2i(1));
+fn lookup_gather_words(corner: vec2f, word: u32, level: u32) -> vec4u {
+    let map_size = vec2u(map_light_view.map_size);
+    if level == 0u {
+        return textureGather(0, lookup_packed_map, lookup_gather_sampler, corner / map_light_view.map_size, word);
+    }
+    let place = vec2f(levels_level_origin(map_size, level)) + corner;
+    return textureGather(0, lookup_packed_mips, lookup_gather_sampler, place / vec2f(levels_mips_size(map_size)), word);
 }
 
 fn lookup_bilinear_word(uv: vec2f, word: u32, level: u32) -> vec4f {
-    let size = lookup_level_size(level);
-    let pos = uv * vec2f(size) - 0.5;
+    let size = vec2f(lookup_level_size(level));
+    let pos = clamp(uv * size - 0.5, vec2f(), size - 1.0);
     let base = floor(pos);
     let t = pos - base;
-    let low = clamp(vec2i(base), vec2i(0), size - 1);
-    let high = clamp(vec2i(base) + 1, vec2i(0), size - 1);
-    let top = mix(lookup_word_at(low, word, level), lookup_word_at(vec2i(high.x, low.y), word, level), t.x);
-    let bottom = mix(lookup_word_at(vec2i(low.x, high.y), word, level), lookup_word_at(high, word, level), t.x);
+    let words = lookup_gather_words(base + 1.0, word, level);
+    let top = mix(packing_unpack_word(words.w, lookup_settings.packing), packing_unpack_word(words.z, lookup_settings.packing), t.x);
+    let bottom = mix(packing_unpack_word(words.x, lookup_settings.packing), packing_unpack_word(words.y, lookup_settings.packing), t.x);
     return mix(top, bottom, t.y);
 }
 
 fn lookup_filtered_word(footprint: lookup_Footprint, word: u32) -> vec4f {
-    let last = textureNumLevels(lookup_packed_map) - 1u;
+    let last = lookup_settings.level_count - 1u;
     let level = min(u32(footprint.level), last);
     let above = min(level + 1u, last);
     let between = footprint.level - f32(level);
@@ -677,7 +701,7 @@ struct source_FilterUniform {
     near_m: f32,
     far_m: f32,
     depth_axis: vec3f,
-    padding: f32
+    level_count: u32
 }
 
 override source_IS_DISTANCE: bool = false;

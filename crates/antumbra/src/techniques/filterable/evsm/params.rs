@@ -28,6 +28,7 @@ filterable_params! {
         storage: FloatStorage = FloatStorage::Float32,
             more "float16 takes half of the memory and allows small exponents alone.";
     } => Paper {
+        anisotropy: 16, ours "8 probes have the same error at half the reads.";
         depth_axis: DepthAxis::Distance, ours "Depth is measured along the world's axis nearest to the light's.";
     } kept {
         "u runs from −1 to 1, where the paper's x runs from 0 to 1: its c is twice ours. It names no value for c.",

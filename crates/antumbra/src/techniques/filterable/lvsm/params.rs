@@ -143,6 +143,7 @@ filterable_params! {
         show: LvsmShow = LvsmShow::Visibility,
             more "layers colours each receiver by its layer, to see where the splits lie.";
     } => Paper {
+        anisotropy: 16, ours "8 probes have the same error at half the reads.";
         depth_axis: DepthAxis::Distance, ours "Depth is measured along the world's axis nearest to the light's.";
         splits_per_frame: 2, ours "All splits move in every frame.";
         relax_over: RelaxOver::MapAsPrinted, ours "Splits are placed where receivers in view see light bleed.";
