@@ -11,6 +11,7 @@
 //! **What shading loses.** Images other than the base colour's are replaced by their means, and what a volume absorbs is
 //! taken into the base colour. Casters have them texel by texel.
 
+mod geometry_buffers;
 mod ground;
 mod mips;
 mod repose;
@@ -27,6 +28,7 @@ use antumbra_scene::{
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use wgpu::util::DeviceExt;
 
+use geometry_buffers::{GeometryBuffers, JoinedGeometries, Place};
 pub use ground::CastersOfLights;
 use mips::mip_chain;
 use split::{MeshPart, split_mesh};
@@ -36,6 +38,8 @@ use split::{MeshPart, split_mesh};
 pub struct GpuScene {
     /// Geometry, by index from [`Draw::geometry`].
     pub(crate) geometries: Vec<Geometry>,
+    /// Their vertices and triangles, by index from [`Place::buffers`].
+    pub(crate) buffers: Vec<GeometryBuffers>,
     /// Lists of world-from-object matrices, by index from [`Draw::instances`].
     pub(crate) instances: Vec<wgpu::Buffer>,
     /// What to draw.
@@ -57,11 +61,7 @@ pub struct GpuScene {
 /// Indexed triangles of one surface in object space.
 #[derive(Debug)]
 pub(crate) struct Geometry {
-    pub positions: wgpu::Buffer,
-    pub normals: wgpu::Buffer,
-    pub uvs: Option<wgpu::Buffer>,
-    pub colors: Option<wgpu::Buffer>,
-    pub indices: wgpu::Buffer,
+    pub place: Place,
     pub index_count: u32,
     /// The triangles around each vertex, as `shading/bent.wgsl` reads them; `None` where nobody asked for them, or where
     /// they do not fit a binding.
@@ -133,6 +133,13 @@ enum CasterSurface {
     },
 }
 
+impl CasterSurface {
+    /// Whether it has texture coordinates that the geometry has not.
+    fn has_uvs(&self) -> bool {
+        matches!(self, Self::Masked { uvs: Some(_), .. } | Self::Translucent { uvs: Some(_), .. })
+    }
+}
+
 /// Samplers for each way to wrap: level 0 alone, as the definition of visibility has it, and all levels for looks.
 #[derive(Debug)]
 struct SamplerSet {
@@ -147,6 +154,13 @@ const GEOMETRY_USAGE: wgpu::BufferUsages =
 /// Up to this many vertex transforms a mesh, its world boxes are exact; past it, each instance's box is turned instead,
 /// which may be larger. A second's work on one core.
 const EXACT_BOUNDS_WORK: usize = 1 << 24;
+
+impl Geometry {
+    /// Its corners of triangles, counted from the first of its buffers.
+    pub(crate) fn corners(&self) -> std::ops::Range<u32> {
+        self.place.first_index..self.place.first_index + self.index_count
+    }
+}
 
 impl GpuScene {
     /// Uploads a scene. The queue copies before the next submission.
@@ -187,27 +201,28 @@ impl GpuScene {
 
     fn caster(&self, draw: &Draw) -> Option<MeshCaster<'_>> {
         let geometry = &self.geometries[draw.geometry];
+        let buffers = self.buffers_of(geometry);
         let opacity = match &geometry.caster {
             CasterSurface::Absent => return None,
             CasterSurface::Opaque => Opacity::Opaque,
             CasterSurface::Masked { texture, uvs, alpha_factor, cutoff } => Opacity::Masked {
-                texture: self.caster_texture(*texture, uvs.as_ref().or(geometry.uvs.as_ref())?),
+                texture: self.caster_texture(*texture, uvs.as_ref().or(buffers.uvs.as_ref())?),
                 alpha_factor: *alpha_factor,
                 cutoff: *cutoff,
             },
             CasterSurface::Translucent { coverage, transmitted, texture, uvs } => Opacity::Translucent {
                 coverage: *coverage,
                 transmitted: *transmitted,
-                texture: match (texture, uvs.as_ref().or(geometry.uvs.as_ref())) {
+                texture: match (texture, uvs.as_ref().or(buffers.uvs.as_ref())) {
                     (Some(texture), Some(uvs)) => Some(self.caster_texture(*texture, uvs)),
                     _ => None,
                 },
             },
         };
         Some(MeshCaster {
-            positions: &geometry.positions,
-            indices: &geometry.indices,
-            first_triangle: 0,
+            positions: &buffers.positions,
+            indices: &buffers.indices,
+            first_triangle: geometry.place.first_index / 3,
             index_count: geometry.index_count,
             instances: &self.instances[draw.instances],
             first_instance: draw.first_instance,
@@ -217,6 +232,11 @@ impl GpuScene {
             bounds: draw.bounds,
             version: Some(geometry.version),
         })
+    }
+
+    /// A geometry's buffers, which it may share with others.
+    pub(crate) fn buffers_of(&self, geometry: &Geometry) -> &GeometryBuffers {
+        &self.buffers[geometry.place.buffers]
     }
 
     fn caster_texture<'a>(&'a self, slot: TextureSlot, uvs: &'a wgpu::Buffer) -> SurfaceTexture<'a> {
@@ -256,6 +276,7 @@ struct Upload<'a> {
     /// What materials' images make on closed and on open meshes.
     made: HashMap<(usize, bool), TextureSlot>,
     alpha_ramp: Option<TextureSlot>,
+    joined: JoinedGeometries,
     memory_bytes: u64,
     with_faces: bool,
 }
@@ -269,6 +290,7 @@ impl<'a> Upload<'a> {
             slots: HashMap::new(),
             made: HashMap::new(),
             alpha_ramp: None,
+            joined: JoinedGeometries::new(binding_bytes(gpu)),
             memory_bytes: 0,
             with_faces: false,
         };
@@ -319,10 +341,12 @@ impl<'a> Upload<'a> {
             .iter()
             .map(|list| self.buffer("instances", bytemuck::cast_slice(list), wgpu::BufferUsages::empty()))
             .collect();
+        let (buffers, geometry_bytes) = self.joined.upload(self.gpu);
         let is_ground = |draw: &Draw| draw.placed.iter().any(|placed| Some(placed.instance) == self.scene.ground);
         GpuScene {
             ground: draws.iter().position(is_ground),
             geometries,
+            buffers,
             instances,
             bounds: draws.iter().fold(Aabb::EMPTY, |bounds, draw| bounds.union(draw.bounds)),
             draws,
@@ -330,7 +354,7 @@ impl<'a> Upload<'a> {
             textures: self.textures,
             samplers: SamplerSet::new(self.gpu.device()),
             triangle_count: self.scene.triangle_count(),
-            memory_bytes: self.memory_bytes,
+            memory_bytes: self.memory_bytes + geometry_bytes,
         }
     }
 
@@ -342,14 +366,13 @@ impl<'a> Upload<'a> {
             Occluder::Masked { cutoff } => self.masked(material.base_color.w, texture, cutoff, &part),
             Occluder::Translucent => self.translucent(mesh, &part),
         };
+        let faces = self.faces(&mesh.name, &part);
+        // What counts vertices from the geometry's own first lies beside vertices of its own.
+        let has_own_vertices = faces.is_some() || caster.has_uvs();
         Geometry {
-            positions: self.buffer(&mesh.name, bytemuck::cast_slice(&part.positions), wgpu::BufferUsages::empty()),
-            normals: self.buffer(&mesh.name, bytemuck::cast_slice(&part.normals), wgpu::BufferUsages::empty()),
-            uvs: self.optional_buffer(&mesh.name, bytemuck::cast_slice(&part.uvs)),
-            colors: self.optional_buffer(&mesh.name, bytemuck::cast_slice(&part.colors)),
-            indices: self.buffer(&mesh.name, bytemuck::cast_slice(&part.indices), wgpu::BufferUsages::INDEX),
+            place: self.joined.push(&part, !has_own_vertices),
             index_count: part.indices.len() as u32,
-            faces: self.faces(&mesh.name, &part),
+            faces,
             material: mesh.material,
             texture,
             occluder,

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use antumbra::Gpu;
 use antumbra_scene::{Aabb, Mesh, Scene};
+use glam::Vec3;
 
 use super::split::{MeshPart, split_mesh};
 use super::{GpuScene, binding_bytes, instances_by_mesh, placed_at};
@@ -50,8 +51,10 @@ impl GpuScene {
     fn write_vertices(&mut self, gpu: &Gpu, geometry: usize, part: &MeshPart<'_>) {
         let geometry = &mut self.geometries[geometry];
         geometry.version.vertices += 1;
-        gpu.queue().write_buffer(&geometry.positions, 0, bytemuck::cast_slice(&part.positions));
-        gpu.queue().write_buffer(&geometry.normals, 0, bytemuck::cast_slice(&part.normals));
+        let buffers = &self.buffers[geometry.place.buffers];
+        let place = u64::from(geometry.place.first_vertex) * size_of::<Vec3>() as u64;
+        gpu.queue().write_buffer(&buffers.positions, place, bytemuck::cast_slice(&part.positions));
+        gpu.queue().write_buffer(&buffers.normals, place, bytemuck::cast_slice(&part.normals));
     }
 
     fn write_poses(&mut self, gpu: &Gpu, draw: usize, part: &MeshPart<'_>, scene: &Scene) {
@@ -87,7 +90,7 @@ mod tests {
     use super::*;
     use crate::test_support::{gpu_or_skip, quad};
     use antumbra_scene::{Instance, Material};
-    use glam::{Mat4, Vec3};
+    use glam::Mat4;
 
     fn two_quads() -> Scene {
         let at = |mesh, x: f32| Instance { mesh, world_from_object: Mat4::from_translation(Vec3::X * x) };

@@ -330,7 +330,7 @@ impl ReceiverPass {
             pass.set_pipeline(if scene.is_masked(draw) { &self.masked } else { &self.solid });
             pass.set_bind_group(1, group, &[]);
             let instances = draw.first_instance..draw.first_instance + draw.instance_count;
-            pass.draw(0..scene.geometries[draw.geometry].index_count, instances);
+            pass.draw(scene.geometries[draw.geometry].corners(), instances);
         }
     }
 
@@ -355,13 +355,14 @@ impl ReceiverPass {
         let material = uniform_buffer(gpu.device(), "receivers: material", bytemuck::bytes_of(&uniform));
         let (view, level_0, smooth) = scene.texture_of(geometry);
         let or_absent = |buffer: &Option<wgpu::Buffer>| buffer.clone().unwrap_or_else(|| self.absent_attribute.clone());
-        let (uvs, colors) = (or_absent(&geometry.uvs), or_absent(&geometry.colors));
+        let buffers = scene.buffers_of(geometry);
+        let (uvs, colors) = (or_absent(&buffers.uvs), or_absent(&buffers.colors));
         let resources = [
-            geometry.positions.as_entire_binding(),
-            geometry.normals.as_entire_binding(),
+            buffers.positions.as_entire_binding(),
+            buffers.normals.as_entire_binding(),
             uvs.as_entire_binding(),
             colors.as_entire_binding(),
-            geometry.indices.as_entire_binding(),
+            buffers.indices.as_entire_binding(),
             scene.instances[draw.instances].as_entire_binding(),
             material.as_entire_binding(),
             wgpu::BindingResource::TextureView(view),
@@ -384,6 +385,7 @@ fn material_uniform(scene: &GpuScene, geometry: &Geometry) -> MaterialUniform {
         AlphaMode::Mask { cutoff } => cutoff,
         AlphaMode::Opaque | AlphaMode::Blend => 0.0,
     };
+    let buffers = scene.buffers_of(geometry);
     let flag = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
     MaterialUniform {
         base_color: material.base_color.to_array(),
@@ -392,8 +394,8 @@ fn material_uniform(scene: &GpuScene, geometry: &Geometry) -> MaterialUniform {
         roughness: material.roughness,
         alpha_cutoff,
         transmission: material.transmission,
-        flags: flag(geometry.uvs.is_some(), HAS_UVS)
-            | flag(geometry.colors.is_some(), HAS_COLORS)
+        flags: flag(buffers.uvs.is_some(), HAS_UVS)
+            | flag(buffers.colors.is_some(), HAS_COLORS)
             | flag(material.alpha == AlphaMode::Blend, IS_BLENDED),
     }
 }

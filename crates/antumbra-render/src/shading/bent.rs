@@ -37,7 +37,7 @@ pub(super) fn bent_images(
                 pass.set_bind_group(1, draw_group, &[]);
                 pass.set_bind_group(2, light_group, &[]);
                 let instances = draw.first_instance..draw.first_instance + draw.instance_count;
-                pass.draw(0..scene.geometries[draw.geometry].index_count, instances);
+                pass.draw(scene.geometries[draw.geometry].corners(), instances);
             }
             drop(pass);
             view
@@ -143,7 +143,7 @@ fn begin_pass<'e>(
 /// A buffer of zeroes for as many vertices as any geometry has: no normals at all.
 fn no_faces_for(gpu: &Gpu, scene: &GpuScene) -> wgpu::Buffer {
     let lacking = scene.geometries.iter().filter(|geometry| geometry.faces.is_none());
-    let vertices = lacking.map(|geometry| geometry.positions.size() / 12).max().unwrap_or(0);
+    let vertices = lacking.map(|geometry| scene.buffers_of(geometry).positions.size() / 12).max().unwrap_or(0);
     gpu.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("bent: no faces"),
         size: 4 * (vertices + 1),

@@ -1,5 +1,5 @@
 //! Batches of triangles: as many as memory is set aside for, opaque ones first, then each surface that is
-//! there for some light points and not for others, then each of which a share passes.
+//! there for some light points and not for others, whatever casters have it, then each caster of which a share passes.
 //!
 //! Masked surfaces are there or not at a place. Translucent ones that do not tint are there for as many of many light
 //! points as they stop light: what several of them let through then multiplies, as it does along each segment. Of tinted
@@ -8,6 +8,7 @@
 use antumbra_light::Aabb;
 
 use crate::contract::{MeshCaster, Opacity};
+use crate::light_map::caster_surface::SurfaceValues;
 
 use super::settings::{FLAG_CLOSED, FLAG_MASKED, FLAG_TINTED};
 
@@ -18,7 +19,7 @@ pub(crate) const BATCH_TRIANGLES: u32 = 1 << 20;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surfaces {
     Opaque,
-    /// Those of the caster of this index, which hide light points or not.
+    /// Those of the caster of this index and of all with its surface, which hide light points or not.
     Masked(usize),
     /// Those of the caster of this index, which let a share of each colour pass.
     Tinted(usize),
@@ -129,9 +130,17 @@ pub(crate) fn batches_of(
         Opacity::Masked { .. } => true,
         Opacity::Translucent { .. } => by_bits && !opacity.tints(),
     };
-    for (i, caster) in casters.iter().enumerate() {
-        if hides_points(&caster.opacity) {
-            add(i, Surfaces::Masked(i), FLAG_MASKED);
+    let mut by_surface: Vec<Vec<usize>> = Vec::new();
+    for (i, caster) in casters.iter().enumerate().filter(|(_, caster)| hides_points(&caster.opacity)) {
+        let same = by_surface.iter_mut().find(|same| has_surface_of(&caster.opacity, &casters[same[0]].opacity));
+        match same {
+            Some(same) => same.push(i),
+            None => by_surface.push(vec![i]),
+        }
+    }
+    for same in &by_surface {
+        for i in same {
+            add(*i, Surfaces::Masked(same[0]), FLAG_MASKED);
         }
     }
     for (i, caster) in casters.iter().enumerate() {
@@ -140,4 +149,13 @@ pub(crate) fn batches_of(
         }
     }
     batches
+}
+
+/// Whether two surfaces do the same to light, where their texture coordinates are the same.
+fn has_surface_of(a: &Opacity<'_>, b: &Opacity<'_>) -> bool {
+    let is_same_texture = match (a.texture(), b.texture()) {
+        (Some(a), Some(b)) => a.view == b.view && a.sampler == b.sampler,
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    is_same_texture && SurfaceValues::of(a) == SurfaceValues::of(b)
 }

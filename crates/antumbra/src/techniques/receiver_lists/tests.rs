@@ -4,16 +4,43 @@
 use antumbra_light::{hash_u32, unit_f32};
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
-use super::batches::batches_of;
+use super::batches::{Surfaces, batches_of};
+use crate::contract::{MeshCaster, Opacity, SurfaceCoverage};
 use crate::gpu::{Bindings, Gpu, bindings, compute_pipeline};
 use crate::shaders;
-use crate::testing::{gpu, read_storage};
+use crate::testing::{Case, RECTANGLE, gpu, read_storage};
 
 #[test]
 fn no_casters_make_one_empty_batch() {
     let batches = batches_of(&[], |_| false, 100, true);
     assert_eq!(batches.len(), 1);
     assert_eq!(batches[0].triangles(), 0);
+}
+
+#[test]
+fn casters_that_hide_by_the_same_surface_share_a_batch() {
+    let Some(gpu) = gpu() else { return };
+    let case = Case::half_plane(gpu, RECTANGLE);
+    let caster = || case.meshes[0].caster();
+    let glass = |alpha, transmitted| MeshCaster {
+        opacity: Opacity::Translucent { coverage: SurfaceCoverage::Alpha(alpha), transmitted, texture: None },
+        ..caster()
+    };
+    let (gauze, red) = (|alpha| glass(alpha, Vec3::ZERO), || glass(0.5, Vec3::X));
+    let casters = [gauze(0.5), caster(), gauze(0.25), red(), gauze(0.5), red()];
+    let batches = batches_of(&casters, |_| false, 1000, true);
+    let found: Vec<_> = (batches.iter())
+        .map(|batch| (batch.surfaces, batch.runs.iter().map(|run| run.caster).collect::<Vec<_>>()))
+        .collect();
+    // What several panes let through multiplies, so that each is alone.
+    let want = [
+        (Surfaces::Opaque, vec![1]),
+        (Surfaces::Masked(0), vec![0, 4]),
+        (Surfaces::Masked(2), vec![2]),
+        (Surfaces::Tinted(3), vec![3]),
+        (Surfaces::Tinted(5), vec![5]),
+    ];
+    assert_eq!(found, want);
 }
 
 /// A triangle, seen from the origin, and a box of light points about a centre.
