@@ -63,7 +63,7 @@ struct runs_TriangleRun {
     has_uvs: u32
 }
 
-const runs_RUNS_LOG2 = 8u;
+const runs_RUNS_LOG2 = 9u;
 
 const runs_MOST_RUNS = 1u << runs_RUNS_LOG2;
 

@@ -36,7 +36,7 @@ pub(crate) fn anchor_uniform(stage: &Stage<'_>) -> wgpu::Buffer {
 }
 
 /// Runs of a dispatch: `MOST_RUNS` of `runs.wesl`.
-pub(crate) const MOST_RUNS: usize = 256;
+pub(crate) const MOST_RUNS: usize = 512;
 
 /// Uploads as many runs, each with its triangles, and counts the triangles of all.
 pub(crate) fn upload_runs(
