@@ -504,16 +504,14 @@ fn soft_kernel_footprint_step(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u
     return soft_kernel_texels_of_step(receiver, uv, a + ray * t - receiver.pos_in_world);
 }
 
-fn soft_kernel_is_same_towards(receiver: inputs_Receiver, pixel: vec2u, step_px: vec2i) -> bool {
+const soft_kernel_SHARE_AT_EDGE = 0.75;
+
+fn soft_kernel_share_towards(receiver: inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
     let neighbour = clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(inputs_receiver_view.size_px) - 1);
     let depth = inputs_depth_at(vec2u(neighbour));
     let step = inputs_position_in_world(vec2u(neighbour), depth) - receiver.pos_in_world;
-    return depth != inputs_receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
-}
-
-fn soft_kernel_sure_share(receiver: inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
-    let is_sure = soft_kernel_is_same_towards(receiver, pixel, -step_px) && soft_kernel_is_same_towards(receiver, pixel, step_px);
-    return select(0.0, 1.0, is_sure);
+    let is_same = depth != inputs_receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
+    return select(soft_kernel_SHARE_AT_EDGE, 1.0, is_same);
 }
 
 fn soft_kernel_square_covariance(x: vec2f, y: vec2f) -> vec3f {
@@ -524,8 +522,9 @@ fn soft_kernel_ending_footprint_covariance(receiver: inputs_Receiver, uv: vec2f,
     if inputs_are_points() {
         return soft_kernel_footprint_covariance(receiver, uv, pixel, vec2f(1.0));
     }
-    let size_px = vec2f(soft_kernel_sure_share(receiver, pixel, vec2i(1, 0)), soft_kernel_sure_share(receiver, pixel, vec2i(0, 1)));
-    return soft_kernel_footprint_covariance(receiver, uv, pixel, size_px);
+    let width = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(-1, 0)) + soft_kernel_share_towards(receiver, pixel, vec2i(1, 0)));
+    let height = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(0, -1)) + soft_kernel_share_towards(receiver, pixel, vec2i(0, 1)));
+    return soft_kernel_footprint_covariance(receiver, uv, pixel, vec2f(width, height));
 }
 
 fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u, size_px: vec2f) -> vec3f {

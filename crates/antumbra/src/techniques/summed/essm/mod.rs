@@ -56,8 +56,9 @@
 //! # Limits
 //! One mean depth stands for all blockers, as in `pcss`: umbrae shrink under layered occluders. 2 × 2 comparisons miss what
 //! is finer than half a part, which shows as faint bands in foliage. The filter takes the receiver for a plane as
-//! large as the pixel; along a side where a neighbour sees another surface it takes the pixel's centre alone, and fine shadows are not
-//! anti-aliased there. A light's emission texture counts by its mean and covariance.
+//! large as the pixel, less a quarter of each half towards a neighbour that sees another surface: at an edge a shadow runs
+//! on by a part of a pixel; `kernel = isotropic` does not. A
+//! light's emission texture counts by its mean and covariance.
 
 use crate::light_map::map::MapWindow;
 use crate::techniques::summed::summed_area_table::{Scan, Sums, TableDesign, Tiling};

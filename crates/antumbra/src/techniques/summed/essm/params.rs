@@ -168,7 +168,7 @@ params! {
         blocker_mean: EssmBlockerMean::Depth, ours "The mean is of g = 1 / z − 1 / z_receiver, which a penumbra's width is proportional to.";
         horizon: false, ours "The light's part below the receiver's plane is hidden.";
         edge_goes_on: false, ours "What the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.";
-        footprint_ends: false, ours "The pixel's footprint ends where a neighbour shows another surface.";
+        footprint_ends: false, ours "The pixel's footprint is narrower where a neighbour shows another surface.";
         cuts: EssmCuts::Squares, ours "A row has n columns, where the paper's rectangles have n × n parts, and an ellipse n rows, where the paper's become more.";
         direct_texels: 0.0, ours "Kernels of parts up to 3 texels wide are read from the map.";
     } kept {
