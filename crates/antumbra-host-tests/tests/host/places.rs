@@ -87,6 +87,34 @@ fn inside_a_solid_it_is_dark() {
     );
 }
 
+/// Walls of a closed room that a lamp outside grazes: to what lies at their feet one wall is many depths.
+#[test]
+fn walls_of_many_depths_stay_closed() {
+    let scene = base_with([Mesh::cuboid(Vec3::new(-3.0, -0.1, -2.0), Vec3::new(3.0, 3.0, 2.0))]);
+    let camera =
+        Camera { eye: Vec3::new(-2.2, 1.6, 1.4), target: Vec3::new(1.5, 0.6, -1.2), fov_y_rad: 1.13, ..Camera::base() };
+    let light = Light::new(
+        LightShape::Rectangle { size_m: Vec2::splat(0.6) },
+        Vec3::new(4.0, 7.0, 3.0),
+        Vec3::new(0.0, 1.0, 0.0),
+    );
+    let Some(place) = Place::new(&scene, &camera, light) else { return };
+    let leak = umbra_leak(&place.mask_by("multi_layer"), &place.truth);
+    println!("a room under a lamp: {leak} of what is dark is lit");
+    assert!(leak <= 0.005, "a room under a lamp: {leak} of what is dark is lit");
+    place.holds("a room under a lamp", &[("multi_layer", 0.03)]);
+}
+
+/// A closed box about a bulb, nearer to it than the bulb is wide: from the corners of a cube's faces the bulb is seen wider than from
+/// their middles, and the box lies beyond what a face's map holds.
+#[test]
+fn shells_about_bulbs_stay_closed() {
+    let center = Vec3::new(0.5, 2.4, 0.5);
+    let scene = base_with([Mesh::cuboid(center - 0.06, center + 0.06)]);
+    let Some(place) = Place::new(&scene, &Camera::base(), sphere(0.05, center)) else { return };
+    place.holds("a shell about a bulb", &[("hard", 0.001), ("pcss", 0.001), ("essm", 0.006), ("backprojection", 0.01)]);
+}
+
 /// A cover that is nearer than the light is large.
 #[test]
 fn covers_of_lights_stay_closed() {

@@ -4,6 +4,7 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::Vec3;
 
 use super::between::Between;
+use super::light_spread::LightSpread;
 use super::light_view::{FitTo, Followed, LightView, ViewFit, WindowShape};
 use crate::contract::SeenPoint;
 
@@ -38,7 +39,8 @@ pub(crate) fn central_fit(
         if matches!(light.shape, LightShape::Points { .. }) {
             frame.center = light.moments().mean_in_world(&frame);
         }
-        ViewFit::perspective(frame, followed, reach, light.reach_tangent(), casters, receivers)
+        let depth_m = LightSpread::of(light).extent_axis;
+        ViewFit::perspective(frame, followed, reach, depth_m, light.reach_tangent(), casters, receivers)
     }
 }
 

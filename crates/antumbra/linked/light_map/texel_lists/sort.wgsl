@@ -94,9 +94,18 @@ fn with_near_ones(first: u32, index: u32, count: u32) -> fragments_GatheredFragm
     return fragments_GatheredFragment(z_sum / covered, opacity / covered, whole.samples);
 }
 
+fn sample_overlap(samples: u32, covered: u32) -> f32 {
+    if covered == 0u {
+        return 1.0;
+    }
+    let hidden = f32(countOneBits(samples & covered));
+    return fragments_SAMPLE_COUNT * hidden / f32(countOneBits(samples) * countOneBits(covered));
+}
+
 fn cover(first: u32, count: u32) -> u32 {
     var kept = 0u;
     var samples_covered = 0u;
+    var covered = 0u;
     for (var i = 0u; i < count; i++) {
         let gathered = with_near_ones(first, i, count);
         if gathered.samples == 0u {
@@ -112,7 +121,9 @@ fn cover(first: u32, count: u32) -> u32 {
         for (; place > 0u && bitcast<f32>(fragments[first + place - 1u].x) > gathered.z_m; place--) {
             fragments[first + place] = fragments[first + place - 1u];
         }
-        fragments[first + place] = fragments_pack_fragment(fragments_Fragment(gathered.z_m, opacity), COLORED);
+        let overlap = sample_overlap(gathered.samples, covered);
+        covered |= gathered.samples;
+        fragments[first + place] = fragments_pack_fragment(fragments_Fragment(gathered.z_m, opacity, overlap), COLORED);
         kept++;
     }
     return kept;
@@ -129,7 +140,7 @@ fn join(first: u32, count: u32) -> u32 {
         if n > 0u && !(next.z_m > limit) {
             z_sum += next.z_m;
             n++;
-            joined.opacity = fragments_accumulate(ACCUMULATION, joined.opacity, next.opacity);
+            joined.opacity = fragments_accumulate(ACCUMULATION, joined.opacity, next.opacity, next.overlap);
             continue;
         }
         if n > 0u {
@@ -218,34 +229,45 @@ fn pack_lists(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
     lists[texel] = vec2u(first, finish_list(first, room));
 }
 
-const fragments_EXPONENT_BIAS = 15;
+const fragments_EXPONENT_BIAS = 14;
 
-const fragments_MANTISSA_BITS = 9;
+const fragments_MANTISSA_BITS = 8;
+
+const fragments_OVERLAP_STEPS = 4094.0;
+
+const fragments_OVERLAP_STEPS_COLORED = 14.0;
+
+const fragments_OVERLAP_BITS = 4095u;
 
 struct fragments_Fragment {
     z_m: f32,
-    opacity: vec3f
+    opacity: vec3f,
+    overlap: f32
 }
 
 fn fragments_power_of_two(exponent: i32) -> f32 {
     return bitcast<f32>(u32(exponent + 127) << 23u);
 }
 
-fn fragments_pack_rgb9e5(color: vec3f) -> u32 {
+fn fragments_pack_rgb8e4(color: vec3f) -> u32 {
     let c = clamp(color, vec3f(0.0), vec3f(1.0));
     let largest = max(c.r, max(c.g, c.b));
     let floor_log2 = i32(bitcast<u32>(largest) >> 23u) - 127;
     var exponent = max(-fragments_EXPONENT_BIAS - 1, floor_log2) + 1 + fragments_EXPONENT_BIAS;
-    if round(largest * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)) >= 512.0 {
+    if round(largest * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)) >= 256.0 {
         exponent += 1;
     }
     let m = vec3u(round(c * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)));
-    return m.r | (m.g << 9u) | (m.b << 18u) | (u32(exponent) << 27u);
+    return m.r | (m.g << 8u) | (m.b << 16u) | (u32(exponent) << 24u);
 }
 
-fn fragments_unpack_rgb9e5(bits: u32) -> vec3f {
-    let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
-    return vec3f(m) * fragments_power_of_two(i32(bits >> 27u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
+fn fragments_unpack_rgb8e4(bits: u32) -> vec3f {
+    let m = vec3u(bits & 255u, (bits >> 8u) & 255u, (bits >> 16u) & 255u);
+    return vec3f(m) * fragments_power_of_two(i32((bits >> 24u) & 15u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
+}
+
+fn fragments_pack_overlap(overlap: f32, steps: f32) -> u32 {
+    return u32(round(steps * overlap / (1.0 + overlap)));
 }
 
 struct fragments_GatheredFragment {
@@ -281,19 +303,31 @@ fn fragments_unpack_gathered(bits: vec2u, colored: u32) -> fragments_GatheredFra
 }
 
 fn fragments_pack_fragment(fragment: fragments_Fragment, colored: u32) -> vec2u {
-    let bits = select(bitcast<u32>(fragment.opacity.x), fragments_pack_rgb9e5(fragment.opacity), colored == 1u);
+    var bits = 0u;
+    if colored == 1u {
+        bits = fragments_pack_rgb8e4(fragment.opacity) | (fragments_pack_overlap(fragment.overlap, fragments_OVERLAP_STEPS_COLORED) << 28u);
+    }
+    else {
+        let rounded = bitcast<u32>(fragment.opacity.x) + (fragments_OVERLAP_BITS + 1u) / 2u;
+        bits = (rounded & ~fragments_OVERLAP_BITS) | fragments_pack_overlap(fragment.overlap, fragments_OVERLAP_STEPS);
+    }
     return vec2u(bitcast<u32>(fragment.z_m), bits);
 }
 
 fn fragments_unpack_opacity(bits: u32, colored: u32) -> vec3f {
     if colored == 1u {
-        return fragments_unpack_rgb9e5(bits);
+        return fragments_unpack_rgb8e4(bits);
     }
-    return vec3f(bitcast<f32>(bits));
+    return vec3f(bitcast<f32>(bits & ~fragments_OVERLAP_BITS));
+}
+
+fn fragments_unpack_overlap(bits: u32, colored: u32) -> f32 {
+    let share = select(f32(bits & fragments_OVERLAP_BITS) / fragments_OVERLAP_STEPS, f32(bits >> 28u) / fragments_OVERLAP_STEPS_COLORED, colored == 1u);
+    return share / max(1.0 - share, 1.0 / fragments_OVERLAP_STEPS);
 }
 
 fn fragments_unpack_fragment(bits: vec2u, colored: u32) -> fragments_Fragment {
-    return fragments_Fragment(bitcast<f32>(bits.x), fragments_unpack_opacity(bits.y, colored));
+    return fragments_Fragment(bitcast<f32>(bits.x), fragments_unpack_opacity(bits.y, colored), fragments_unpack_overlap(bits.y, colored));
 }
 
 struct fragments_ListCounters {
@@ -305,13 +339,22 @@ const fragments_ACCUMULATE_ADD = 0u;
 
 const fragments_ACCUMULATE_MULTIPLY = 1u;
 
-fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+const fragments_ACCUMULATE_OVERLAP = 3u;
+
+fn fragments_common_opacity(a: vec3f, b: vec3f, overlap: f32) -> vec3f {
+    return clamp(overlap * a * b, max(a + b - 1.0, vec3f(0.0)), min(a, b));
+}
+
+fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f, overlap: f32) -> vec3f {
     switch mode {
         case fragments_ACCUMULATE_ADD {
             return min(a + b, vec3f(1.0));
         }
         case fragments_ACCUMULATE_MULTIPLY {
             return a + b - a * b;
+        }
+        case fragments_ACCUMULATE_OVERLAP {
+            return a + b - fragments_common_opacity(a, b, overlap);
         }
         case default {
             return max(a, b);

@@ -72,16 +72,17 @@ struct Reader {
     opacity_bits: u32,
     place: u32,
     end: u32,
-    z_end: f32
+    z_end: f32,
+    transmittance: f32
 }
 
-fn reader_at(place: u32, end: u32, z_end: f32) -> Reader {
+fn reader_at(place: u32, end: u32, z_end: f32, transmittance: f32) -> Reader {
     if place < end {
         let fragment = fragments[place];
         let z_m = bitcast<f32>(fragment.x);
-        return Reader(select(NONE, z_m, z_m < z_end), fragment.y, place, end, z_end);
+        return Reader(select(NONE, z_m, z_m < z_end), fragment.y, place, end, z_end, transmittance);
     }
-    return Reader(NONE, 0u, place, end, z_end);
+    return Reader(NONE, 0u, place, end, z_end, transmittance);
 }
 
 fn reader_of(texel: vec2u, k: u32) -> Reader {
@@ -89,12 +90,20 @@ fn reader_of(texel: vec2u, k: u32) -> Reader {
     let held = clamp(child, vec2i(0), vec2i(filter_step.source_size) - 1);
     let list = list_at(held);
     let z_end = select(filter_step.held_from_m, NONE, all(held == child));
-    return reader_at(list.x, min(list.x + list.y, arrayLength(&fragments)), z_end);
+    return reader_at(list.x, min(list.x + list.y, arrayLength(&fragments)), z_end, 1.0);
 }
 
 struct DepthSum {
     z: f32,
     weight: f32
+}
+
+fn overlap_of(opacity: f32, before: f32, after: f32) -> f32 {
+    if LIST_ACCUMULATION != fragments_ACCUMULATE_OVERLAP || before >= 1.0 {
+        return 1.0;
+    }
+    let behind = 1.0 - saturate((before - after) / max(opacity, 1e-20));
+    return behind / (1.0 - before);
 }
 
 fn take(reader: ptr<function, Reader>, limit: f32, depths: ptr<function, DepthSum>) -> vec3f {
@@ -105,11 +114,15 @@ fn take(reader: ptr<function, Reader>, limit: f32, depths: ptr<function, DepthSu
             break;
         }
         let a = fragments_unpack_opacity((*reader).opacity_bits, COLORED);
-        opacity = fragments_accumulate(LIST_ACCUMULATION, opacity, a);
-        let weight = select(max(max(a.r, max(a.g, a.b)), 1e-20), 1.0, AVERAGES_BY_COUNT);
+        let overlap = fragments_unpack_overlap((*reader).opacity_bits, COLORED);
+        opacity = fragments_accumulate(LIST_ACCUMULATION, opacity, a, overlap);
+        let strength = fragments_largest(a);
+        let weight = select(max(strength, 1e-20), 1.0, AVERAGES_BY_COUNT);
         (*depths).z += weight * (*reader).z_m;
         (*depths).weight += weight;
-        *reader = reader_at(place + 1u, end, (*reader).z_end);
+        let before = (*reader).transmittance;
+        let after = max(before - strength * saturate(1.0 - overlap * (1.0 - before)), 0.0);
+        *reader = reader_at(place + 1u, end, (*reader).z_end, after);
     }
     return opacity;
 }
@@ -127,12 +140,16 @@ fn merge(texel: vec2u, local: u32, in_place: bool, first: u32) -> u32 {
             break;
         }
         let limit = nearest + abs(filter_step.epsilon_slope * nearest) + filter_step.epsilon_m;
+        let before = 0.25 * (a.transmittance + b.transmittance + c.transmittance + d.transmittance);
         var depths = DepthSum(0.0, 0.0);
         var opacity = take(&a, limit, &depths);
         opacity += take(&b, limit, &depths);
         opacity += take(&c, limit, &depths);
         opacity += take(&d, limit, &depths);
-        let fragment = fragments_pack_fragment(fragments_Fragment(depths.z / depths.weight, 0.25 * opacity), COLORED);
+        opacity *= 0.25;
+        let after = 0.25 * (a.transmittance + b.transmittance + c.transmittance + d.transmittance);
+        let overlap = overlap_of(fragments_largest(opacity), before, after);
+        let fragment = fragments_pack_fragment(fragments_Fragment(depths.z / depths.weight, opacity, overlap), COLORED);
         if in_place {
             fragments[first + count] = fragment;
         }
@@ -182,46 +199,73 @@ fn filter_level(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocat
     }
 }
 
-const fragments_EXPONENT_BIAS = 15;
+const fragments_EXPONENT_BIAS = 14;
 
-const fragments_MANTISSA_BITS = 9;
+const fragments_MANTISSA_BITS = 8;
+
+const fragments_OVERLAP_STEPS = 4094.0;
+
+const fragments_OVERLAP_STEPS_COLORED = 14.0;
+
+const fragments_OVERLAP_BITS = 4095u;
 
 struct fragments_Fragment {
     z_m: f32,
-    opacity: vec3f
+    opacity: vec3f,
+    overlap: f32
 }
 
 fn fragments_power_of_two(exponent: i32) -> f32 {
     return bitcast<f32>(u32(exponent + 127) << 23u);
 }
 
-fn fragments_pack_rgb9e5(color: vec3f) -> u32 {
+fn fragments_pack_rgb8e4(color: vec3f) -> u32 {
     let c = clamp(color, vec3f(0.0), vec3f(1.0));
     let largest = max(c.r, max(c.g, c.b));
     let floor_log2 = i32(bitcast<u32>(largest) >> 23u) - 127;
     var exponent = max(-fragments_EXPONENT_BIAS - 1, floor_log2) + 1 + fragments_EXPONENT_BIAS;
-    if round(largest * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)) >= 512.0 {
+    if round(largest * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)) >= 256.0 {
         exponent += 1;
     }
     let m = vec3u(round(c * fragments_power_of_two(fragments_MANTISSA_BITS + fragments_EXPONENT_BIAS - exponent)));
-    return m.r | (m.g << 9u) | (m.b << 18u) | (u32(exponent) << 27u);
+    return m.r | (m.g << 8u) | (m.b << 16u) | (u32(exponent) << 24u);
 }
 
-fn fragments_unpack_rgb9e5(bits: u32) -> vec3f {
-    let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
-    return vec3f(m) * fragments_power_of_two(i32(bits >> 27u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
+fn fragments_unpack_rgb8e4(bits: u32) -> vec3f {
+    let m = vec3u(bits & 255u, (bits >> 8u) & 255u, (bits >> 16u) & 255u);
+    return vec3f(m) * fragments_power_of_two(i32((bits >> 24u) & 15u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
+}
+
+fn fragments_pack_overlap(overlap: f32, steps: f32) -> u32 {
+    return u32(round(steps * overlap / (1.0 + overlap)));
 }
 
 fn fragments_pack_fragment(fragment: fragments_Fragment, colored: u32) -> vec2u {
-    let bits = select(bitcast<u32>(fragment.opacity.x), fragments_pack_rgb9e5(fragment.opacity), colored == 1u);
+    var bits = 0u;
+    if colored == 1u {
+        bits = fragments_pack_rgb8e4(fragment.opacity) | (fragments_pack_overlap(fragment.overlap, fragments_OVERLAP_STEPS_COLORED) << 28u);
+    }
+    else {
+        let rounded = bitcast<u32>(fragment.opacity.x) + (fragments_OVERLAP_BITS + 1u) / 2u;
+        bits = (rounded & ~fragments_OVERLAP_BITS) | fragments_pack_overlap(fragment.overlap, fragments_OVERLAP_STEPS);
+    }
     return vec2u(bitcast<u32>(fragment.z_m), bits);
 }
 
 fn fragments_unpack_opacity(bits: u32, colored: u32) -> vec3f {
     if colored == 1u {
-        return fragments_unpack_rgb9e5(bits);
+        return fragments_unpack_rgb8e4(bits);
     }
-    return vec3f(bitcast<f32>(bits));
+    return vec3f(bitcast<f32>(bits & ~fragments_OVERLAP_BITS));
+}
+
+fn fragments_unpack_overlap(bits: u32, colored: u32) -> f32 {
+    let share = select(f32(bits & fragments_OVERLAP_BITS) / fragments_OVERLAP_STEPS, f32(bits >> 28u) / fragments_OVERLAP_STEPS_COLORED, colored == 1u);
+    return share / max(1.0 - share, 1.0 / fragments_OVERLAP_STEPS);
+}
+
+fn fragments_largest(color: vec3f) -> f32 {
+    return max(color.r, max(color.g, color.b));
 }
 
 struct fragments_ListCounters {
@@ -233,13 +277,22 @@ const fragments_ACCUMULATE_ADD = 0u;
 
 const fragments_ACCUMULATE_MULTIPLY = 1u;
 
-fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+const fragments_ACCUMULATE_OVERLAP = 3u;
+
+fn fragments_common_opacity(a: vec3f, b: vec3f, overlap: f32) -> vec3f {
+    return clamp(overlap * a * b, max(a + b - 1.0, vec3f(0.0)), min(a, b));
+}
+
+fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f, overlap: f32) -> vec3f {
     switch mode {
         case fragments_ACCUMULATE_ADD {
             return min(a + b, vec3f(1.0));
         }
         case fragments_ACCUMULATE_MULTIPLY {
             return a + b - a * b;
+        }
+        case fragments_ACCUMULATE_OVERLAP {
+            return a + b - fragments_common_opacity(a, b, overlap);
         }
         case default {
             return max(a, b);

@@ -79,7 +79,7 @@ fn occluded_share(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> vec
             finer = occluders_NO_SHARE;
         }
         if settings_WEIGHTS_FRAGMENTS {
-            so_far.opacity = fragments_accumulate(occluders_between_levels(), so_far.opacity, shares.finer.occluder.opacity);
+            so_far.opacity = fragments_accumulate(occluders_between_levels(), so_far.opacity, shares.finer.occluder.opacity, 1.0);
         }
         else {
             so_far = occluders_accumulated(so_far, finer, shares.finer);
@@ -554,24 +554,39 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
-const fragments_EXPONENT_BIAS = 15;
+const fragments_EXPONENT_BIAS = 14;
 
-const fragments_MANTISSA_BITS = 9;
+const fragments_MANTISSA_BITS = 8;
+
+const fragments_OVERLAP_STEPS = 4094.0;
+
+const fragments_OVERLAP_STEPS_COLORED = 14.0;
+
+const fragments_OVERLAP_BITS = 4095u;
 
 fn fragments_power_of_two(exponent: i32) -> f32 {
     return bitcast<f32>(u32(exponent + 127) << 23u);
 }
 
-fn fragments_unpack_rgb9e5(bits: u32) -> vec3f {
-    let m = vec3u(bits & 511u, (bits >> 9u) & 511u, (bits >> 18u) & 511u);
-    return vec3f(m) * fragments_power_of_two(i32(bits >> 27u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
+fn fragments_unpack_rgb8e4(bits: u32) -> vec3f {
+    let m = vec3u(bits & 255u, (bits >> 8u) & 255u, (bits >> 16u) & 255u);
+    return vec3f(m) * fragments_power_of_two(i32((bits >> 24u) & 15u) - fragments_EXPONENT_BIAS - fragments_MANTISSA_BITS);
 }
 
 fn fragments_unpack_opacity(bits: u32, colored: u32) -> vec3f {
     if colored == 1u {
-        return fragments_unpack_rgb9e5(bits);
+        return fragments_unpack_rgb8e4(bits);
     }
-    return vec3f(bitcast<f32>(bits));
+    return vec3f(bitcast<f32>(bits & ~fragments_OVERLAP_BITS));
+}
+
+fn fragments_unpack_overlap(bits: u32, colored: u32) -> f32 {
+    let share = select(f32(bits & fragments_OVERLAP_BITS) / fragments_OVERLAP_STEPS, f32(bits >> 28u) / fragments_OVERLAP_STEPS_COLORED, colored == 1u);
+    return share / max(1.0 - share, 1.0 / fragments_OVERLAP_STEPS);
+}
+
+fn fragments_largest(color: vec3f) -> f32 {
+    return max(color.r, max(color.g, color.b));
 }
 
 const fragments_ACCUMULATE_ADD = 0u;
@@ -580,13 +595,22 @@ const fragments_ACCUMULATE_MULTIPLY = 1u;
 
 const fragments_ACCUMULATE_MAX = 2u;
 
-fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f) -> vec3f {
+const fragments_ACCUMULATE_OVERLAP = 3u;
+
+fn fragments_common_opacity(a: vec3f, b: vec3f, overlap: f32) -> vec3f {
+    return clamp(overlap * a * b, max(a + b - 1.0, vec3f(0.0)), min(a, b));
+}
+
+fn fragments_accumulate(mode: u32, a: vec3f, b: vec3f, overlap: f32) -> vec3f {
     switch mode {
         case fragments_ACCUMULATE_ADD {
             return min(a + b, vec3f(1.0));
         }
         case fragments_ACCUMULATE_MULTIPLY {
             return a + b - a * b;
+        }
+        case fragments_ACCUMULATE_OVERLAP {
+            return a + b - fragments_common_opacity(a, b, overlap);
         }
         case default {
             return max(a, b);
@@ -701,16 +725,16 @@ fn level_level_shares(lookup: filter_size_Lookup, plane: space_ReceiverPlane, ru
     loop {
         let limit = nearest + abs(rung.epsilon_slope * nearest) + rung.epsilon_m;
         var surface = occluders_Occluder(vec3f(), vec2f());
-        var depths = lists_DepthSum(0.0, 0.0);
-        lists_take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), &surface, &depths);
-        lists_take(&b, limit, weight.y, vec2f(change_x.y, change_y.y), &surface, &depths);
-        lists_take(&c, limit, weight.z, vec2f(change_x.z, change_y.z), &surface, &depths);
-        lists_take(&d, limit, weight.w, vec2f(change_x.w, change_y.w), &surface, &depths);
+        var sum = lists_FragmentSum(0.0, 0.0, 0.0);
+        lists_take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), &surface, &sum);
+        lists_take(&b, limit, weight.y, vec2f(change_x.y, change_y.y), &surface, &sum);
+        lists_take(&c, limit, weight.z, vec2f(change_x.z, change_y.z), &surface, &sum);
+        lists_take(&d, limit, weight.w, vec2f(change_x.w, change_y.w), &surface, &sum);
         let seen = receiver_plane_share_in_front(lookup, weight, z_plane, nearest);
         surface.opacity = min(surface.opacity / seen, vec3f(1.0));
         surface.edge /= seen;
-        let z_mean = select(nearest, depths.z / max(depths.weight, 1e-20), depths.weight > 1e-6);
-        shares = occluders_add_to_level(shares, lookup, rung, hat.z_peak, z_mean, surface);
+        let mean = select(vec2f(nearest, 1.0), vec2f(sum.z, sum.overlap) / max(sum.weight, 1e-20), sum.weight > 1e-6);
+        shares = occluders_add_to_level(shares, lookup, rung, hat.z_peak, mean.x, surface, mean.y);
         nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
         continuing {
             surfaces++;
@@ -743,7 +767,7 @@ fn level_level_shares_apart(lookup: filter_size_Lookup, plane: space_ReceiverPla
                 break;
             }
             let surface = occluders_Occluder(fragments_unpack_opacity(fragment.y, settings_COLORED), vec2f());
-            list = occluders_add_to_level(list, lookup, rung, hat.z_peak, z_m, surface);
+            list = occluders_add_to_level(list, lookup, rung, hat.z_peak, z_m, surface, lists_overlap_of(fragment.y));
         }
         let change = vec2f(change_x[k], change_y[k]);
         shares.coarser = occluders_of_list(shares.coarser, list.coarser, weight[k], change);
@@ -841,12 +865,17 @@ fn lists_corner_at(place: u32, end: u32, z_end: f32) -> lists_Corner {
     return corner;
 }
 
-struct lists_DepthSum {
+fn lists_overlap_of(bits: u32) -> f32 {
+    return select(1.0, fragments_unpack_overlap(bits, settings_COLORED), settings_LIST_ACCUMULATION == fragments_ACCUMULATE_OVERLAP);
+}
+
+struct lists_FragmentSum {
     z: f32,
+    overlap: f32,
     weight: f32
 }
 
-fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, change: vec2f, surface: ptr<function, occluders_Occluder>, depths: ptr<function, lists_DepthSum>) {
+fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, change: vec2f, surface: ptr<function, occluders_Occluder>, sum: ptr<function, lists_FragmentSum>) {
     if (*corner).z_m > limit {
         return;
     }
@@ -855,9 +884,12 @@ fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, chan
     var place = (*corner).place;
     loop {
         let a = fragments_unpack_opacity((*corner).opacity_bits, settings_COLORED);
-        opacity = fragments_accumulate(settings_LIST_ACCUMULATION, opacity, a);
-        (*depths).z += weight * occluders_largest(a) * (*corner).z_m;
-        (*depths).weight += weight * occluders_largest(a);
+        let overlap = lists_overlap_of((*corner).opacity_bits);
+        opacity = fragments_accumulate(settings_LIST_ACCUMULATION, opacity, a, overlap);
+        let strength = weight * fragments_largest(a);
+        (*sum).z += strength * (*corner).z_m;
+        (*sum).overlap += strength * overlap;
+        (*sum).weight += strength;
         lists_read_next(corner);
         continuing {
             place++;
@@ -865,7 +897,7 @@ fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, chan
         }
     }
     (*surface).opacity += weight * opacity;
-    (*surface).edge += change * occluders_largest(opacity);
+    (*surface).edge += change * fragments_largest(opacity);
 }
 
 struct occluders_Occluder {
@@ -888,44 +920,42 @@ struct occluders_LevelShares {
     finer: occluders_Share
 }
 
-fn occluders_largest(color: vec3f) -> f32 {
-    return max(color.r, max(color.g, color.b));
-}
-
-fn occluders_combined(a: occluders_Occluder, b: occluders_Occluder) -> occluders_Occluder {
+fn occluders_combined(a: occluders_Occluder, b: occluders_Occluder, overlap: f32) -> occluders_Occluder {
     let related = clamp(dot(a.edge, b.edge), -1.0, 1.0);
-    let random = a.opacity * b.opacity;
+    let random = fragments_common_opacity(a.opacity, b.opacity, overlap);
     let extreme = select(max(a.opacity + b.opacity - 1.0, vec3f(0.0)), min(a.opacity, b.opacity), related > 0.0);
     let both = mix(random, extreme, abs(related));
-    let random_edge = a.edge * (1.0 - occluders_largest(b.opacity)) + b.edge * (1.0 - occluders_largest(a.opacity));
-    let larger = select(b.edge, a.edge, occluders_largest(a.opacity) > occluders_largest(b.opacity));
+    let random_edge = a.edge * (1.0 - fragments_largest(b.opacity)) + b.edge * (1.0 - fragments_largest(a.opacity));
+    let larger = select(b.edge, a.edge, fragments_largest(a.opacity) > fragments_largest(b.opacity));
     let extreme_edge = select(a.edge + b.edge, larger, related > 0.0);
     return occluders_Occluder(a.opacity + b.opacity - both, mix(random_edge, extreme_edge, abs(related)));
 }
 
-fn occluders_combined_in_level(a: occluders_Occluder, b: occluders_Occluder) -> occluders_Occluder {
+fn occluders_combined_in_level(nearer: occluders_Occluder, farther: occluders_Occluder, overlap: f32) -> occluders_Occluder {
     if settings_LEVEL_ACCUMULATION == settings_CORRELATED && !settings_WEIGHTS_FRAGMENTS {
-        return occluders_combined(a, b);
+        return occluders_combined(nearer, farther, overlap);
     }
-    return occluders_Occluder(fragments_accumulate(settings_LIST_ACCUMULATION, a.opacity, b.opacity), a.edge + b.edge);
+    let opacity = fragments_accumulate(settings_LIST_ACCUMULATION, nearer.opacity, farther.opacity, overlap);
+    return occluders_Occluder(opacity, nearer.edge + farther.edge);
 }
 
-fn occluders_add_surface(share: occluders_Share, surface: occluders_Occluder, place: f32) -> occluders_Share {
-    let strength = occluders_largest(surface.opacity);
-    return occluders_Share(occluders_combined_in_level(share.occluder, surface), share.place_sum + strength * place, share.strength + strength);
+fn occluders_add_surface(share: occluders_Share, surface: occluders_Occluder, overlap: f32, place: f32) -> occluders_Share {
+    let strength = fragments_largest(surface.opacity);
+    return occluders_Share(occluders_combined_in_level(share.occluder, surface, overlap), share.place_sum + strength * place, share.strength + strength);
 }
 
-fn occluders_add_to_level(shares: occluders_LevelShares, lookup: filter_size_Lookup, rung: settings_MultiLayerRung, z_peak: f32, z_m: f32, surface: occluders_Occluder) -> occluders_LevelShares {
+fn occluders_add_to_level(shares: occluders_LevelShares, lookup: filter_size_Lookup, rung: settings_MultiLayerRung, z_peak: f32, z_m: f32, surface: occluders_Occluder, overlap: f32) -> occluders_LevelShares {
     var sum = shares;
     if settings_WEIGHTS_FRAGMENTS {
         let weight = filter_size_own_weight(lookup, rung, z_peak, z_m);
-        sum.finer = occluders_add_surface(shares.finer, occluders_Occluder(weight * surface.opacity, weight * surface.edge), 0.0);
+        let own = occluders_Occluder(weight * surface.opacity, weight * surface.edge);
+        sum.finer = occluders_add_surface(shares.finer, own, overlap, 0.0);
     }
     else if z_m < z_peak {
-        sum.coarser = occluders_add_surface(shares.coarser, surface, filter_size_place_towards_coarser(lookup, rung, z_m));
+        sum.coarser = occluders_add_surface(shares.coarser, surface, overlap, filter_size_place_towards_coarser(lookup, rung, z_m));
     }
     else {
-        sum.finer = occluders_add_surface(shares.finer, surface, filter_size_place_towards_finer(lookup, rung, z_m));
+        sum.finer = occluders_add_surface(shares.finer, surface, overlap, filter_size_place_towards_finer(lookup, rung, z_m));
     }
     return sum;
 }
@@ -938,7 +968,7 @@ fn occluders_own_strength(shares: occluders_LevelShares) -> f32 {
 }
 
 fn occluders_of_list(share: occluders_Share, list: occluders_Share, weight: f32, change: vec2f) -> occluders_Share {
-    return occluders_Share(occluders_Occluder(share.occluder.opacity + weight * list.occluder.opacity, share.occluder.edge + change * occluders_largest(list.occluder.opacity)), share.place_sum + weight * list.place_sum, share.strength + weight * list.strength);
+    return occluders_Share(occluders_Occluder(share.occluder.opacity + weight * list.occluder.opacity, share.occluder.edge + change * fragments_largest(list.occluder.opacity)), share.place_sum + weight * list.place_sum, share.strength + weight * list.strength);
 }
 
 fn occluders_mean_place(share: occluders_Share) -> f32 {
@@ -946,8 +976,8 @@ fn occluders_mean_place(share: occluders_Share) -> f32 {
 }
 
 fn occluders_mixed(finer: occluders_Share, coarser: occluders_Share) -> occluders_Occluder {
-    let finer_strength = occluders_largest(finer.occluder.opacity);
-    let coarser_strength = occluders_largest(coarser.occluder.opacity);
+    let finer_strength = fragments_largest(finer.occluder.opacity);
+    let coarser_strength = fragments_largest(coarser.occluder.opacity);
     let place = (occluders_mean_place(finer) * finer_strength + occluders_mean_place(coarser) * coarser_strength) / max(finer_strength + coarser_strength, 1e-20);
     return occluders_Occluder(mix(finer.occluder.opacity, coarser.occluder.opacity, place), mix(finer.occluder.edge, coarser.occluder.edge, place));
 }
@@ -956,19 +986,19 @@ fn occluders_accumulated(so_far: occluders_Occluder, finer: occluders_Share, coa
     let pair = occluders_mixed(finer, coarser);
     switch settings_LEVEL_ACCUMULATION {
         case settings_CORRELATED {
-            return occluders_combined(so_far, pair);
+            return occluders_combined(so_far, pair, 1.0);
         }
         case settings_PAIRS {
-            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity), vec2f());
+            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, pair.opacity, 1.0), vec2f());
         }
         case settings_ADD {
             let sum = finer.occluder.opacity * (1.0 - occluders_mean_place(finer)) + coarser.occluder.opacity * occluders_mean_place(coarser);
-            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_ADD, so_far.opacity, sum), vec2f());
+            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_ADD, so_far.opacity, sum, 1.0), vec2f());
         }
         case settings_MULTIPLY {
             let a = finer.occluder.opacity * (1.0 - occluders_mean_place(finer));
             let b = coarser.occluder.opacity * occluders_mean_place(coarser);
-            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b), vec2f());
+            return occluders_Occluder(fragments_accumulate(fragments_ACCUMULATE_MULTIPLY, so_far.opacity, a + b - a * b, 1.0), vec2f());
         }
         case default {
             return occluders_Occluder(max(so_far.opacity, pair.opacity), vec2f());

@@ -73,11 +73,15 @@ impl ViewFit {
     /// where both meet, and the receivers' is widened by `margin_m`, the farthest that a light point lies from the
     /// origin, since the segments to it leave the receivers' window by as much as `margin_m · (1/near − 1/far)`.
     ///
+    /// `depth_m` is the farthest that one lies before or behind the light's plane. From the side such points lie farther out, so
+    /// that what the margin holds for flat lights it holds for these from farther away alone.
+    ///
     /// `reach_tangent` is the light's own frustum, where it has one: receivers outside it are not asked for either.
     pub(crate) fn perspective(
         frame: LightFrame,
         followed: Followed,
         margin_m: f32,
+        depth_m: f32,
         reach_tangent: Option<f32>,
         casters: &Between,
         receivers: &[Vec3],
@@ -112,6 +116,15 @@ impl ViewFit {
                 (needed.clamp(MIDDLE_TANGENT, widest), if needed > widest { held_by_widest } else { held_from_m })
             }
         };
+        let margin = margin_m * (1.0 / held_from_m - 1.0 / far);
+        let held_from_m = if held_from_m > near {
+            // A point `depth_m` behind the plane is seen on it farther out by depth_m · tan θ; of an ellipsoid none is both so deep
+            // and at its rim.
+            let seen_m = margin_m.hypot(depth_m * asked);
+            1.0 / (margin / seen_m + 1.0 / far)
+        } else {
+            0.0
+        };
         let mut of_casters = Vec::with_capacity(8 * boxes.len());
         for corners in &boxes {
             add_tangents(&mut of_casters, corners, near, farthest);
@@ -123,10 +136,10 @@ impl ViewFit {
             perspective: true,
             near_m: near,
             far_m: far,
-            held_from_m: if held_from_m > near { held_from_m } else { 0.0 },
+            held_from_m,
             casters: of_casters,
             receivers: (!receivers.is_empty()).then_some(of_receivers),
-            margin: margin_m * (1.0 / held_from_m - 1.0 / far),
+            margin,
             reach_tangent,
         }
     }

@@ -19,7 +19,18 @@ fn scene() -> (Light, Vec<Aabb>) {
 }
 
 fn fit_perspective(frame: LightFrame, margin_m: f32, reach_tangent: Option<f32>, fit: &FitTo<'_>) -> LightView {
-    ViewFit::perspective(frame, Followed::All, margin_m, reach_tangent, &Between::of_known(fit.casters), fit.receivers)
+    fit_of_depth(frame, margin_m, 0.0, reach_tangent, fit)
+}
+
+fn fit_of_depth(
+    frame: LightFrame,
+    margin_m: f32,
+    depth_m: f32,
+    reach_tangent: Option<f32>,
+    fit: &FitTo<'_>,
+) -> LightView {
+    let casters = Between::of_known(fit.casters);
+    ViewFit::perspective(frame, Followed::All, margin_m, depth_m, reach_tangent, &casters, fit.receivers)
         .view(fit.window)
 }
 
@@ -173,15 +184,22 @@ fn windows_hold_what_shades_receivers_at_their_edge() {
         for tangent in [1.0, 2.0, MIDDLE_TANGENT, 4.0 * MIDDLE_TANGENT] {
             let sides = [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y].map(|side| tangent * side);
             let receivers: Vec<Vec3> = sides.iter().flat_map(|side| [at(*side, 0.5), at(*side, 2.0)]).collect();
-            let view = fit_perspective(frame, radius_m, None, &square(&[room], &receivers));
-            let gpu = view.to_gpu(MAP_SIZE);
-            for side in sides {
-                let receiver = at(side, 2.0);
-                let rim = frame.center + radius_m * (side.x * frame.right + side.y * frame.up) / tangent;
-                let blocker = receiver.lerp(rim, 1.0 - view.held_from_m.max(view.near_m) / 2.0);
-                let (uv, _) = uv_and_depth(&gpu, blocker);
-                let is_held = uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
-                assert!(is_held, "a light of {radius_m} m, a receiver at {side}: {uv}");
+            // Of a disc, then of a sphere, whose rim lies behind its middle as the receiver sees it.
+            for depth_m in [0.0, radius_m] {
+                let view = fit_of_depth(frame, radius_m, depth_m, None, &square(&[room], &receivers));
+                let gpu = view.to_gpu(MAP_SIZE);
+                for side in sides {
+                    let receiver = at(side, 2.0);
+                    let outwards = (side.x * frame.right + side.y * frame.up) / tangent;
+                    let lean = if depth_m > 0.0 { tangent } else { 0.0 };
+                    let rim = frame.center + radius_m * (outwards - lean * frame.axis) / lean.hypot(1.0);
+                    let z = |point: Vec3| (point - frame.center).dot(frame.axis);
+                    let held_m = 1.001 * view.held_from_m.max(view.near_m);
+                    let blocker = receiver.lerp(rim, (2.0 - held_m) / (2.0 - z(rim)));
+                    let (uv, _) = uv_and_depth(&gpu, blocker);
+                    let is_held = uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
+                    assert!(is_held, "a light of {radius_m} m, {depth_m} m deep, a receiver at {side}: {uv}");
+                }
             }
         }
     }
@@ -268,7 +286,7 @@ fn windows_are_judged_by_their_texels() {
         WindowShape::Warped { along: Vec2::from_angle(2.1), strength: 0.7 },
     ];
     for fit in [
-        ViewFit::perspective(light.frame(), Followed::All, 0.25, None, &Between::of_known(&casters), &[]),
+        ViewFit::perspective(light.frame(), Followed::All, 0.25, 0.0, None, &Between::of_known(&casters), &[]),
         ViewFit::orthographic(light.frame(), 0.0, &Between::of_known(&casters), &[]),
     ] {
         let in_plane = fit.in_plane(&seen);

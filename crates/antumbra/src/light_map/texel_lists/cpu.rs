@@ -19,6 +19,8 @@ pub(crate) struct TwinMesh<'a> {
 pub(crate) struct TwinFragment {
     pub(crate) z_m: f32,
     pub(crate) opacity: f32,
+    /// As in `fragments.wesl`.
+    pub(crate) overlap: f32,
 }
 
 /// Subpixels along a side of a texel, to which rasterisers snap vertices.
@@ -56,6 +58,7 @@ pub(crate) fn covered_lists(
 /// Each sample stops what its nearest fragment stops.
 fn covered(mut list: &[Gathered], adjoin: DepthTolerance) -> Vec<TwinFragment> {
     let mut covered: Vec<TwinFragment> = Vec::new();
+    let mut samples_covered = 0;
     while let Some((first, mut rest)) = list.split_first() {
         let limit = first.fragment.z_m + adjoin.slope * first.fragment.z_m + adjoin.m;
         let mut samples = 0;
@@ -74,7 +77,15 @@ fn covered(mut list: &[Gathered], adjoin: DepthTolerance) -> Vec<TwinFragment> {
             taken = take(next);
             rest = after;
         }
-        covered.push(TwinFragment { z_m: z_sum / count, opacity: 0.25 * opacity });
+        let overlap = match samples_covered {
+            0 => 1.0,
+            _ => {
+                4.0 * ((taken & samples_covered).count_ones() as f32)
+                    / (taken.count_ones() * u32::count_ones(samples_covered)) as f32
+            }
+        };
+        samples_covered |= taken;
+        covered.push(TwinFragment { z_m: z_sum / count, opacity: 0.25 * opacity, overlap });
         list = rest;
     }
     covered.sort_by(|a, b| a.z_m.total_cmp(&b.z_m));
@@ -87,7 +98,8 @@ fn gathered(view: &LightView, map_size: UVec2, samples: &[(f64, f64)], meshes: &
         for triangle in mesh.indices.chunks_exact(3) {
             let corners = [0, 1, 2].map(|i| mesh.positions[triangle[i] as usize]);
             rasterise(view, map_size, samples, corners, mesh.closed, |texel, z_m, samples| {
-                lists[texel].push(Gathered { fragment: TwinFragment { z_m, opacity: mesh.opacity }, samples });
+                lists[texel]
+                    .push(Gathered { fragment: TwinFragment { z_m, opacity: mesh.opacity, overlap: 1.0 }, samples });
             });
         }
     }

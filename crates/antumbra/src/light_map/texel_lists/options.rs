@@ -14,6 +14,8 @@ pub(crate) enum Accumulation {
     Multiply = 1,
     /// The largest: they cover one another.
     Max = 2,
+    /// By how much the farther one was found to lie behind the nearer.
+    Overlap = 3,
 }
 
 /// A distance in depth: `slope · z + m`, metres.

@@ -114,7 +114,7 @@ fn fit_from(light: &Light, point: &LightPoint, casters: &Between, receivers: &[V
         // Receivers are asked for from this point alone, but the light's own frustum starts at its centre.
         let margin_m = if light.reach_tangent().is_some() { light.bounding_radius() } else { 0.0 };
         let frame = LightFrame { center: point.xyz, ..frame };
-        ViewFit::perspective(frame, Followed::Middle, margin_m, light.reach_tangent(), casters, receivers)
+        ViewFit::perspective(frame, Followed::Middle, margin_m, 0.0, light.reach_tangent(), casters, receivers)
     }
 }
 

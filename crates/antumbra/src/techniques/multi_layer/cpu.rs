@@ -4,8 +4,8 @@ use super::levels::Level;
 use crate::light_map::texel_lists::cpu::TwinFragment;
 use crate::light_map::texel_lists::options::DepthTolerance;
 
-/// One level's lists from the lists of the level before; opacities in one list multiply, depths are averaged by opacity or
-/// by count.
+/// One level's lists from the lists of the level before; opacities in one list come together by their overlap, depths are
+/// averaged by opacity or by count.
 pub(crate) fn filter(
     before: &Level,
     lists: &[Vec<TwinFragment>],
@@ -44,6 +44,7 @@ fn merge(
     by_count: bool,
 ) -> Vec<TwinFragment> {
     let mut merged = Vec::new();
+    let mut transmittances = [1.0_f32; 4];
     while let Some(nearest) =
         lists.iter().filter_map(|list| list.first()).map(|fragment| fragment.z_m).min_by(f32::total_cmp)
     {
@@ -52,18 +53,25 @@ fn merge(
         }
         let limit = nearest + epsilon.slope * nearest + epsilon.m;
         let (mut z_sum, mut weight, mut opacity) = (0.0, 0.0, 0.0);
-        for list in &mut lists {
-            let mut transmittance = 1.0;
+        let before = 0.25 * transmittances.iter().sum::<f32>();
+        for (list, transmittance) in lists.iter_mut().zip(&mut transmittances) {
+            let mut taken = 0.0_f32;
             while let Some((first, rest)) = list.split_first().filter(|(first, _)| first.z_m <= limit) {
-                transmittance *= 1.0 - first.opacity;
+                let common = first.overlap * taken * first.opacity;
+                taken += first.opacity - common.clamp((taken + first.opacity - 1.0).max(0.0), taken.min(first.opacity));
+                let unhidden = (1.0 - first.overlap * (1.0 - *transmittance)).clamp(0.0, 1.0);
+                *transmittance = (*transmittance - first.opacity * unhidden).max(0.0);
                 let share = if by_count { 1.0 } else { first.opacity };
                 z_sum += share * first.z_m;
                 weight += share;
                 *list = rest;
             }
-            opacity += 0.25 * (1.0 - transmittance);
+            opacity += 0.25 * taken;
         }
-        merged.push(TwinFragment { z_m: z_sum / weight, opacity });
+        let after = 0.25 * transmittances.iter().sum::<f32>();
+        let behind = 1.0 - ((before - after) / opacity).clamp(0.0, 1.0);
+        let overlap = if before < 1.0 { behind / (1.0 - before) } else { 1.0 };
+        merged.push(TwinFragment { z_m: z_sum / weight, opacity, overlap });
     }
     merged
 }

@@ -42,6 +42,8 @@ param_choice! {
         Multiply = "multiply",
         /// The largest: they cover one another.
         Max = "max",
+        /// By how much the farther one was found to lie behind the nearer when lists were merged.
+        Overlap = "overlap",
     }
 }
 
@@ -226,8 +228,8 @@ params! {
         subsampled_steps: u32 = 0, in 0..=4,
             more "Less filter time for large maps, of which only contacts see the full size.";
         /// How opacities in one list come together.
-        list_accumulation: MultiLayerListAccumulation = MultiLayerListAccumulation::Multiply,
-            more "add over-darkens stacked occluders; max leaks where they do not cover one another.";
+        list_accumulation: MultiLayerListAccumulation = MultiLayerListAccumulation::Overlap,
+            more "add over-darkens stacked occluders; max leaks where they do not cover one another; multiply leaks through slanted surfaces.";
         /// How levels come together.
         level_accumulation: MultiLayerLevelAccumulation = MultiLayerLevelAccumulation::Correlated,
             more "add over-darkens overlapping occluders; multiply breaks occluders apart between levels.";
@@ -282,7 +284,7 @@ params! {
         epsilon: 2.0, ours "10 texel widths, for shorter lists.";
         epsilon_growth: MultiLayerEpsilonGrowth::Double, ours "ε grows by √2 a level, so that coarse levels keep surfaces apart.";
         hierarchy: MultiLayerHierarchy::YMap, ours "A level between each two kernels of the stack.";
-        list_accumulation: MultiLayerListAccumulation::Add, ours "Transmittances of one list multiply.";
+        list_accumulation: MultiLayerListAccumulation::Add, ours "What lists have in common is found as they are merged.";
         level_accumulation: MultiLayerLevelAccumulation::Add, ours "Neighbouring levels mix; surfaces come together by how their edges lie.";
         level_weights: MultiLayerLevelWeights::Depth, ours "Levels mix linearly in the square of the filter's width.";
         hat: MultiLayerHat::Fragments, ours "A level's fragments are accumulated first, and what they hide is weighted.";

@@ -166,6 +166,7 @@ impl<'a> FramePlan<'a> {
             MultiLayerListAccumulation::Add => Accumulation::Add,
             MultiLayerListAccumulation::Multiply => Accumulation::Multiply,
             MultiLayerListAccumulation::Max => Accumulation::Max,
+            MultiLayerListAccumulation::Overlap => Accumulation::Overlap,
         }
     }
 

@@ -664,20 +664,24 @@ fn light_area_points_beside(seen: light_area_SeenLight, p: vec2f, q: vec2f) -> f
     return select(-sum, sum, rise > 0.0);
 }
 
-const light_area_LEAST_FACING = 0.02;
+fn light_area_least_facing(seen: light_area_SeenLight) -> f32 {
+    let n = length(seen.light.nearness.xy) / max(1.0 - seen.light.center_nearness, 0.001);
+    return 0.5 / (1.0 + n);
+}
 
 fn light_area_facing_at(seen: light_area_SeenLight, p: vec2f) -> f32 {
     return 1.0 + dot(seen.turning, p - seen.middle);
 }
 
 fn light_area_on_this_side(seen: light_area_SeenLight, p: vec2f) -> vec2f {
-    let beyond = light_area_LEAST_FACING - light_area_facing_at(seen, p);
-    let share = (1.0 - light_area_LEAST_FACING) / (1.0 - light_area_LEAST_FACING + max(beyond, 0.0));
+    let least = light_area_least_facing(seen);
+    let beyond = least - light_area_facing_at(seen, p);
+    let share = (1.0 - least) / (1.0 - least + max(beyond, 0.0));
     return seen.middle + share * (p - seen.middle);
 }
 
 fn light_area_crossing(seen: light_area_SeenLight, p: vec2f, q: vec2f) -> vec2f {
-    let ends = vec2f(light_area_facing_at(seen, p), light_area_facing_at(seen, q)) - light_area_LEAST_FACING;
+    let ends = vec2f(light_area_facing_at(seen, p), light_area_facing_at(seen, q)) - light_area_least_facing(seen);
     let share = ends.x / (ends.x - select(ends.y, 0.0, ends.x == ends.y));
     return select(q, p + share * (q - p), (ends.x > 0.0) != (ends.y > 0.0));
 }
@@ -827,7 +831,8 @@ struct squares_Ring {
     last: vec2i,
     inside_first: vec2i,
     inside_last: vec2i,
-    share: vec2f
+    share: vec2f,
+    far: f32
 }
 
 fn squares_side_of(ring: squares_Ring) -> f32 {
@@ -852,7 +857,8 @@ fn squares_with_inside(ring: squares_Ring) -> squares_Ring {
 fn squares_outermost(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, most_g: f32, along: u32, share: vec2f) -> squares_Ring {
     let farthest = max(abs(at.center), abs(map_light_view.map_size - at.center)) + 1.0;
     let reach = min(extent * most_g, farthest);
-    var ring = squares_Ring(at, 1.0 / z_m, reach, 0u, false, vec2i(), vec2i(), vec2i(), vec2i(), share);
+    var ring = squares_Ring(at, 1.0 / z_m, reach, 0u, false, vec2i(), vec2i(), vec2i(), vec2i(), share, 0.0);
+    ring.far = max(squares_FAR_OFF * most_g * max(extent.x, extent.y), 2.0 * max(farthest.x, farthest.y));
     let span = 2.0 * max(reach.x, reach.y);
     ring.level = min(32u - countLeadingZeros(u32(min(span, squares_LARGEST_SPAN)) / along), squares_MOST_RINGS - 1u);
     ring.first = squares_first_within(ring, reach) - 1;
@@ -895,13 +901,13 @@ fn squares_is_one_surface(ring: squares_Ring, g: vec4f, beside: vec4f) -> vec4<b
     return (min(g, beside) > vec4f()) & (abs(g - beside) <= steps);
 }
 
-const squares_FAR_OFF = 1000000.0;
+const squares_FAR_OFF = 100.0;
 
 fn squares_carried_on(ring: squares_Ring, place: vec2f) -> vec2f {
     let texel = place + ring.at.center;
     let margin = 0.25 * squares_side_of(ring);
-    let low = select(place, vec2f(-squares_FAR_OFF), texel < vec2f(-margin));
-    return select(low, vec2f(squares_FAR_OFF), texel > vec2f(map_light_view.map_size + margin));
+    let low = select(place, vec2f(-ring.far), texel < vec2f(-margin));
+    return select(low, vec2f(ring.far), texel > vec2f(map_light_view.map_size + margin));
 }
 
 fn squares_shown_g(ring: squares_Ring, place: vec2i, level: u32) -> f32 {

@@ -59,7 +59,7 @@ impl Behind {
         };
         let ends: Vec<Vec3> = receivers.iter().copied().chain((0..8).map(corner)).collect();
         let between = Between::new(light, casters, receivers);
-        let fit = ViewFit::perspective(self.frame, Followed::Middle, 0.0, light.reach_tangent(), &between, &ends)
+        let fit = ViewFit::perspective(self.frame, Followed::Middle, 0.0, 0.0, light.reach_tangent(), &between, &ends)
             .beginning_at(self.depth_m)
             .for_many_windows();
         let view = fit.view(LightView::best_roll(|window| fit.view(window)));
