@@ -39,6 +39,18 @@ fn no_light_leaks_where_parts_meet() {
     hold(lab, &Judged::of_size(SIZE, &spec, |_| {}), &bounds);
 }
 
+/// Stairs with the lamp in the wall beside them: risers are edge-on in its map, and rays below the stairs cross them between two reads
+/// (with a test of the surfaces' thickness at each read alone .043 of what is dark was lit).
+#[test]
+fn no_light_comes_through_stairs() {
+    let Some(lab) = lab() else { return };
+    let judged = Judged::of_size(UVec2::new(320, 180), "builtin:staircase", |_| {});
+    let metrics = judged.metrics(&judged.run(lab, TechniqueKind::Smrt, &[]));
+    let leak = metrics.umbra_leak.expect("dark pixels");
+    println!("stairs: {leak:.4} of what is dark is lit");
+    assert!(leak <= 0.012, "stairs: {leak} of what is dark is lit");
+}
+
 /// Bounds on the roughness and that of the worst tile.
 fn hold(lab: &LabDevice, judged: &Judged, bounds: &[(TechniqueKind, [f64; 2])]) {
     let spec = &judged.spec;

@@ -35,6 +35,10 @@ const GOLDEN = 0.618033989;
 
 const R3 = vec3f(0.819172513, 0.671043607, 0.549700478);
 
+const CROSSING_ROOM = 0.25;
+
+const CROSSING_READS = 2;
+
 struct Open {
     has_rays: bool,
     visibility: f32,
@@ -83,30 +87,79 @@ fn texel_at(fan: fan_Fan, offset: vec2f, g: f32, jitter: vec2f) -> vec2f {
     return floor(map_receiver_place_in_map(fan.at, fan.at.center + offset * g + (jitter - 0.5), g));
 }
 
-fn blocker_g_in_step(fan: fan_Fan, offset: vec2f, steps: bins_Steps, step: u32, along: f32, jitter: vec2f) -> f32 {
+struct Beside {
+    g: f32,
+    nearer_by: f32
+}
+
+fn may_be_crossed(fan: fan_Fan, offset: vec2f, behind: Beside, in_front: Beside) -> bool {
+    let passed_g = in_front.g - behind.g;
+    let most = space_SURFACE_SLOPE * fan_texel_in_g(fan, in_front.g) * (abs(offset.x) + abs(offset.y)) * passed_g;
+    let rise = behind.nearer_by - in_front.nearer_by - passed_g;
+    return behind.nearer_by > 0.0 && in_front.nearer_by < 0.0 && rise <= most;
+}
+
+fn crossed_g(fan: fan_Fan, offset: vec2f, jitter: vec2f, behind: Beside, in_front: Beside) -> f32 {
+    let room = CROSSING_ROOM * min(behind.nearer_by, -in_front.nearer_by);
+    var a = behind;
+    var b = in_front;
+    for (var i = 0; i < CROSSING_READS && b.nearer_by < 0.0; i++) {
+        let g = mix(a.g, b.g, a.nearer_by / (a.nearer_by - b.nearer_by));
+        let found = fan_found_in(fan, texel_at(fan, offset, g, jitter), g - room, g + room, 0.0);
+        if found.g != map_receiver_NO_G {
+            return found.g;
+        }
+        if found.nearer_g > g {
+            a = Beside(g, found.nearer_g - g);
+        }
+        else {
+            b = Beside(g, found.farther_g - g);
+        }
+    }
+    return map_receiver_NO_G;
+}
+
+fn found_in_step(fan: fan_Fan, offset: vec2f, steps: bins_Steps, step: u32, read_g: f32, jitter: vec2f) -> fan_Found {
     let begin_g = map_receiver_g_of(fan.at, bins_begin_of_step(steps, step));
     let end_g = map_receiver_g_of(fan.at, bins_begin_of_step(steps, step + 1u));
-    let read_g = bins_g_in_step(fan.at, steps, step, along);
     let texel = texel_at(fan, offset, read_g, jitter);
-    let hit_g = fan_blocker_g_about(fan, texel, read_g, begin_g, end_g);
-    if hit_g == map_receiver_NO_G {
-        return map_receiver_NO_G;
+    var found = fan_found_about(fan, texel, read_g, begin_g, end_g);
+    if found.g == map_receiver_NO_G {
+        return found;
     }
-    let passed_g = clamp(hit_g, max(begin_g, 0.0), end_g);
+    let passed_g = clamp(found.g, max(begin_g, 0.0), end_g);
     let passed = texel_at(fan, offset, passed_g, jitter);
     if all(abs(passed - texel) <= vec2f(1.0)) {
-        return hit_g;
+        return found;
     }
-    return fan_blocker_g_about(fan, passed, passed_g, begin_g, end_g);
+    if found.g > read_g {
+        found.nearer_g = found.g;
+    }
+    else {
+        found.farther_g = found.g;
+    }
+    found.g = fan_found_about(fan, passed, passed_g, begin_g, end_g).g;
+    return found;
 }
 
 fn blocker_g(fan: fan_Fan, offset: vec2f, steps: bins_Steps, jitter: vec3f) -> f32 {
     var along = jitter.z;
+    var behind = Beside(0.0, fan.nearer_g);
     for (var rest = steps.some; rest > 0u; rest &= rest - 1u) {
-        let hit_g = blocker_g_in_step(fan, offset, steps, countTrailingZeros(rest), along, jitter.xy);
-        if hit_g < map_receiver_NO_G {
-            return hit_g;
+        let step = countTrailingZeros(rest);
+        let read_g = bins_g_in_step(fan.at, steps, step, along);
+        let found = found_in_step(fan, offset, steps, step, read_g, jitter.xy);
+        if found.g != map_receiver_NO_G {
+            return found.g;
         }
+        let in_front = Beside(read_g, found.farther_g - read_g);
+        if may_be_crossed(fan, offset, behind, in_front) {
+            let hit_g = crossed_g(fan, offset, jitter.xy, behind, in_front);
+            if hit_g != map_receiver_NO_G {
+                return hit_g;
+            }
+        }
+        behind = Beside(read_g, found.nearer_g - read_g);
         along = fract(along + GOLDEN);
     }
     return map_receiver_NO_G;
@@ -1131,7 +1184,8 @@ fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane,
     var marks = bins_with_blockers_at(bins_Marks(0u, 0u, 0u, 0u), receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
     for (var i = 0u; i < count; i++) {
         let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;
-        let g = most_g * map_receiver_scale_share(tap, search_taps.scale_shift);
+        let share = map_receiver_scale_share(tap, search_taps.scale_shift);
+        let g = most_g * share * select(share, 1.0, i % 2u == 0u);
         marks = bins_with_blockers_at(marks, receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
     }
     atomicOr(&bins_bins_found, marks.found);
@@ -1229,27 +1283,38 @@ fn bins_of_pairs(bits: u32) -> u32 {
 
 struct fan_Fan {
     at: map_receiver_MapReceiver,
+    widening: vec2f,
     thickness: vec2f,
-    thickness_of_last: vec2f
+    nearer_g: f32
 }
 
-fn fan_thickness_in_g(texels: f32, z_m: f32) -> vec2f {
+fn fan_thickness_of(texels: f32) -> f32 {
     let tangent = texels * map_light_view.texel_in_plane;
-    let per_g = tangent / (1.0 + tangent);
-    return select(vec2f(tangent, 0.0), vec2f(per_g / z_m, per_g), map_light_view.perspective == 1u);
+    return select(tangent, tangent / (1.0 + tangent), map_light_view.perspective == 1u);
 }
 
 fn fan_fan_of(plane: space_ReceiverPlane, z_m: f32, thickness_texels: vec2f) -> fan_Fan {
-    return fan_Fan(map_receiver_map_receiver(plane, z_m), fan_thickness_in_g(thickness_texels.x, z_m), fan_thickness_in_g(thickness_texels.y, z_m));
+    let thickness = vec2f(fan_thickness_of(thickness_texels.x), fan_thickness_of(thickness_texels.y));
+    let widening = select(vec2f(1.0, 0.0), vec2f(1.0 / z_m, 1.0), map_light_view.perspective == 1u);
+    var fan = fan_Fan(map_receiver_map_receiver(plane, z_m), widening, thickness, -map_receiver_NO_G);
+    let at_receiver = fan_found_in(fan, floor(fan.at.center), 0.0, 0.0, 1.0);
+    fan.nearer_g = select(at_receiver.nearer_g, at_receiver.g, at_receiver.g != map_receiver_NO_G);
+    return fan;
+}
+
+fn fan_texel_in_g(fan: fan_Fan, g: f32) -> f32 {
+    return map_light_view.texel_in_plane * (fan.widening.x + fan.widening.y * g);
 }
 
 struct fan_Found {
     g: f32,
-    behind_g: f32
+    behind_g: f32,
+    nearer_g: f32,
+    farther_g: f32
 }
 
-fn fan_found_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> fan_Found {
-    var found = fan_Found(map_receiver_NO_G, map_receiver_NO_G);
+fn fan_found_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32, slab: f32) -> fan_Found {
+    var found = fan_Found(map_receiver_NO_G, map_receiver_NO_G, -map_receiver_NO_G, map_receiver_NO_G);
     if !map_receiver_is_texel(texel) {
         return found;
     }
@@ -1260,29 +1325,34 @@ fn fan_found_in(fan: fan_Fan, texel: vec2f, begin_g: f32, end_g: f32) -> fan_Fou
         let g = map_receiver_g_of(fan.at, depth);
         if depth <= depths.x {
             found.behind_g = select(found.behind_g, g, depth > begin);
+            found.farther_g = g;
             break;
         }
-        if fan_far_side(fan, g, layer) <= end_g {
+        if fan_far_side(fan, g, layer, slab) <= end_g {
             if depth < depths.y {
                 found.g = g;
                 break;
             }
             found.behind_g = g;
         }
+        else {
+            found.nearer_g = g;
+        }
     }
     return found;
 }
 
-fn fan_blocker_g_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: f32) -> f32 {
-    let found = fan_found_in(fan, texel, begin_g, end_g);
+fn fan_found_about(fan: fan_Fan, texel: vec2f, g: f32, begin_g: f32, end_g: f32) -> fan_Found {
+    var found = fan_found_in(fan, texel, begin_g, end_g, 1.0);
     if found.g != map_receiver_NO_G || found.behind_g == map_receiver_NO_G {
-        return found.g;
+        return found;
     }
     let passed_depth = map_receiver_depth_at_g(fan.at, select(g, found.behind_g, map_receiver_faces_away(fan.at)));
-    return fan_found_in(fan, map_receiver_texel_in_front(fan.at, texel, passed_depth), begin_g, end_g).g;
+    found.g = fan_found_in(fan, map_receiver_texel_in_front(fan.at, texel, passed_depth), begin_g, end_g, 1.0).g;
+    return found;
 }
 
-fn fan_far_side(fan: fan_Fan, g: f32, layer: u32) -> f32 {
-    let thickness = select(fan.thickness, fan.thickness_of_last, layer + 1u == behind_LAYER_COUNT);
-    return g - (thickness.x + thickness.y * g);
+fn fan_far_side(fan: fan_Fan, g: f32, layer: u32, slab: f32) -> f32 {
+    let thickness = slab * select(fan.thickness.x, fan.thickness.y, layer + 1u == behind_LAYER_COUNT);
+    return g - thickness * (fan.widening.x + fan.widening.y * g);
 }
