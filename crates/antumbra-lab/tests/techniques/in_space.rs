@@ -126,8 +126,14 @@ fn errors_at_random_points_are_those_on_surfaces() {
             println!(
                 "{spec}: {kind}: rms {beside:.4} beside casters, {inside:.4} within, {on_surfaces:.4} on surfaces"
             );
-            // The points of a workgroup share the depths that they search for blockers, which in the air are many.
-            let most = if kind == TechniqueKind::Smrt { 1.3 * on_surfaces } else { on_surfaces };
+            let most = match kind {
+                // The points of a workgroup share the depths that they search for blockers, which in the air are many.
+                TechniqueKind::Smrt => 1.3 * on_surfaces,
+                // What slanted surfaces hide from their own feet is found to be one surface: on surfaces that brings more than in the
+                // air (`overlap`: .0088 to .0075, and .0088 to .0084).
+                TechniqueKind::MultiLayer => 1.2 * on_surfaces,
+                _ => on_surfaces,
+            };
             assert!(beside <= most, "{spec}: {kind}: {beside} for {on_surfaces}");
             assert!(!EXACT.contains(&kind) || inside <= on_surfaces, "{spec}: {kind}: {inside} within casters");
         }
