@@ -12,6 +12,7 @@ mod filterable;
 mod grounds;
 mod in_space;
 mod kept;
+mod lights;
 mod many_lights;
 mod multi_layer;
 mod ray_traced;

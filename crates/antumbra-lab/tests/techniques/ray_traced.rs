@@ -8,6 +8,7 @@ use antumbra_scene::builtin::NAMES;
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::common::{Judged, lab};
+use crate::lights::{Change, LIGHTS};
 use crate::sample_based::Same;
 
 /// What is asked of it: as far from the ray tracer as this by 256 points.
@@ -99,30 +100,10 @@ fn hold_to_the_ray_tracer(is_wanted: impl Fn(&str) -> bool) {
 #[test]
 fn every_light_is_as_the_ray_tracer_has_it() {
     let Some(lab) = lab() else { return };
-    let all_around = |light: &mut Light, shape: LightShape| {
-        (light.shape, light.fov_rad, light.cone) = (shape, None, None);
-    };
-    type Change<'a> = (&'a str, &'a dyn Fn(&mut Light));
-    let lights: [Change<'_>; 7] = [
-        ("disk", &|light| light.shape = LightShape::Disk { radius_m: 0.4 }),
-        ("sphere", &|light| all_around(light, LightShape::Sphere { radius_m: 0.3 })),
-        ("ellipsoid", &|light| all_around(light, LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) })),
-        ("sun", &|light| all_around(light, LightShape::Sun { angular_diameter_rad: 0.05 })),
-        ("points", &|light| {
-            let across = 0.2 * Vec3::Y.cross(light.axis).normalize_or(Vec3::X);
-            let positions_m = [-across, across, 0.2 * Vec3::Y].map(|offset| light.center + offset).to_vec();
-            all_around(light, LightShape::Points { positions_m });
-        }),
-        ("one point", &|light| light.shape = LightShape::Rectangle { size_m: Vec2::ZERO }),
-        ("picture", &|light| {
-            light.shape = LightShape::Rectangle { size_m: Vec2::new(0.8, 0.5) };
-            let luminance = (0..12).map(|i| (i % 5) as f32).collect();
-            light.emission = Some(EmissionTexture::gray(4, 3, luminance));
-        }),
-    ];
+    let one_point: Change = ("one point", |light| light.shape = LightShape::Rectangle { size_m: Vec2::ZERO });
     let mut far = Vec::new();
     for spec in ["builtin:columns", "builtin:stained-glass", "builtin:tree-alpha"] {
-        for (name, change) in lights {
+        for (name, change) in LIGHTS.into_iter().chain([one_point]) {
             let error = rmse(lab, spec, change);
             println!("{name}: {error:.5}");
             if error > BOUND {

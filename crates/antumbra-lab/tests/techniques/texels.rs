@@ -1,10 +1,11 @@
 //! What the techniques that project a map's texels onto the light share: scenes and kinds of light, with a bound on each.
 
 use antumbra::TechniqueKind;
-use antumbra_light::{EmissionTexture, Light, LightShape};
-use glam::{Vec2, Vec3};
+use antumbra_light::LightShape;
+use glam::Vec2;
 
 use crate::common::{Judged, lab};
+use crate::lights::{Change, LIGHTS};
 
 pub(crate) fn rmse_of(judged: &Judged, kind: TechniqueKind, settings: &[(&str, &str)]) -> f64 {
     let mask = judged.run(lab().expect("asked for before"), kind, settings);
@@ -24,36 +25,13 @@ pub(crate) fn keeps_its_figures(kind: TechniqueKind, bounds: &[(&str, f64, f64)]
     }
 }
 
-fn all_around(light: &mut Light, shape: LightShape) {
-    (light.shape, light.fov_rad, light.cone) = (shape, None, None);
-}
-
-/// A light with its name.
-type Lit<'a> = (&'a str, &'a dyn Fn(&mut Light));
-
 /// Holds a technique to bounds on rmse under every kind of light: a disk, a sphere, an ellipsoid, a sun, points, a picture, a tube.
 pub(crate) fn knows_every_light(kind: TechniqueKind, bounds: [f64; 7]) {
     if lab().is_none() {
         return;
     }
-    let lights: [Lit<'_>; 7] = [
-        ("disk", &|light| light.shape = LightShape::Disk { radius_m: 0.4 }),
-        ("sphere", &|light| all_around(light, LightShape::Sphere { radius_m: 0.3 })),
-        ("ellipsoid", &|light| all_around(light, LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) })),
-        ("sun", &|light| all_around(light, LightShape::Sun { angular_diameter_rad: 0.05 })),
-        ("points", &|light| {
-            let across = 0.2 * Vec3::Y.cross(light.axis).normalize_or(Vec3::X);
-            let positions_m = [-across, across, 0.2 * Vec3::Y].map(|offset| light.center + offset).to_vec();
-            all_around(light, LightShape::Points { positions_m });
-        }),
-        ("picture", &|light| {
-            light.shape = LightShape::Rectangle { size_m: Vec2::new(0.8, 0.5) };
-            let luminance = (0..12).map(|i| (i % 5) as f32).collect();
-            light.emission = Some(EmissionTexture::gray(4, 3, luminance));
-        }),
-        ("tube", &|light| light.shape = LightShape::Rectangle { size_m: Vec2::new(0.8, 1e-4) }),
-    ];
-    for ((name, change), bound) in lights.into_iter().zip(bounds) {
+    let tube: Change = ("tube", |light| light.shape = LightShape::Rectangle { size_m: Vec2::new(0.8, 1e-4) });
+    for ((name, change), bound) in LIGHTS.into_iter().chain([tube]).zip(bounds) {
         let rmse = rmse_of(&Judged::with_truth_of("builtin:columns", 256, change), kind, &[]);
         println!("{name}: rmse {rmse:.4}");
         assert!(rmse <= bound, "{name}: rmse {rmse} against {bound}");

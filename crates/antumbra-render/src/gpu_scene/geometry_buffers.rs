@@ -54,7 +54,8 @@ impl JoinedGeometries {
 
     /// Adds a geometry, to buffers of its own where it does not share them.
     pub(super) fn push(&mut self, part: &MeshPart<'_>, shares: bool) -> Place {
-        let open = (self.joined.iter()).rposition(|joined| shares && joined.takes(part, self.binding_bytes));
+        let takes = |joined: &Joined| joined.takes(part, self.binding_bytes);
+        let open = if shares { self.joined.iter().rposition(takes) } else { None };
         let buffers = open.unwrap_or_else(|| {
             self.joined.push(Joined { is_closed: !shares, ..Joined::default() });
             self.joined.len() - 1

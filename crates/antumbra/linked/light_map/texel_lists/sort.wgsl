@@ -104,25 +104,25 @@ fn sample_overlap(samples: u32, covered: u32) -> f32 {
 
 fn cover(first: u32, count: u32) -> u32 {
     var kept = 0u;
+    var sample_count = 0u;
     var samples_covered = 0u;
-    var covered = 0u;
     for (var i = 0u; i < count; i++) {
         let gathered = with_near_ones(first, i, count);
         if gathered.samples == 0u {
             continue;
         }
-        if list_sort.layers > 0u && samples_covered >= list_sort.layers * u32(fragments_SAMPLE_COUNT) {
+        if list_sort.layers > 0u && sample_count >= list_sort.layers * u32(fragments_SAMPLE_COUNT) {
             break;
         }
         let samples = countOneBits(gathered.samples);
-        samples_covered += samples;
+        sample_count += samples;
         let opacity = gathered.opacity * (f32(samples) / fragments_SAMPLE_COUNT);
         var place = kept;
         for (; place > 0u && bitcast<f32>(fragments[first + place - 1u].x) > gathered.z_m; place--) {
             fragments[first + place] = fragments[first + place - 1u];
         }
-        let overlap = sample_overlap(gathered.samples, covered);
-        covered |= gathered.samples;
+        let overlap = sample_overlap(gathered.samples, samples_covered);
+        samples_covered |= gathered.samples;
         fragments[first + place] = fragments_pack_fragment(fragments_Fragment(gathered.z_m, opacity, overlap), COLORED);
         kept++;
     }

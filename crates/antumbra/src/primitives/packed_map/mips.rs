@@ -3,7 +3,7 @@
 
 use glam::UVec2;
 
-use super::{MipsUniform, PackedMap, Packing};
+use super::{MipsUniform, PackedMap, Packing, descriptor};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, array_view, bindings, compute_pipeline_without_zeroing, create_uniform,
     texels, write_uniform,
@@ -115,19 +115,8 @@ impl Mips {
         words: u32,
         level_count: u32,
     ) -> Self {
-        let size = mips_size(map_size);
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("antumbra packed mips"),
-            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: words },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: PackedMap::FORMAT,
-            usage: wgpu::TextureUsages::STORAGE_BINDING
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let descriptor = descriptor("antumbra packed mips", mips_size(map_size), words, false);
+        let texture = gpu.device.create_texture(&descriptor);
         let view = array_view(gpu, &texture);
         let steps = mip_steps(map_size, level_count).map(|step| {
             let uniform = create_uniform::<MipsUniform>(gpu, "antumbra packed mips");

@@ -1,5 +1,5 @@
 //! Maps whose texels hold several channels, packed into 32-bit words: a texture array of `R32Uint`, a layer for each word.
-//! They are blurred by a separable kernel and have a mip chain. What the channels mean is the user's affair; filtering is
+//! They are blurred by a separable kernel and have a mip chain, whose further levels are a second texture (`mips`). What the channels mean is the user's affair; filtering is
 //! linear in them.
 //!
 //! A reader of some channels reads the words that hold them and no others.
@@ -205,9 +205,8 @@ impl PackedMap {
             let uniform = BlurUniform { direction, radius: kernel.radius() as i32, padding: 0 };
             write_uniform(stage, buffer, &uniform);
         }
-        let layouts = (&self.blur_layout, &self.mips_layout);
-        let pipelines =
-            self.pipelines.get_or_make(packing, || Pipelines::new(stage, layouts.0, layouts.1, packing)).clone();
+        let (blur, mips) = (&self.blur_layout, &self.mips_layout);
+        let pipelines = self.pipelines.get_or_make(packing, || Pipelines::new(stage, blur, mips, packing)).clone();
         let weights = kernel.with_running_sums();
         let bytes = size_of_val(weights.as_slice()) as u64;
         let weights_stay = self.weights.as_ref().is_some_and(|buffer| buffer.size() == bytes);
@@ -222,11 +221,12 @@ impl PackedMap {
     }
 
     fn allocate(&self, gpu: &Gpu, shape: Shape, weights: &wgpu::Buffer) -> Maps {
-        let texture = gpu.device.create_texture(&descriptor("antumbra packed map", shape));
+        let texture =
+            gpu.device.create_texture(&descriptor("antumbra packed map", shape.size, shape.words, shape.drawn));
         let first = array_view(gpu, &texture);
         let rows = shape.blurred.then(|| {
-            let shape = Shape { drawn: false, ..shape };
-            gpu.device.scratch_texture(Scratch::BlurredRows, &descriptor("antumbra blurred rows", shape))
+            let descriptor = descriptor("antumbra blurred rows", shape.size, shape.words, false);
+            gpu.device.scratch_texture(Scratch::BlurredRows, &descriptor)
         });
         let blurs = rows.iter().flat_map(|rows| {
             let rows = array_view(gpu, rows);
@@ -315,6 +315,8 @@ impl PreparedPackedMap {
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let Self { maps, pipelines, .. } = self;
         let Shape { size, words, .. } = maps.shape;
+        // A pass for each dispatch, here and for mips: within one, wgpu 30 lost the layouts of a texture array's levels, as the
+        // validation layers saw it. Whether it loses those of layers, of which the textures consist now, is not known.
         for (i, group) in maps.blurs.iter().enumerate() {
             recorder.compute_apart("blur", Span::of(i, maps.blurs.len()), |pass| {
                 pass.set_pipeline(&pipelines.blur);
@@ -328,11 +330,11 @@ impl PreparedPackedMap {
     }
 }
 
-/// The texture of a map, or of one between the directions of its blur.
-fn descriptor(label: &str, shape: Shape) -> wgpu::TextureDescriptor<'_> {
+/// The texture of a map's first level, of its further ones, or of what lies between the directions of its blur.
+fn descriptor(label: &str, size: UVec2, words: u32, is_drawn: bool) -> wgpu::TextureDescriptor<'_> {
     wgpu::TextureDescriptor {
         label: Some(label),
-        size: wgpu::Extent3d { width: shape.size.x, height: shape.size.y, depth_or_array_layers: shape.words },
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: words },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -341,7 +343,7 @@ fn descriptor(label: &str, shape: Shape) -> wgpu::TextureDescriptor<'_> {
             | wgpu::TextureUsages::TEXTURE_BINDING
             | wgpu::TextureUsages::COPY_SRC
             | wgpu::TextureUsages::COPY_DST
-            | if shape.drawn { wgpu::TextureUsages::RENDER_ATTACHMENT } else { wgpu::TextureUsages::empty() },
+            | if is_drawn { wgpu::TextureUsages::RENDER_ATTACHMENT } else { wgpu::TextureUsages::empty() },
         view_formats: &[],
     }
 }
