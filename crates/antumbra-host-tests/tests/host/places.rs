@@ -1,6 +1,7 @@
 //! Lights, cameras and grounds in places that hosts put them: inside solids, in housings, beside walls, above wide grounds.
 
-use antumbra::light::{Light, LightShape};
+use antumbra::contract::Receivers;
+use antumbra::light::{Aabb, Light, LightShape};
 use antumbra_host_tests::device::Device;
 use antumbra_host_tests::host::{HostCasters, kind_of, mask_of};
 use antumbra_host_tests::raster::Picture;
@@ -87,10 +88,13 @@ fn inside_a_solid_it_is_dark() {
     );
 }
 
-/// Walls of a closed room that a lamp outside grazes: to what lies at their feet one wall is many depths.
+/// Walls of a closed room that a lamp outside grazes: to what lies at their feet one wall is many depths. Its map holds no more than the
+/// room, since the host says how far receivers reach. With `list_accumulation=multiply` .0065 of the light leaked, and the rmse was .026.
 #[test]
 fn walls_of_many_depths_stay_closed() {
-    let scene = base_with([Mesh::cuboid(Vec3::new(-3.0, -0.1, -2.0), Vec3::new(3.0, 3.0, 2.0))]);
+    let room = Aabb { min: Vec3::new(-3.0, 0.0, -2.0), max: Vec3::new(3.0, 3.0, 2.0) };
+    let walls = Mesh::cuboid(room.min - 0.1 * Vec3::Y, room.max);
+    let scene = Scene { objects: [Mesh::ground(10.0), walls].map(Object::of).into() };
     let camera =
         Camera { eye: Vec3::new(-2.2, 1.6, 1.4), target: Vec3::new(1.5, 0.6, -1.2), fov_y_rad: 1.13, ..Camera::base() };
     let light = Light::new(
@@ -99,10 +103,13 @@ fn walls_of_many_depths_stay_closed() {
         Vec3::new(0.0, 1.0, 0.0),
     );
     let Some(place) = Place::new(&scene, &camera, light) else { return };
-    let leak = umbra_leak(&place.mask_by("multi_layer"), &place.truth);
-    println!("a room under a lamp: {leak} of what is dark is lit");
-    assert!(leak <= 0.005, "a room under a lamp: {leak} of what is dark is lit");
-    place.holds("a room under a lamp", &[("multi_layer", 0.03)]);
+    let mut shadow = kind_of("multi_layer").create(&place.device.gpu).expect("any device");
+    let receivers = Receivers { bounds: Some(room), ..place.picture.receivers() };
+    let mask = mask_of(place.device, &mut shadow, &place.light, place.casters.all(), receivers);
+    let (leak, error) = (umbra_leak(&mask, &place.truth), rmse(&mask, &place.truth));
+    println!("a room under a lamp: {leak} of what is dark is lit, rmse {error}");
+    assert!(leak <= 0.004, "a room under a lamp: {leak} of what is dark is lit");
+    assert!(error <= 0.013, "a room under a lamp: rmse {error}");
 }
 
 /// A closed box about a bulb, nearer to it than the bulb is wide: from the corners of a cube's faces the bulb is seen wider than from

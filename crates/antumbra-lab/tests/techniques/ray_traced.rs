@@ -2,10 +2,10 @@
 
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;
-use antumbra_light::{EmissionTexture, Light, LightShape, SampleSet};
+use antumbra_light::{Light, LightShape, SampleSet};
 use antumbra_reference::VisibilityOptions;
 use antumbra_scene::builtin::NAMES;
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2};
 
 use crate::common::{Judged, lab};
 use crate::lights::{Change, LIGHTS};

@@ -36,8 +36,15 @@ pub(crate) fn filter(
         .collect()
 }
 
+/// What two opacities hide together, by the overlap of the farther one.
+pub(crate) fn accumulated(nearer: f32, farther: f32, overlap: f32) -> f32 {
+    // Rounding may leave the least above the most.
+    let common = (overlap * nearer * farther).max(nearer + farther - 1.0).max(0.0);
+    nearer + farther - common.min(nearer).min(farther)
+}
+
 /// Figure 3, as far as surfaces are looked up.
-fn merge(
+pub(crate) fn merge(
     mut lists: [&[TwinFragment]; 4],
     epsilon: DepthTolerance,
     z_limit_m: f32,
@@ -57,8 +64,7 @@ fn merge(
         for (list, transmittance) in lists.iter_mut().zip(&mut transmittances) {
             let mut taken = 0.0_f32;
             while let Some((first, rest)) = list.split_first().filter(|(first, _)| first.z_m <= limit) {
-                let common = first.overlap * taken * first.opacity;
-                taken += first.opacity - common.clamp((taken + first.opacity - 1.0).max(0.0), taken.min(first.opacity));
+                taken = accumulated(taken, first.opacity, first.overlap);
                 let unhidden = (1.0 - first.overlap * (1.0 - *transmittance)).clamp(0.0, 1.0);
                 *transmittance = (*transmittance - first.opacity * unhidden).max(0.0);
                 let share = if by_count { 1.0 } else { first.opacity };

@@ -10,6 +10,7 @@ use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerHierarchy, MultiLayerP
 use crate::TechniqueKind;
 use crate::contract::{MapSize, Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
+use crate::light_map::texel_lists::cpu::TwinFragment;
 use crate::light_map::texel_lists::options::DepthTolerance;
 use crate::light_map::texel_lists::tests::{TestMesh, agree, scenes, unpack};
 use crate::shadow::Casters;
@@ -268,6 +269,27 @@ fn every_level_equals_its_twin() {
                 assert!(differing * 200 <= want.len(), "{name}, level {i}: {differing} of {} lists differ", want.len());
             }
         }
+    }
+}
+
+/// What four texels hide beside one another adds up, and what they hide behind one another counts once, however deep it lies.
+#[test]
+fn merged_lists_know_what_their_fragments_have_in_common() {
+    let opaque = |z_m: f32| TwinFragment { z_m, opacity: 1.0, overlap: 1.0 };
+    let [none, near, far] = [&[][..], &[opaque(1.0)], &[opaque(3.0)]];
+    let both = &[opaque(1.0), opaque(3.0)][..];
+    for (what, lists, overlaps, total) in [
+        ("a slanted wall", [near, &[opaque(2.0)], far, &[opaque(4.0)]], &[1.0, 0.0, 0.0, 0.0][..], 1.0),
+        ("one behind another", [both, both, none, none], &[1.0, 2.0], 0.5),
+        ("beside one another", [near, near, far, far], &[1.0, 0.0], 1.0),
+        ("half behind", [both, near, far, none], &[1.0, 1.0], 0.75),
+    ] {
+        let epsilon = DepthTolerance { slope: 0.0, m: 0.1 };
+        let merged = cpu::merge(lists, epsilon, f32::MAX, false);
+        let found: Vec<f32> = merged.iter().map(|fragment| fragment.overlap).collect();
+        assert_eq!(found, overlaps, "{what}");
+        let hidden = merged.iter().fold(0.0, |sum, one| cpu::accumulated(sum, one.opacity, one.overlap));
+        assert!((hidden - total).abs() < 1e-6, "{what}: {hidden} of the light is hidden, and {total} is");
     }
 }
 
