@@ -117,6 +117,29 @@ fn fence(alpha: AlphaMode) -> Scene {
     }
 }
 
+/// Vertices of a mesh that lies behind another in their common buffers.
+#[test]
+fn what_is_bent_is_drawn_as_if_it_had_been_uploaded_so() {
+    let Some(lab) = lab_or_skip() else { return };
+    let mut before = planes();
+    before.meshes.push(quad(1.0));
+    before.instances[1].mesh = 1;
+    let mut after = before.clone();
+    after.meshes[1].positions.iter_mut().for_each(|p| *p += Vec3::new(0.0, 0.3 * p.x, 0.0));
+    let camera = camera_at(Vec3::new(2.0, 3.0, 5.0));
+    let positions = |scene: &GpuScene| {
+        let images = ReceiverPass::new(lab).render(lab, scene, &camera, SIZE, Layer::FirstHits).unwrap();
+        images.read_positions(lab).unwrap()
+    };
+    let mut bent = GpuScene::upload(lab, &before);
+    let straight = positions(&bent);
+    assert!(bent.repose(lab, &before, &after), "built alike");
+    let got = positions(&bent);
+    assert_eq!(got, positions(&GpuScene::upload(lab, &after)));
+    let moved = got.iter().zip(&straight).filter(|(got, straight)| got != straight).count();
+    assert!(moved > 50, "{moved} pixels show that it was bent");
+}
+
 #[test]
 fn masked_holes_are_where_the_definition_has_them() {
     let Some(lab) = lab_or_skip() else { return };
