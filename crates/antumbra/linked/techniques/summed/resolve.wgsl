@@ -35,23 +35,23 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let grown = extent / max(uniform_soft.light_extent, vec2f(1e-20));
     let on_plane = uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
     var covariance = soft_kernel_light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
-    var footprint = vec3f();
+    var footprint = soft_kernel_Footprint();
     if uniform_soft.with_footprint == 1u {
         if FOOTPRINT_ENDS {
-            footprint = soft_kernel_ending_footprint_covariance(receiver, compared.plane.uv, pixel);
+            footprint = soft_kernel_ending_footprint(receiver, compared.plane.uv, pixel);
         }
         else {
-            footprint = soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel, vec2f(1.0));
+            footprint.covariance = soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel);
         }
-        covariance += footprint;
+        covariance += footprint.covariance;
     }
     else if blockers.y <= 0.0 {
         return above;
     }
     let center_uv = compared.plane.uv + space_uv_step_at(map_light_view, compared.plane.uv, uniform_soft.light_mean * blockers.x);
-    let center = center_uv * map_light_view.map_size;
+    let center = center_uv * map_light_view.map_size + footprint.to_middle;
     let kernel = soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u);
-    let footprint_texels = FOOTPRINT_DEVIATIONS * sqrt(max(footprint.x, footprint.z));
+    let footprint_texels = FOOTPRINT_DEVIATIONS * sqrt(max(footprint.covariance.x, footprint.covariance.z));
     return above * kernel_kernel_lit(compared_asking_of_kernel(compared, blockers.x, footprint_texels), kernel);
 }
 
@@ -524,36 +524,57 @@ fn soft_kernel_footprint_step(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u
 const soft_kernel_SHARE_AT_EDGE = 0.75;
 
 fn soft_kernel_share_towards(receiver: inputs_Receiver, pixel: vec2u, step_px: vec2i) -> f32 {
-    let neighbour = clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(inputs_receiver_view.size_px) - 1);
-    let depth = inputs_depth_at(vec2u(neighbour));
-    let step = inputs_position_in_world(vec2u(neighbour), depth) - receiver.pos_in_world;
-    let is_same = depth != inputs_receiver_view.background_depth && abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step);
-    return select(soft_kernel_SHARE_AT_EDGE, 1.0, is_same);
+    let neighbour = vec2u(clamp(vec2i(pixel) + step_px, vec2i(0), vec2i(inputs_receiver_view.size_px) - 1));
+    let depth = inputs_depth_at(neighbour);
+    if depth == inputs_receiver_view.background_depth {
+        return soft_kernel_SHARE_AT_EDGE;
+    }
+    let position = inputs_position_in_world(neighbour, depth);
+    let step = position - receiver.pos_in_world;
+    if abs(dot(step, receiver.normal_in_world)) <= 0.25 * length(step) {
+        return 1.0;
+    }
+    let normal = inputs_geometric_normal(neighbour, position, depth);
+    let here = dot(normal, step) / min(dot(normal, position - inputs_receiver_view.eye_in_world), -1e-20);
+    let there = dot(receiver.normal_in_world, step) / min(dot(receiver.normal_in_world, receiver.pos_in_world - inputs_receiver_view.eye_in_world), -1e-20);
+    return select(soft_kernel_SHARE_AT_EDGE, min(2.0 * here / (here - there), 1.0), here * there < 0.0);
 }
 
 fn soft_kernel_square_covariance(x: vec2f, y: vec2f) -> vec3f {
     return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
 }
 
-fn soft_kernel_ending_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
-    if inputs_are_points() {
-        return soft_kernel_footprint_covariance(receiver, uv, pixel, vec2f(1.0));
-    }
-    let width = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(-1, 0)) + soft_kernel_share_towards(receiver, pixel, vec2i(1, 0)));
-    let height = 0.5 * (soft_kernel_share_towards(receiver, pixel, vec2i(0, -1)) + soft_kernel_share_towards(receiver, pixel, vec2i(0, 1)));
-    return soft_kernel_footprint_covariance(receiver, uv, pixel, vec2f(width, height));
+struct soft_kernel_Footprint {
+    covariance: vec3f,
+    to_middle: vec2f
 }
 
-fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u, size_px: vec2f) -> vec3f {
+fn soft_kernel_ending_footprint(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> soft_kernel_Footprint {
+    if inputs_are_points() {
+        return soft_kernel_Footprint(soft_kernel_footprint_covariance(receiver, uv, pixel), vec2f());
+    }
+    let sides = soft_kernel_footprint_sides(receiver, uv, pixel);
+    var shares = vec4f();
+    for (var i = 0u; i < 4u; i++) {
+        let step = select(-1, 1, (i & 1u) == 1u);
+        shares[i] = soft_kernel_share_towards(receiver, pixel, select(vec2i(0, step), vec2i(step, 0), i < 2u));
+    }
+    let size_px = 0.5 * (shares.xz + shares.yw);
+    let middle_px = 0.25 * (shares.yw - shares.xz);
+    return soft_kernel_Footprint(soft_kernel_square_covariance(size_px.x * sides[0], size_px.y * sides[1]), middle_px.x * sides[0] + middle_px.y * sides[1]);
+}
+
+fn soft_kernel_footprint_sides(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> array<vec2f, 2> {
     if inputs_are_points() {
         let sides = inputs_point_sides_m(receiver, pixel);
-        let x = size_px.x * soft_kernel_texels_of_step(receiver, uv, sides[0]);
-        let y = size_px.y * soft_kernel_texels_of_step(receiver, uv, sides[1]);
-        return soft_kernel_square_covariance(x, y);
+        return array<vec2f, 2>(soft_kernel_texels_of_step(receiver, uv, sides[0]), soft_kernel_texels_of_step(receiver, uv, sides[1]));
     }
-    let x = 2.0 * size_px.x * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0));
-    let y = 2.0 * size_px.y * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5));
-    return soft_kernel_square_covariance(x, y);
+    return array<vec2f, 2>(2.0 * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0)), 2.0 * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5)));
+}
+
+fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
+    let sides = soft_kernel_footprint_sides(receiver, uv, pixel);
+    return soft_kernel_square_covariance(sides[0], sides[1]);
 }
 
 fn soft_kernel_light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {
