@@ -20,9 +20,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let mean_g = search_blockers_of(search_search(window, light_taps_light_plane(receiver, receiver_in_light, shift)), window).g.x;
     let grown = extent / max(settings_pcss.light_extent, vec2f(1e-20));
     let on_plane = settings_pcss.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
-    let footprint = soft_kernel_ending_footprint(receiver, plane.uv, pixel);
-    let covariance = soft_kernel_light_covariance_texels(on_plane, plane.uv, mean_g) + footprint.covariance;
-    let center = (plane.uv + space_uv_step_of_plane(map_light_view, settings_pcss.light_mean * mean_g)) * map_light_view.map_size + footprint.to_middle;
+    let covariance = soft_kernel_light_covariance_texels(on_plane, plane.uv, mean_g) + soft_kernel_ending_footprint_covariance(receiver, plane.uv, pixel);
+    let center = (plane.uv + space_uv_step_of_plane(map_light_view, settings_pcss.light_mean * mean_g)) * map_light_view.map_size;
     let kernel = soft_kernel_kernel_of_covariance(center, covariance, settings_pcss.is_ellipse == 1u);
     var lit = 0.0;
     for (var i = 0u; i < settings_pcss.filter_count; i++) {
@@ -528,24 +527,18 @@ fn soft_kernel_square_covariance(x: vec2f, y: vec2f) -> vec3f {
     return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
 }
 
-struct soft_kernel_Footprint {
-    covariance: vec3f,
-    to_middle: vec2f
-}
-
-fn soft_kernel_ending_footprint(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> soft_kernel_Footprint {
-    if inputs_are_points() {
-        return soft_kernel_Footprint(soft_kernel_footprint_covariance(receiver, uv, pixel), vec2f());
-    }
+fn soft_kernel_ending_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
     let sides = soft_kernel_footprint_sides(receiver, uv, pixel);
+    if inputs_are_points() {
+        return soft_kernel_square_covariance(sides[0], sides[1]);
+    }
     var shares = vec4f();
     for (var i = 0u; i < 4u; i++) {
         let step = select(-1, 1, (i & 1u) == 1u);
         shares[i] = soft_kernel_share_towards(receiver, pixel, select(vec2i(0, step), vec2i(step, 0), i < 2u));
     }
-    let size_px = 0.5 * (shares.xz + shares.yw);
-    let middle_px = 0.25 * (shares.yw - shares.xz);
-    return soft_kernel_Footprint(soft_kernel_square_covariance(size_px.x * sides[0], size_px.y * sides[1]), middle_px.x * sides[0] + middle_px.y * sides[1]);
+    let size_px = min(shares.xz, shares.yw);
+    return soft_kernel_square_covariance(size_px.x * sides[0], size_px.y * sides[1]);
 }
 
 fn soft_kernel_footprint_sides(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> array<vec2f, 2> {
@@ -554,11 +547,6 @@ fn soft_kernel_footprint_sides(receiver: inputs_Receiver, uv: vec2f, pixel: vec2
         return array<vec2f, 2>(soft_kernel_texels_of_step(receiver, uv, sides[0]), soft_kernel_texels_of_step(receiver, uv, sides[1]));
     }
     return array<vec2f, 2>(2.0 * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.5, 0.0)), 2.0 * soft_kernel_footprint_step(receiver, uv, pixel, vec2f(0.0, 0.5)));
-}
-
-fn soft_kernel_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
-    let sides = soft_kernel_footprint_sides(receiver, uv, pixel);
-    return soft_kernel_square_covariance(sides[0], sides[1]);
 }
 
 fn soft_kernel_light_covariance_texels(on_plane: vec3f, uv: vec2f, g: f32) -> vec3f {

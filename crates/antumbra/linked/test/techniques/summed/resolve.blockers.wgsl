@@ -35,23 +35,23 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let grown = extent / max(uniform_soft.light_extent, vec2f(1e-20));
     let on_plane = uniform_soft.light_covariance * vec3f(grown.x * grown.x, grown.x * grown.y, grown.y * grown.y);
     var covariance = soft_kernel_light_covariance_texels(on_plane, compared.plane.uv, blockers.x);
-    var footprint = soft_kernel_Footprint();
+    var footprint = vec3f();
     if uniform_soft.with_footprint == 1u {
         if FOOTPRINT_ENDS {
-            footprint = soft_kernel_ending_footprint(receiver, compared.plane.uv, pixel);
+            footprint = soft_kernel_ending_footprint_covariance(receiver, compared.plane.uv, pixel);
         }
         else {
-            footprint.covariance = soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel);
+            footprint = soft_kernel_footprint_covariance(receiver, compared.plane.uv, pixel);
         }
-        covariance += footprint.covariance;
+        covariance += footprint;
     }
     else if blockers.y <= 0.0 {
         return above;
     }
     let center_uv = compared.plane.uv + space_uv_step_at(map_light_view, compared.plane.uv, uniform_soft.light_mean * blockers.x);
-    let center = center_uv * map_light_view.map_size + footprint.to_middle;
+    let center = center_uv * map_light_view.map_size;
     let kernel = soft_kernel_kernel_of_covariance(center, covariance, uniform_soft.is_ellipse == 1u);
-    let footprint_texels = FOOTPRINT_DEVIATIONS * sqrt(max(footprint.covariance.x, footprint.covariance.z));
+    let footprint_texels = FOOTPRINT_DEVIATIONS * sqrt(max(footprint.x, footprint.z));
     return above * kernel_kernel_lit(compared_asking_of_kernel(compared, blockers.x, footprint_texels), kernel);
 }
 
@@ -556,24 +556,18 @@ fn soft_kernel_square_covariance(x: vec2f, y: vec2f) -> vec3f {
     return vec3f(x.x * x.x + y.x * y.x, x.x * x.y + y.x * y.y, x.y * x.y + y.y * y.y) / 12.0;
 }
 
-struct soft_kernel_Footprint {
-    covariance: vec3f,
-    to_middle: vec2f
-}
-
-fn soft_kernel_ending_footprint(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> soft_kernel_Footprint {
-    if inputs_are_points() {
-        return soft_kernel_Footprint(soft_kernel_footprint_covariance(receiver, uv, pixel), vec2f());
-    }
+fn soft_kernel_ending_footprint_covariance(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> vec3f {
     let sides = soft_kernel_footprint_sides(receiver, uv, pixel);
+    if inputs_are_points() {
+        return soft_kernel_square_covariance(sides[0], sides[1]);
+    }
     var shares = vec4f();
     for (var i = 0u; i < 4u; i++) {
         let step = select(-1, 1, (i & 1u) == 1u);
         shares[i] = soft_kernel_share_towards(receiver, pixel, select(vec2i(0, step), vec2i(step, 0), i < 2u));
     }
-    let size_px = 0.5 * (shares.xz + shares.yw);
-    let middle_px = 0.25 * (shares.yw - shares.xz);
-    return soft_kernel_Footprint(soft_kernel_square_covariance(size_px.x * sides[0], size_px.y * sides[1]), middle_px.x * sides[0] + middle_px.y * sides[1]);
+    let size_px = min(shares.xz, shares.yw);
+    return soft_kernel_square_covariance(size_px.x * sides[0], size_px.y * sides[1]);
 }
 
 fn soft_kernel_footprint_sides(receiver: inputs_Receiver, uv: vec2f, pixel: vec2u) -> array<vec2f, 2> {
