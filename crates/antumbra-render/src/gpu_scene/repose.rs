@@ -6,8 +6,10 @@ use antumbra::Gpu;
 use antumbra_scene::{Aabb, Mesh, Scene};
 use glam::Vec3;
 
+use super::GpuScene;
+use super::instances::{instances_by_mesh, placed_at};
 use super::split::{MeshPart, split_mesh};
-use super::{GpuScene, binding_bytes, instances_by_mesh, placed_at};
+use super::upload::binding_bytes;
 
 impl GpuScene {
     /// Makes this, the upload of `before`, that of `after` by writing the vertices and poses that differ. The queue copies

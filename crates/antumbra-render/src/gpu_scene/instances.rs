@@ -1,0 +1,85 @@
+//! A scene's instances: whose they are, where they lie, and the lists that hold their matrices.
+
+use antumbra_scene::{Aabb, Instance, Scene};
+use glam::{Mat4, Vec3};
+
+/// An instance as it was uploaded.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    /// Index into [`Scene::instances`](antumbra_scene::Scene::instances).
+    pub instance: usize,
+    pub world_from_object: Mat4,
+    /// World-space box.
+    pub bounds: Aabb,
+}
+
+/// Up to this many vertex transforms a mesh, its world boxes are exact; past it, each instance's box is turned instead,
+/// which may be larger. A second's work on one core.
+const EXACT_BOUNDS_WORK: usize = 1 << 24;
+
+/// The instances of each mesh, with their indices in the scene.
+pub(super) fn instances_by_mesh(scene: &Scene) -> Vec<Vec<(usize, &Instance)>> {
+    let mut by_mesh = vec![Vec::new(); scene.meshes.len()];
+    for (index, instance) in scene.instances.iter().enumerate() {
+        by_mesh[instance.mesh].push((index, instance));
+    }
+    by_mesh
+}
+
+/// Matrices in lists that each fit a binding.
+pub(super) struct InstanceLists {
+    pub lists: Vec<Vec<Mat4>>,
+    capacity: usize,
+}
+
+impl InstanceLists {
+    pub fn new(binding_bytes: u64) -> Self {
+        Self { lists: Vec::new(), capacity: binding_bytes as usize / size_of::<Mat4>() }
+    }
+
+    /// Adds poses; gives each run of them with its list and its place there.
+    pub fn push_all<'p>(&mut self, mut poses: &'p [Mat4]) -> Vec<(&'p [Mat4], usize, u32)> {
+        let mut runs = Vec::new();
+        while !poses.is_empty() {
+            if self.lists.last().is_none_or(|list| list.len() == self.capacity) {
+                self.lists.push(Vec::new());
+            }
+            let index = self.lists.len() - 1;
+            let list = &mut self.lists[index];
+            let (run, rest) = poses.split_at(poses.len().min(self.capacity - list.len()));
+            runs.push((run, index, list.len() as u32));
+            list.extend_from_slice(run);
+            poses = rest;
+        }
+        runs
+    }
+}
+
+/// Each instance with its world-space box.
+pub(super) fn placed_at(positions: &[Vec3], instances: &[(usize, &Instance)]) -> Vec<Placed> {
+    let object_box = Aabb::of(positions.iter().copied());
+    let exact = positions.len().saturating_mul(instances.len()) <= EXACT_BOUNDS_WORK;
+    let corners = object_box.corners();
+    let points = if exact { positions } else { &corners };
+    let place = |&(instance, &Instance { world_from_object, .. }): &(usize, &Instance)| {
+        let bounds = Aabb::of(points.iter().map(|p| world_from_object.transform_point3(*p)));
+        Placed { instance, world_from_object, bounds }
+    };
+    instances.iter().map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn instance_lists_split_where_a_binding_ends() {
+        let poses = [Mat4::IDENTITY; 5];
+        let mut lists = InstanceLists::new(3 * size_of::<Mat4>() as u64);
+        let runs = lists.push_all(&poses);
+        assert_eq!(
+            runs.iter().map(|(run, list, first)| (run.len(), *list, *first)).collect::<Vec<_>>(),
+            [(3, 0, 0), (2, 1, 0)]
+        );
+    }
+}
