@@ -69,7 +69,7 @@ Development commands of Antumbra. They install what is missing where they can, a
         had is skipped. --only: programs whose label, module or entry point contains the text.
 
     cargo xtask wasm
-        Checks that the library compiles for browsers.
+        Checks that the library and the page of the viewer compile for browsers.
 
     cargo xtask web [--serve | --shaders | --pipelines | --check | --check-all]
         Builds the viewer as a static page in target/web.

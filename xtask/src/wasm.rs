@@ -1,4 +1,4 @@
-//! A compiler for browsers, and whether the library compiles by it.
+//! A compiler for browsers, and whether the library and the viewer's page compile by it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -22,13 +22,13 @@ const DEBIAN: [Need; 1] = [Need {
     otherwise: "`rustup target add wasm32-unknown-unknown`",
 }];
 
-/// Compiles the library as a page would, with wgpu's own backend for browsers, but links nothing.
+/// Compiles the viewer's page, and with it the library over wgpu's own backend for browsers, but links nothing.
 ///
 /// # Errors
 /// What does not compile; or, where a missing check is to fail, what would bring a compiler.
 pub fn check(missing: Missing) -> Result<(), String> {
     let began = Instant::now();
-    let arguments = ["check", "--package", "antumbra", "--features", "wgpu/webgpu"];
+    let arguments = ["check", "--package", "antumbra-web"];
     let mut check = match compiler(&arguments) {
         Ok(command) => command,
         Err(lack) if missing == Missing::Fail => return Err(format!("cannot check wasm32: {lack}")),

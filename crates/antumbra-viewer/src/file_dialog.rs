@@ -110,7 +110,7 @@ fn asked(purpose: Purpose, name: &str) -> Pin<Box<dyn Future<Output = Option<rfd
 }
 
 #[cfg(target_arch = "wasm32")]
-fn asked(_purpose: Purpose, _name: &str) -> impl Future<Output = Option<rfd::FileHandle>> {
+fn asked(_purpose: Purpose, _name: &str) -> impl Future<Output = Option<rfd::FileHandle>> + use<> {
     rfd::AsyncFileDialog::new().add_filter("scenes and setups", &["glb", "gltf", "toml"]).pick_file()
 }
 
