@@ -8,18 +8,28 @@
 /// # Panics
 /// Where the shader has no constant of a name, or several.
 pub(crate) fn linked(wgsl: &str, constants: &[(&str, f64)]) -> Vec<(String, f64)> {
-    constants.iter().map(|(name, value)| (linked_name(wgsl, name).to_owned(), *value)).collect()
+    if constants.is_empty() {
+        return Vec::new();
+    }
+    // A shader is long, and has tens of constants: it is read once for all of them.
+    let names: Vec<&str> = names(wgsl).collect();
+    let linked_name = |name: &str| {
+        linked_name(&names, name)
+            .unwrap_or_else(|| panic!("no `override {name}` in a shader that begins with {:?}", wgsl.lines().next()))
+    };
+    constants.iter().map(|(name, value)| (linked_name(name).to_owned(), *value)).collect()
 }
 
-fn linked_name<'s>(wgsl: &'s str, name: &str) -> &'s str {
-    let mut found = names(wgsl).filter(|linked| is_linked_name(linked, name));
-    if let Some(exact) = names(wgsl).find(|linked| *linked == name) {
-        return exact;
+/// The one of a shader's names that the linker made of `name`; none where it has none.
+fn linked_name<'s>(names: &[&'s str], name: &str) -> Option<&'s str> {
+    if let Some(exact) = names.iter().find(|linked| **linked == name) {
+        return Some(exact);
     }
-    match (found.next(), found.next()) {
-        (Some(only), None) => only,
-        (None, _) => panic!("no `override {name}` in a shader that begins with {:?}", wgsl.lines().next()),
-        (Some(one), Some(other)) => panic!("`override {name}` is {one} or {other}"),
+    let found: Vec<&str> = names.iter().copied().filter(|linked| is_linked_name(linked, name)).collect();
+    match found[..] {
+        [] => None,
+        [only] => Some(only),
+        [one, other, ..] => panic!("`override {name}` is {one} or {other}"),
     }
 }
 

@@ -195,7 +195,7 @@ impl Default for SoftSettings {
             refinements: 0,
             is_ellipse: Some(false),
             with_footprint: false,
-            footprint_ends: true,
+            footprint_ends: false,
             averages_depth: false,
             horizon: true,
             edge_goes_on: false,
