@@ -1285,8 +1285,12 @@ fn kernel_narrow_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel
     return sum.x / max(sum.y, 1e-12);
 }
 
+fn kernel_least_cuts() -> u32 {
+    return select(2u, 1u, uniform_IS_ONE_PIECE);
+}
+
 fn kernel_wide_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
-    let count = kernel_rows_rows_of(asked);
+    let count = max(kernel_rows_rows_of(asked), kernel_least_cuts());
     var kernel = asked;
     if asked.is_ellipse && kernel_rows_REFINEMENTS == 0u {
         kernel = kernel_rows_ellipse_of_rows(asked, count);
@@ -1327,7 +1331,7 @@ fn kernel_row_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y
     let high = row_middle + half;
     var sum = vec2f();
     sums_begin_row();
-    var columns = pieces_cuts_from(row_middle - half, pieces_pieces_of(2.0 * half, uniform_soft.subdivisions));
+    var columns = pieces_cuts_from(row_middle - half, max(pieces_pieces_of(2.0 * half, uniform_soft.subdivisions), kernel_least_cuts()));
     var i = 0u;
     loop {
         let end = pieces_next_cut(columns, high, map_light_view.map_size.x);
