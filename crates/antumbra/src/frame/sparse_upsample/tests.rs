@@ -8,12 +8,14 @@ use crate::contract::{Mask, Receivers};
 use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, SIZE, gpu, half_plane_visibility, rmse as rmse_of, run, test_ground};
 
-/// How far a mask may be from that of every pixel: noise is interpolated, too, and neighbours' noise is as unlike as it can be.
+/// How far a mask may be from that of every pixel: noise is interpolated, too, and neighbours' noise is as unlike as it can be. The
+/// footprint of `essm` ends at what lies beside a pixel, of which those around it know nothing: .0077, where both masks are as far from
+/// the closed form as with footprints that go on beyond (.0070 apart).
 fn most_of_difference(kind: TechniqueKind) -> f32 {
     match kind {
         TechniqueKind::MultiLayer => 0.0046,
         TechniqueKind::Pcss | TechniqueKind::PcssAnisotropic => 0.009,
-        _ => 0.0075,
+        _ => 0.008,
     }
 }
 
