@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::shell::{self, cargo, find};
 use crate::wasm;
 
-/// What the program may have at most, bytes before compression: two thirds is code, a fifth the shaders of all techniques.
+/// The largest size of the program, bytes before compression. Of 9.2 MB two thirds are code, a fifth the shaders of all techniques.
 const MOST_WASM_BYTES: u64 = 9_500_000;
 
 /// The page's own files, from `crates/antumbra-web/page`.

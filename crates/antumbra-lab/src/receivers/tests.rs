@@ -117,7 +117,7 @@ fn fence(alpha: AlphaMode) -> Scene {
     }
 }
 
-/// Vertices of a mesh that lies behind another in their common buffers.
+/// A mesh whose vertices lie behind another's in common buffers.
 #[test]
 fn what_is_bent_is_drawn_as_if_it_had_been_uploaded_so() {
     let Some(lab) = lab_or_skip() else { return };

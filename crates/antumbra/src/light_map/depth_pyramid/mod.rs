@@ -2,7 +2,7 @@
 //!
 //! Level `i` has `⌈n / 2^(i+1)⌉` texels a side, each the (min, max) of the `2^(i+1)` square of map texels that it
 //! covers, up to one texel for all. Depth is taken as it is stored, but without the warp of a warped window, so that one
-//! scale of depth holds for the whole map; which end is nearer is the reader's affair.
+//! scale of depth holds for the whole map; readers know which end is nearer.
 //!
 //! The last level, of one texel, leaves out what is so near the light that it hides hardly anything of it: `last.wesl`.
 //!

@@ -1,6 +1,6 @@
 //! Maps whose texels hold several channels, packed into 32-bit words: a texture array of `R32Uint`, a layer for each word.
-//! They are blurred by a separable kernel and have a mip chain, whose further levels are a second texture (`mips`). What the channels mean is the user's affair; filtering is
-//! linear in them.
+//! They are blurred by a separable kernel and have a mip chain, whose further levels are a second texture (`mips`). Filtering is linear
+//! in the channels, whatever the technique stores in them.
 //!
 //! A reader of some channels reads the words that hold them and no others.
 
