@@ -65,32 +65,35 @@ impl Rays {
     }
 
     fn at_pixel(&self, camera: &Camera, light: &Light, pixel: UVec2, points: u32) -> Option<f32> {
-        let (x, hit) = self.seen(camera, pixel.as_dvec2() + 0.5)?;
+        let (x, hit, direction) = self.seen(camera, pixel.as_dvec2() + 0.5)?;
         let plane = &self.triangles[hit.triangle];
         for about in [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y] {
-            let (beside, other) = self.seen(camera, pixel.as_dvec2() + 0.5 + ABOUT_PX * about)?;
+            let (beside, other, _) = self.seen(camera, pixel.as_dvec2() + 0.5 + ABOUT_PX * about)?;
             let is_level = self.triangles[other.triangle].normal.dot(plane.normal).abs() > 1.0 - 1e-9;
             let is_near = (beside - x).dot(plane.normal).abs() < 1e-6 * (1.0 + hit.distance);
             if !(is_level && is_near) {
                 return None;
             }
         }
-        let eye = camera.eye.as_dvec3();
-        let normal = if plane.normal.dot(eye - x) < 0.0 { -plane.normal } else { plane.normal };
+        let normal = if plane.normal.dot(direction) > 0.0 { -plane.normal } else { plane.normal };
         Some(self.light_seen(light, x, normal, hit.triangle, pixel, points))
     }
 
-    /// The surface behind a place of the picture.
-    fn seen(&self, camera: &Camera, place_px: DVec2) -> Option<(DVec3, Hit)> {
+    /// The surface behind a place of the picture, and the direction of the ray that sees it.
+    fn seen(&self, camera: &Camera, place_px: DVec2) -> Option<(DVec3, Hit, DVec3)> {
         let ndc = place_px / camera.size_px.as_dvec2() * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
-        let tangent = (0.5 * f64::from(camera.fov_y_rad)).tan();
         let aspect = f64::from(camera.size_px.x) / f64::from(camera.size_px.y);
+        let across = ndc * DVec2::new(aspect, 1.0);
+        let (origin, direction) = match camera.height_m {
+            Some(height_m) => ((0.5 * f64::from(height_m) * across).extend(0.0), DVec3::NEG_Z),
+            None => (DVec3::ZERO, ((0.5 * f64::from(camera.fov_y_rad)).tan() * across).extend(-1.0)),
+        };
         let world_from_view: DMat4 = camera.view_from_world().as_dmat4().inverse();
-        let direction = world_from_view.transform_vector3(DVec3::new(ndc.x * tangent * aspect, ndc.y * tangent, -1.0));
-        let eye = world_from_view.w_axis.truncate();
+        let origin = world_from_view.transform_point3(origin);
+        let direction = world_from_view.transform_vector3(direction);
         let far = camera.far_m.map_or(f64::INFINITY, f64::from);
-        let hit = self.first_hit(eye, direction, f64::from(camera.near_m), far)?;
-        Some((eye + hit.distance * direction, hit))
+        let hit = self.first_hit(origin, direction, f64::from(camera.near_m), far)?;
+        Some((origin + hit.distance * direction, hit, direction))
     }
 
     fn first_hit(&self, origin: DVec3, direction: DVec3, from: f64, to: f64) -> Option<Hit> {

@@ -109,8 +109,10 @@ pub struct Camera {
     pub eye: Vec3,
     /// What it looks at.
     pub target: Vec3,
-    /// Full vertical angle, radians.
+    /// Full vertical angle of a perspective camera, radians.
     pub fov_y_rad: f32,
+    /// Height of what an orthographic camera sees, metres; `None` is a perspective.
+    pub height_m: Option<f32>,
     /// Near plane, metres.
     pub near_m: f32,
     /// Far plane, metres; `None` is infinite.
@@ -128,6 +130,7 @@ impl Camera {
             eye: Vec3::new(4.0, 5.0, 8.0),
             target: Vec3::new(0.0, 0.6, 0.0),
             fov_y_rad: 0.8,
+            height_m: None,
             near_m: 0.1,
             far_m: None,
             is_reversed: true,
@@ -141,8 +144,17 @@ impl Camera {
     }
 
     /// The camera's projection.
+    ///
+    /// # Panics
+    /// Where an orthographic camera has no far plane.
     pub fn clip_from_view(&self) -> Mat4 {
         let aspect = self.size_px.x as f32 / self.size_px.y as f32;
+        if let Some(height_m) = self.height_m {
+            let up = 0.5 * height_m;
+            let far_m = self.far_m.expect("an orthographic camera ends somewhere");
+            let (nearer, farther) = if self.is_reversed { (far_m, self.near_m) } else { (self.near_m, far_m) };
+            return directx::orthographic(-up * aspect, up * aspect, -up, up, nearer, farther);
+        }
         match (self.far_m, self.is_reversed) {
             (None, true) => directx::perspective_infinite_reverse(self.fov_y_rad, aspect, self.near_m),
             (Some(far_m), false) => directx::perspective(self.fov_y_rad, aspect, self.near_m, far_m),

@@ -162,6 +162,11 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
+fn inputs_camera_ray(pos_in_world: vec3f) -> vec3f {
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    return select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+}
+
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
@@ -186,13 +191,13 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     else {
         normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
+    let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
-        return normalize(to_eye);
+        return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);
-    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+    return select(-normal, normal, dot(normal, to_camera) >= 0.0);
 }
 
 fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {

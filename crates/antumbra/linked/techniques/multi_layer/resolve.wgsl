@@ -2,6 +2,8 @@
 
 const MOST_LOOKUPS = 128u;
 
+const LEAST_SINE_NEAR_LIGHT = 0.008;
+
 const OPAQUE = 0.998;
 
 fn share_above_horizon(receiver: inputs_Receiver) -> f32 {
@@ -12,6 +14,14 @@ fn share_above_horizon(receiver: inputs_Receiver) -> f32 {
         return horizon_horizon_share_of_points(receiver);
     }
     return horizon_horizon_share(receiver);
+}
+
+fn nearness_to_plane(receiver: inputs_Receiver) -> f32 {
+    if !settings_HAS_PLANES || inputs_light_source.kind == light_KIND_POINTS {
+        return 0.0;
+    }
+    let rise = horizon_rise_above_center(horizon_half_axis_heights(receiver));
+    return smoothstep(0.5, 1.0, rise / max(horizon_center_height(receiver), 1e-20));
 }
 
 fn footprint_texels(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
@@ -39,10 +49,12 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
     if above <= 0.0 {
         return vec3f(0.0);
     }
-    var plane = receiver_light_biased_plane_within(receiver, 0.0, receiver_light_coarse_grazing_sine(receiver));
+    let nearness = nearness_to_plane(receiver);
+    let least_sine = mix(receiver_light_coarse_grazing_sine(receiver), LEAST_SINE_NEAR_LIGHT, nearness);
+    var plane = receiver_light_biased_plane_within(receiver, 0.0, least_sine);
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
-    let lookup = filter_size_Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), settings_multi_layer.filter_per_g, footprint * footprint);
+    let lookup = filter_size_Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), settings_multi_layer.filter_per_g, footprint * footprint, nearness);
     let seen = above * (1.0 - occluded_share(lookup, plane));
     if settings_SHOWS_LEVELS && shown.w > 0.0 {
         return hues_shaded_hue(shown.rgb / shown.w, seen);
@@ -210,6 +222,11 @@ fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
+fn inputs_camera_ray(pos_in_world: vec3f) -> vec3f {
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    return select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+}
+
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
     let last = vec2i(inputs_receiver_view.size_px) - 1;
     let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
@@ -234,13 +251,13 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     else {
         normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
+    let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
-        return normalize(to_eye);
+        return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);
-    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+    return select(-normal, normal, dot(normal, to_camera) >= 0.0);
 }
 
 fn inputs_point_width_m(pixel: vec2u) -> f32 {
@@ -630,7 +647,8 @@ fn hues_shaded_hue(hue: vec3f, lit: vec3f) -> vec3f {
 struct filter_size_Lookup {
     z_m: f32,
     filter_per_g: f32,
-    footprint_squared: f32
+    footprint_squared: f32,
+    nearness_to_plane: f32
 }
 
 fn filter_size_g_of_z(lookup: filter_size_Lookup, z_m: f32) -> f32 {
@@ -721,15 +739,20 @@ fn level_level_shares(lookup: filter_size_Lookup, plane: space_ReceiverPlane, ru
         return shares;
     }
     let most = min(dot(quad.end - quad.first, vec4u(1u)), arrayLength(&lists_fragments));
+    let own = receiver_plane_own_surface_at(lookup, plane, rung, base);
+    var own_before = vec4f(0.0);
     var surfaces = 0u;
     loop {
         let limit = nearest + abs(rung.epsilon_slope * nearest) + rung.epsilon_m;
         var surface = occluders_Occluder(vec3f(), vec2f());
         var sum = lists_FragmentSum(0.0, 0.0, 0.0);
-        lists_take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), &surface, &sum);
-        lists_take(&b, limit, weight.y, vec2f(change_x.y, change_y.y), &surface, &sum);
-        lists_take(&c, limit, weight.z, vec2f(change_x.z, change_y.z), &surface, &sum);
-        lists_take(&d, limit, weight.w, vec2f(change_x.w, change_y.w), &surface, &sum);
+        let own_within = receiver_plane_own_opacity(own, limit);
+        let own_share = own_within - own_before;
+        own_before = own_within;
+        lists_take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), own_share.x, &surface, &sum);
+        lists_take(&b, limit, weight.y, vec2f(change_x.y, change_y.y), own_share.y, &surface, &sum);
+        lists_take(&c, limit, weight.z, vec2f(change_x.z, change_y.z), own_share.z, &surface, &sum);
+        lists_take(&d, limit, weight.w, vec2f(change_x.w, change_y.w), own_share.w, &surface, &sum);
         let seen = receiver_plane_share_in_front(lookup, weight, z_plane, nearest);
         surface.opacity = min(surface.opacity / seen, vec3f(1.0));
         surface.edge /= seen;
@@ -875,7 +898,7 @@ struct lists_FragmentSum {
     weight: f32
 }
 
-fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, change: vec2f, surface: ptr<function, occluders_Occluder>, sum: ptr<function, lists_FragmentSum>) {
+fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, change: vec2f, own_opacity: f32, surface: ptr<function, occluders_Occluder>, sum: ptr<function, lists_FragmentSum>) {
     if (*corner).z_m > limit {
         return;
     }
@@ -896,6 +919,7 @@ fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, chan
             break if !((*corner).z_m <= limit) | (place >= end);
         }
     }
+    opacity = max(opacity - own_opacity, vec3f(0.0)) / max(1.0 - own_opacity, 1e-6);
     (*surface).opacity += weight * opacity;
     (*surface).edge += change * fragments_largest(opacity);
 }
@@ -1109,6 +1133,32 @@ fn receiver_plane_plane_z_at(plane: space_ReceiverPlane, rung: settings_MultiLay
     return vec4f(space_z_of_depth(map_light_view, depth.x), space_z_of_depth(map_light_view, depth.y), space_z_of_depth(map_light_view, depth.z), space_z_of_depth(map_light_view, depth.w));
 }
 
+struct receiver_plane_OwnSurface {
+    nearest: vec4f,
+    range: f32,
+    weight: f32
+}
+
+fn receiver_plane_own_surface_at(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, texel: vec2f) -> receiver_plane_OwnSurface {
+    let uv_step = rung.spacing / map_light_view.map_size;
+    let step = plane.depth_per_uv * uv_step;
+    let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
+    let center = map_light_view.depth_sign * (near + vec4f(0.0, step.x, step.y, step.x + step.y));
+    let per_texel = dot(abs(plane.depth_per_uv), 1.0 / map_light_view.map_size);
+    let texels = sqrt(rung.merged * rung.merged + 1.0);
+    return receiver_plane_OwnSurface(center + 0.5 * (texels + 1.0) * per_texel, texels * per_texel, select(0.0, lookup.nearness_to_plane, rung.merged > 0.0));
+}
+
+fn receiver_plane_own_opacity(own: receiver_plane_OwnSurface, z_m: f32) -> vec4f {
+    if !(own.weight * own.range > 0.0) {
+        return vec4f(0.0);
+    }
+    let bias = settings_multi_layer.bias_texels * map_light_view.texel_in_plane;
+    let surface_m = select(z_m - bias, z_m / (1.0 + bias), map_light_view.perspective == 1u);
+    let depth = map_light_view.depth_sign * space_depth_of_z(map_light_view, surface_m);
+    return own.weight * saturate((own.nearest - depth) / own.range);
+}
+
 fn receiver_plane_place_of(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, part: u32) -> vec2f {
     var shift = vec2f();
     if settings_LIGHT_PARTS > 1u {
@@ -1132,8 +1182,8 @@ struct settings_MultiLayerRung {
     reach: f32,
     square_shift: u32,
     square_first: u32,
-    padding_0: u32,
-    padding_1: u32
+    merged: f32,
+    padding_0: u32
 }
 
 struct settings_MultiLayerLadder {
@@ -1144,7 +1194,7 @@ struct settings_MultiLayerUniform {
     rung_count: u32,
     filter_per_g: f32,
     footprint_px: f32,
-    padding_0: u32
+    bias_texels: f32
 }
 
 @group(1) @binding(1)

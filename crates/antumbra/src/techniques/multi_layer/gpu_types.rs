@@ -48,8 +48,8 @@ gpu_structs! {
         reach: f32,
         square_shift: u32,
         square_first: u32,
+        merged: f32,
         padding_0: u32,
-        padding_1: u32,
     }
 
     /// What `resolve.wesl` looks up, from the receiver towards the light.
@@ -62,6 +62,6 @@ gpu_structs! {
         rung_count: u32,
         filter_per_g: f32,
         footprint_px: f32,
-        padding_0: u32,
+        bias_texels: f32,
     }
 }

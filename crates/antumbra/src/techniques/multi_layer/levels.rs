@@ -18,6 +18,8 @@ pub(crate) struct Level {
     pub(crate) offset: f32,
     /// Side of the box that blurs as much as the level's bilinear lookup, in texels of the base.
     pub(crate) width: f32,
+    /// Side of the box that is spread as the texels which a list merges, in texels of the base: 0 of one.
+    pub(crate) merged: f32,
     /// How often its kernel has doubled.
     pub(crate) octave: f32,
     /// The level that it merges.
@@ -110,14 +112,16 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
         } else {
             Some(Step { stride: 1, near: -half, far: half, subsample: false })
         };
-        let subsampled = subsampled_steps.min(i);
+        let merged_squared = |kernel_squared: f32| kernel_squared - 4f32.powi(subsampled_steps.min(i) as i32);
+        let whole = merged_squared((kernel as f32).powi(2));
         let level = Level {
             first: 0,
             size,
             spacing: spacing as f32,
             offset: if is_stacked { 0.0 } else { 0.5 },
             octave: i as f32,
-            width: effective_width((kernel as f32).powi(2), spacing, subsampled, samples),
+            width: effective_width(whole, spacing, samples),
+            merged: whole.sqrt(),
             source,
             step,
             z_limit_m: f32::MAX,
@@ -130,23 +134,26 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
             let (near, far, size, offset) =
                 if fourth == 0 { (-1, 0, size + 1, -0.5) } else { (-fourth, fourth, size, 0.0) };
             // Two places ¼ kernel from the middle have the variance of a square of √¾ kernels.
-            let squared = 1.75 * (kernel as f32).powi(2);
-            let width = effective_width(squared, spacing, subsampled, samples);
+            let squared = merged_squared(1.75 * (kernel as f32).powi(2));
+            let width = effective_width(squared, spacing, samples);
             let step = Some(Step { stride: 1, near, far, subsample: false });
-            push(&mut levels, Level { size, offset, octave: i as f32 + 0.5, width, source, step, ..level });
+            push(
+                &mut levels,
+                Level { size, offset, octave: i as f32 + 0.5, width, merged: squared.sqrt(), source, step, ..level },
+            );
         }
     }
     levels
 }
 
-/// A kernel that blurs as a square of `kernel_squared` texels, `2^subsampled_steps` apart, has the variance of their
-/// places, (kernel² − 4^steps) / 12, and that of the samples in a texel; looking it up bilinearly between texels `spacing`
-/// apart adds a tent's, spacing² / 6. A box has width² / 12.
-fn effective_width(kernel_squared: f32, spacing: u32, subsampled_steps: u32, samples: u32) -> f32 {
+/// A kernel that blurs as a square of so many texels, `2^subsampled_steps` apart, has the variance of their places,
+/// (kernel² − 4^steps) / 12 = `merged_squared` / 12, and that of the samples in a texel; looking it up bilinearly between texels
+/// `spacing` apart adds a tent's, spacing² / 6. A box has width² / 12.
+fn effective_width(merged_squared: f32, spacing: u32, samples: u32) -> f32 {
     let spacing = spacing as f32;
     // Four samples lie at ±1/8 and ±3/8 along either axis.
     let in_texel = if samples > 1 { 12.0 * 5.0 / 64.0 } else { 0.0 };
-    (kernel_squared - 4f32.powi(subsampled_steps as i32) + in_texel + 2.0 * spacing * spacing).sqrt()
+    (merged_squared + in_texel + 2.0 * spacing * spacing).sqrt()
 }
 
 /// What depths receivers and occluders may have, and what filter lies between.

@@ -180,7 +180,7 @@ impl<'a> FramePlan<'a> {
             rung_count: rungs.len() as u32,
             filter_per_g: self.filter_per_g,
             footprint_px: self.params.footprint,
-            ..MultiLayerUniform::default()
+            bias_texels: BIAS_TEXELS * self.params.bias_scale,
         };
         let squared = |i: Option<usize>| i.and_then(|i| rungs.get(i)).map_or(-1.0, |rung| rung.filter * rung.filter);
         let mut ladder = MultiLayerLadder::default();
@@ -194,6 +194,7 @@ impl<'a> FramePlan<'a> {
                 spacing: level.spacing,
                 offset: level.offset,
                 width: level.width,
+                merged: level.merged,
                 epsilon_slope: epsilon.slope,
                 epsilon_m: epsilon.m,
                 squared: squared(Some(i)),

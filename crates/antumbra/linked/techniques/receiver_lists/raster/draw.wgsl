@@ -191,13 +191,16 @@ fn inputs_snapped_at_w(snapped_px: f32, w: f32) -> f32 {
 
 const inputs_OFFSET_SNAPS = 1.5;
 
+fn inputs_camera_ray(pos_in_world: vec3f) -> vec3f {
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    return select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+}
+
 fn inputs_depth_error_m(pos_in_world: vec3f) -> vec3f {
     if inputs_are_points() {
         return vec3f();
     }
-    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
-    let along = select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
-    return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, along);
+    return depth_error_displacement_by_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, pos_in_world, inputs_camera_ray(pos_in_world));
 }
 
 fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
@@ -224,13 +227,13 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     else {
         normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
     }
-    let to_eye = inputs_receiver_view.eye_in_world - pos_in_world;
+    let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
     if !(length_squared > 0.0) {
-        return normalize(to_eye);
+        return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);
-    return select(-normal, normal, dot(normal, to_eye) >= 0.0);
+    return select(-normal, normal, dot(normal, to_camera) >= 0.0);
 }
 
 fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
