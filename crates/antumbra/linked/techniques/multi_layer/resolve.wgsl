@@ -95,7 +95,9 @@ fn occluded_share(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> vec
         }
         else {
             so_far = occluders_accumulated(so_far, finer, shares.finer);
+            so_far.opacity = settings_channels(so_far.opacity);
             finer = shares.coarser;
+            finer.occluder.opacity = settings_channels(finer.occluder.opacity);
         }
         before = rung;
         let is_umbra = all(so_far.opacity >= vec3f(OPAQUE));
@@ -103,7 +105,7 @@ fn occluded_share(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> vec
         left = select(left, vec4u(rest), occupied_PARTS == vec4u(part));
         if rest == 0u {
             so_far = occluders_accumulated(so_far, finer, occluders_NO_SHARE);
-            sum += saturate(so_far.opacity);
+            sum = settings_channels(sum + saturate(so_far.opacity));
             so_far = occluders_NOTHING;
             finer = occluders_NO_SHARE;
         }
@@ -716,14 +718,17 @@ fn filter_size_place_towards_finer(lookup: filter_size_Lookup, rung: settings_Mu
     return filter_size_place_between(lookup, rung.squared_finer, rung.squared, z_m);
 }
 
+fn level_without(opacity: vec3f, own_opacity: f32) -> vec3f {
+    return max(opacity - own_opacity, vec3f(0.0)) / max(1.0 - own_opacity, 1e-6);
+}
+
 fn level_level_shares(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, part: u32) -> occluders_LevelShares {
     var shares = occluders_LevelShares(occluders_NO_SHARE, occluders_NO_SHARE);
     let hat = filter_size_hat_of(lookup, rung);
     let pos = receiver_plane_place_of(lookup, plane, rung, part);
     let base = floor(pos);
     let quad = lists_quad_at(rung, vec2i(base));
-    let z_plane = receiver_plane_plane_z_at(plane, rung, base);
-    let z_end = min(vec4f(hat.z_far + rung.epsilon_slope * hat.z_far + rung.epsilon_m), min(quad.z_end, z_plane));
+    let z_end = min(vec4f(hat.z_far + rung.epsilon_slope * hat.z_far + rung.epsilon_m), min(quad.z_end, receiver_plane_plane_z_at(plane, rung, base)));
     let place = lists_first_beyond(quad, hat.z_near).place;
     var a = lists_corner_at(place.x, quad.end.x, z_end.x);
     var b = lists_corner_at(place.y, quad.end.y, z_end.y);
@@ -731,29 +736,23 @@ fn level_level_shares(lookup: filter_size_Lookup, plane: space_ReceiverPlane, ru
     var d = lists_corner_at(place.w, quad.end.w, z_end.w);
     let t = pos - base;
     let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
-    let widths = rung.width / rung.spacing;
-    let change_x = vec4f(t.y - 1.0, 1.0 - t.y, -t.y, t.y) * widths;
-    let change_y = vec4f(t.x - 1.0, -t.x, 1.0 - t.x, t.x) * widths;
     var nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
     if !(nearest < hat.z_far) {
         return shares;
     }
     let most = min(dot(quad.end - quad.first, vec4u(1u)), arrayLength(&lists_fragments));
-    let own = receiver_plane_own_surface_at(lookup, plane, rung, base);
-    var own_before = vec4f(0.0);
+    var before = map_light_view.near_m;
     var surfaces = 0u;
     loop {
         let limit = nearest + abs(rung.epsilon_slope * nearest) + rung.epsilon_m;
-        var surface = occluders_Occluder(vec3f(), vec2f());
         var sum = lists_FragmentSum(0.0, 0.0, 0.0);
-        let own_within = receiver_plane_own_opacity(own, limit);
-        let own_share = own_within - own_before;
-        own_before = own_within;
-        lists_take(&a, limit, weight.x, vec2f(change_x.x, change_y.x), own_share.x, &surface, &sum);
-        lists_take(&b, limit, weight.y, vec2f(change_x.y, change_y.y), own_share.y, &surface, &sum);
-        lists_take(&c, limit, weight.z, vec2f(change_x.z, change_y.z), own_share.z, &surface, &sum);
-        lists_take(&d, limit, weight.w, vec2f(change_x.w, change_y.w), own_share.w, &surface, &sum);
-        let seen = receiver_plane_share_in_front(lookup, weight, z_plane, nearest);
+        let of_a = level_without(lists_take(&a, limit, weight.x, &sum), receiver_plane_own_opacity(lookup, plane, rung, base, before, limit));
+        let of_b = level_without(lists_take(&b, limit, weight.y, &sum), receiver_plane_own_opacity(lookup, plane, rung, base + vec2f(1.0, 0.0), before, limit));
+        let of_c = level_without(lists_take(&c, limit, weight.z, &sum), receiver_plane_own_opacity(lookup, plane, rung, base + vec2f(0.0, 1.0), before, limit));
+        let of_d = level_without(lists_take(&d, limit, weight.w, &sum), receiver_plane_own_opacity(lookup, plane, rung, base + 1.0, before, limit));
+        var surface = lists_between_lists(of_a, of_b, of_c, of_d, t, rung.width / rung.spacing);
+        before = limit;
+        let seen = receiver_plane_share_in_front(lookup, weight, z_end, nearest);
         surface.opacity = min(surface.opacity / seen, vec3f(1.0));
         surface.edge /= seen;
         let mean = select(vec2f(nearest, 1.0), vec2f(sum.z, sum.overlap) / max(sum.weight, 1e-20), sum.weight > 1e-6);
@@ -898,17 +897,17 @@ struct lists_FragmentSum {
     weight: f32
 }
 
-fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, change: vec2f, own_opacity: f32, surface: ptr<function, occluders_Occluder>, sum: ptr<function, lists_FragmentSum>) {
-    if (*corner).z_m > limit {
-        return;
-    }
+fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, sum: ptr<function, lists_FragmentSum>) -> vec3f {
     var opacity = vec3f();
+    if (*corner).z_m > limit {
+        return opacity;
+    }
     let end = min((*corner).end, arrayLength(&lists_fragments));
     var place = (*corner).place;
     loop {
         let a = fragments_unpack_opacity((*corner).opacity_bits, settings_COLORED);
         let overlap = lists_overlap_of((*corner).opacity_bits);
-        opacity = fragments_accumulate(settings_LIST_ACCUMULATION, opacity, a, overlap);
+        opacity = settings_channels(fragments_accumulate(settings_LIST_ACCUMULATION, opacity, a, overlap));
         let strength = weight * fragments_largest(a);
         (*sum).z += strength * (*corner).z_m;
         (*sum).overlap += strength * overlap;
@@ -919,9 +918,13 @@ fn lists_take(corner: ptr<function, lists_Corner>, limit: f32, weight: f32, chan
             break if !((*corner).z_m <= limit) | (place >= end);
         }
     }
-    opacity = max(opacity - own_opacity, vec3f(0.0)) / max(1.0 - own_opacity, 1e-6);
-    (*surface).opacity += weight * opacity;
-    (*surface).edge += change * fragments_largest(opacity);
+    return opacity;
+}
+
+fn lists_between_lists(a: vec3f, b: vec3f, c: vec3f, d: vec3f, t: vec2f, width_in_lists: f32) -> occluders_Occluder {
+    let most = vec4f(fragments_largest(a), fragments_largest(b), fragments_largest(c), fragments_largest(d));
+    let change = vec2f(mix(most.y - most.x, most.w - most.z, t.y), mix(most.z - most.x, most.w - most.y, t.x));
+    return occluders_Occluder(mix(mix(a, b, t.x), mix(c, d, t.x), t.y), width_in_lists * change);
 }
 
 struct occluders_Occluder {
@@ -952,7 +955,7 @@ fn occluders_combined(a: occluders_Occluder, b: occluders_Occluder, overlap: f32
     let random_edge = a.edge * (1.0 - fragments_largest(b.opacity)) + b.edge * (1.0 - fragments_largest(a.opacity));
     let larger = select(b.edge, a.edge, fragments_largest(a.opacity) > fragments_largest(b.opacity));
     let extreme_edge = select(a.edge + b.edge, larger, related > 0.0);
-    return occluders_Occluder(a.opacity + b.opacity - both, mix(random_edge, extreme_edge, abs(related)));
+    return occluders_Occluder(settings_channels(a.opacity + b.opacity - both), mix(random_edge, extreme_edge, abs(related)));
 }
 
 fn occluders_combined_in_level(nearer: occluders_Occluder, farther: occluders_Occluder, overlap: f32) -> occluders_Occluder {
@@ -960,7 +963,7 @@ fn occluders_combined_in_level(nearer: occluders_Occluder, farther: occluders_Oc
         return occluders_combined(nearer, farther, overlap);
     }
     let opacity = fragments_accumulate(settings_LIST_ACCUMULATION, nearer.opacity, farther.opacity, overlap);
-    return occluders_Occluder(opacity, nearer.edge + farther.edge);
+    return occluders_Occluder(settings_channels(opacity), nearer.edge + farther.edge);
 }
 
 fn occluders_add_surface(share: occluders_Share, surface: occluders_Occluder, overlap: f32, place: f32) -> occluders_Share {
@@ -1111,8 +1114,8 @@ const receiver_plane_OTHER_SURFACE_TEXELS = 4.0;
 
 const receiver_plane_LEAST_IN_FRONT = 0.1;
 
-fn receiver_plane_share_in_front(lookup: filter_size_Lookup, weight: vec4f, z_plane: vec4f, z_m: f32) -> f32 {
-    let is_in_front = vec4f(z_m) < z_plane;
+fn receiver_plane_share_in_front(lookup: filter_size_Lookup, weight: vec4f, z_end: vec4f, z_m: f32) -> f32 {
+    let is_in_front = vec4f(z_m) < z_end;
     if !settings_HAS_PLANES || all(is_in_front) {
         return 1.0;
     }
@@ -1133,30 +1136,25 @@ fn receiver_plane_plane_z_at(plane: space_ReceiverPlane, rung: settings_MultiLay
     return vec4f(space_z_of_depth(map_light_view, depth.x), space_z_of_depth(map_light_view, depth.y), space_z_of_depth(map_light_view, depth.z), space_z_of_depth(map_light_view, depth.w));
 }
 
-struct receiver_plane_OwnSurface {
-    nearest: vec4f,
-    range: f32,
-    weight: f32
-}
-
-fn receiver_plane_own_surface_at(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, texel: vec2f) -> receiver_plane_OwnSurface {
-    let uv_step = rung.spacing / map_light_view.map_size;
-    let step = plane.depth_per_uv * uv_step;
-    let near = plane.depth + dot(plane.depth_per_uv, (texel + rung.offset) * uv_step - plane.uv);
-    let center = map_light_view.depth_sign * (near + vec4f(0.0, step.x, step.y, step.x + step.y));
+fn receiver_plane_own_opacity(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, texel: vec2f, from_m: f32, to_m: f32) -> f32 {
+    if !(lookup.nearness_to_plane * rung.merged > 0.0) {
+        return 0.0;
+    }
+    let place = (texel + rung.offset) * rung.spacing / map_light_view.map_size;
+    let middle = map_light_view.depth_sign * (plane.depth + dot(plane.depth_per_uv, place - plane.uv));
     let per_texel = dot(abs(plane.depth_per_uv), 1.0 / map_light_view.map_size);
     let texels = sqrt(rung.merged * rung.merged + 1.0);
-    return receiver_plane_OwnSurface(center + 0.5 * (texels + 1.0) * per_texel, texels * per_texel, select(0.0, lookup.nearness_to_plane, rung.merged > 0.0));
+    let nearest = middle + 0.5 * (texels + 1.0) * per_texel;
+    let range = max(texels * per_texel, 1e-20);
+    let before = saturate((nearest - receiver_plane_own_depth(from_m)) / range);
+    let within = saturate((nearest - receiver_plane_own_depth(to_m)) / range);
+    return lookup.nearness_to_plane * (within - before);
 }
 
-fn receiver_plane_own_opacity(own: receiver_plane_OwnSurface, z_m: f32) -> vec4f {
-    if !(own.weight * own.range > 0.0) {
-        return vec4f(0.0);
-    }
+fn receiver_plane_own_depth(fragment_m: f32) -> f32 {
     let bias = settings_multi_layer.bias_texels * map_light_view.texel_in_plane;
-    let surface_m = select(z_m - bias, z_m / (1.0 + bias), map_light_view.perspective == 1u);
-    let depth = map_light_view.depth_sign * space_depth_of_z(map_light_view, surface_m);
-    return own.weight * saturate((own.nearest - depth) / own.range);
+    let z_m = select(fragment_m - bias, fragment_m / (1.0 + bias), map_light_view.perspective == 1u);
+    return map_light_view.depth_sign * space_depth_of_z(map_light_view, z_m);
 }
 
 fn receiver_plane_place_of(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, part: u32) -> vec2f {
@@ -1220,6 +1218,10 @@ override settings_LISTS_APART: u32 = 0u;
 override settings_HAS_PLANES: bool = true;
 
 override settings_SHOWS_LEVELS: bool = false;
+
+fn settings_channels(opacity: vec3f) -> vec3f {
+    return select(opacity, opacity.xxx, settings_COLORED == 0u);
+}
 
 const settings_CORRELATED = 0u;
 
