@@ -44,6 +44,13 @@ macro_rules! params_in_full {
                 more "true evaluates down to a quarter of the pixels; shadows of things a pixel wide blur.";
         ] $rest $($body)* }
     };
+    ($head:tt [$($done:tt)*] $rest:tt shared edge_goes_on; $($body:tt)*) => {
+        $crate::contract::params_in_full! { $head [ $($done)*
+            /// Whether what the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.
+            edge_goes_on: bool = true,
+                more "false is as published: light passes beside the map where a cover is nearer to the light than the light is large.";
+        ] $rest $($body)* }
+    };
     ($head:tt [$($done:tt)*] $rest:tt shared seed; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Seed of the sample points.

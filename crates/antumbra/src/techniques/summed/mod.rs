@@ -33,8 +33,8 @@
 //! `mssm` loses on `columns`.
 //!
 //! # Covers
-//! Casters nearer to the light than it is large hide its rim where they lie beyond any window of the map. Under `essm` what the map shows at
-//! its edge goes on there, as in `pcss` (`edge_goes_on`): a piece beyond the map is answered by a texel's width along the edge, where the
+//! Casters nearer to the light than it is large hide its rim where they lie beyond any window of the map. What the map shows at its edge
+//! goes on there, as in `pcss` (`edge_goes_on`): a piece beyond the map is answered by a texel's width along the edge, where the
 //! blockers that are asked for are nearer than the map holds them, and so is what is found there; for lights that a caster comes within the
 //! radius of. A sheet 1 cm before a panel of 60 cm, `cover_0.01`: .99 without and .00 with it.
 //!

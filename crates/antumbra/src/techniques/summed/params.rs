@@ -33,6 +33,7 @@ macro_rules! shared_settings {
             search_scales: $params.search_scales,
             second_look: $params.second_look,
             bleeding_reduction: $params.bleeding_reduction,
+            edge_goes_on: $params.edge_goes_on,
             is_sparse: $params.sub,
             ..$crate::techniques::summed::SoftSettings::default()
         }
@@ -63,6 +64,7 @@ macro_rules! table_params {
                 /// Visibility up to this is taken for none, and the rest is stretched.
                 bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
                     more "Less light bleeding, and thinner penumbrae.";
+                shared edge_goes_on;
                 shared sub;
                 shared bias_scale;
             }

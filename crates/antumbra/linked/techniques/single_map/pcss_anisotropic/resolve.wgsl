@@ -27,7 +27,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     for (var i = 0u; i < settings_pcss.filter_count; i++) {
         let u = fract(light_taps_taps[settings_pcss.search_count + i].xy + shift);
         let place = select(2.0 * u - 1.0, light_disk_from_square(u), kernel.is_ellipse) * kernel.half_size;
-        lit += map_lit_bilinear(plane, (center + vec2f(place.x + kernel.shear * place.y, place.y)) / map_light_view.map_size);
+        let at = center + vec2f(place.x + kernel.shear * place.y, place.y);
+        lit += map_lit_bilinear(plane, map_receiver_place_in_map(window.at, at, mean_g) / map_light_view.map_size);
     }
     return above * lit / f32(settings_pcss.filter_count);
 }

@@ -982,6 +982,8 @@ const answer_CUT_ONCE = 1u;
 
 const answer_CUT_ALL_ROUND = 2u;
 
+const answer_FARTHEST_ROUNDING = 0.05;
+
 struct answer_Answer {
     lit: f32,
     blocker_g: f32,
@@ -1102,6 +1104,7 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
     let spread = t_step * (summed.high - summed.low);
     let quantum = 1.0 / uniform_soft.value_scale;
     let least_variance = dot(spread, spread) / 12.0 + variance_minimum_variance(t_step, quantum);
+    let most_lit = select(1.0, 0.0, depth_range_t_of_z(compared.range, compared.z_m) > 1.0 + answer_FARTHEST_ROUNDING);
     var lit = 1.0;
     var blocker_t = t;
     var is_good = true;
@@ -1109,7 +1112,7 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
         case uniform_BASIS_VARIANCE {
             let held = saturate(t);
             is_good = mean.x < held;
-            lit = variance_variance_visibility(mean.xy, held, least_variance);
+            lit = min(variance_variance_visibility(mean.xy, held, least_variance), most_lit);
             blocker_t = variance_mean_blocker_depth(mean.x, held, lit);
         }
         case uniform_BASIS_EXPONENTIAL_VARIANCE {
@@ -1117,21 +1120,21 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
             let scale = exp(c);
             let moments = mean * vec4f(scale.x, scale.x * scale.x, -scale.y, scale.y * scale.y);
             let held = saturate(t);
-            lit = exponential_variance_exponential_variance_visibility_4(moments, held, c, least_variance);
+            lit = min(exponential_variance_exponential_variance_visibility_4(moments, held, c, least_variance), most_lit);
             blocker_t = exponential_variance_exponential_variance_blocker_depth(moments, held, c, lit);
         }
         case uniform_BASIS_MOMENT {
             let moments = moment_bias_moments(moment_dequantize_moments(mean), answer_MOMENT_BIAS);
             let held = saturate(t - 1.5 * sqrt(least_variance));
             let blocked = moment_hamburger(moments, 2.0 * held - 1.0);
-            lit = 1.0 - blocked.share;
+            lit = min(1.0 - blocked.share, most_lit);
             blocker_t = moment_moment_blocker_depth(blocked, held);
         }
         case default {
             let held = saturate(t - convolution_convolution_offset(answer_TERM_COUNT));
             let further = array<vec4f, 4>(answer_sum_of(1u, texels, cuts) / max(count, 1e-6), answer_sum_of(2u, texels, cuts) / max(count, 1e-6), answer_sum_of(3u, texels, cuts) / max(count, 1e-6), answer_sum_of(4u, texels, cuts) / max(count, 1e-6));
             let terms = answer_convolution_sum(2.0 * mean - 1.0, 2.0 * further[0] - 1.0, held);
-            lit = convolution_convolution_visibility(terms);
+            lit = min(convolution_convolution_visibility(terms), most_lit);
             let terms_t = answer_convolution_sum(2.0 * further[1] - 1.0, 2.0 * further[2] - 1.0, held);
             blocker_t = convolution_convolution_blocker_depth(further[3].x, terms_t, held, lit);
         }

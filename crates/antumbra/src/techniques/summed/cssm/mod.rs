@@ -21,6 +21,7 @@ table_params! {
     pub struct CssmParams: "cssm" of Convolution, subdivisions = 1, search_scales = 3, second_look = false;
         => Paper {
             table: TableSums::Float, ours "32-bit integers, whose differences are exact.";
+            edge_goes_on: false, ours "What the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.";
         } kept {
             "Blockers are searched at several scales, and count where they hide a point of the light; the paper has one window.",
             "Summed-area tables of four terms, and no mip-maps.",

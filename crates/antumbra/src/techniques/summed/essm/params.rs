@@ -112,9 +112,7 @@ params! {
         /// Whether the light's part below the receiver's own plane counts as hidden.
         horizon: bool = true,
             more "false is the paper's: receivers that the light grazes are as bright as those that face it.";
-        /// Whether what the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.
-        edge_goes_on: bool = true,
-            more "false is the paper's: light passes beside the map where a cover is nearer to the light than the light is large.";
+        shared edge_goes_on;
         /// How a kernel's rows are cut.
         cuts: EssmCuts = EssmCuts::Columns,
             more "squares is the paper's: as many times more parts as there are rows in a kernel's height for each part.";

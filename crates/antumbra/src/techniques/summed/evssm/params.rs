@@ -37,6 +37,7 @@ params! {
         /// Visibility up to this is taken for none, and the rest is stretched.
         bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
             more "Less light bleeding, and thinner penumbrae.";
+        shared edge_goes_on;
         shared sub;
         shared bias_scale;
     }

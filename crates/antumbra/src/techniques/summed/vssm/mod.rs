@@ -22,6 +22,7 @@ table_params! {
     pub struct VssmParams: "vssm" of Variance, subdivisions = 5, search_scales = 3, second_look = true;
         => Paper {
             table: TableSums::Float, ours "32-bit integers, whose differences are exact.";
+            edge_goes_on: false, ours "What the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.";
             second_look: false, ours "Blockers are searched once more about their mean.";
         } kept {
             "Blockers are searched at several scales, and count where they hide a point of the light; the paper has one window.",
