@@ -124,19 +124,17 @@ fn every_light_is_taken() {
                 assert!(NOT_JUDGED.contains(name), "{name}: no pixel is judged");
                 continue;
             };
-            let usual =
-                if (kind, *name) == CSSM_AT_A_FACE_S_EDGE.0 { CSSM_AT_A_FACE_S_EDGE.1 } else { usual_bound(kind) };
-            let bound = ODD_LIGHTS.iter().find(|(odd, _)| odd == name).map_or(usual, |(_, bound)| *bound);
+            let odd = ODD_LIGHTS.iter().find(|(odd, _)| odd == name).map_or(usual_bound(kind), |(_, bound)| *bound);
+            let bound = if (kind, *name) == CSSM_AT_AN_EDGE.0 { CSSM_AT_AN_EDGE.1 } else { odd };
             println!("{kind}, {name}: rmse {rmse:.3}");
             assert!(rmse <= bound, "{kind}, {name}: rmse {rmse} against {bound}");
         }
     }
 }
 
-/// The plank ends beyond a cube face's map, whose edge goes on there as it does under covers (`edge_goes_on`): four terms take the plank for
-/// nearer to the lamp than it is, and .236 becomes .252. Without that, `cssm` has .99 under a cover.
-const CSSM_AT_A_FACE_S_EDGE: ((TechniqueKind, &str), f32) =
-    ((TechniqueKind::Cssm, "sphere in the casters' bounds"), 0.26);
+/// A blocker ends beyond a cube face's map, whose edge goes on there as it does under covers (`edge_goes_on`): four terms take it for
+/// nearer to the lamp than it is. At 160 × 90 and 1024² that is .200 for .184; without it `cssm` has .99 under a cover.
+const CSSM_AT_AN_EDGE: ((TechniqueKind, &str), f32) = ((TechniqueKind::Cssm, "sphere in the casters' bounds"), 0.26);
 
 /// Lights that no judged pixel of the picture faces.
 const NOT_JUDGED: [&str; 3] = ["in the ground's plane", "sun along the ground", "away from the scene"];
