@@ -1,4 +1,4 @@
-//! Every command without its optional parts, with each of them alone, and with all of them: it works, and never panics.
+//! Every command without its optional parts, and with all of them; in the long tier with each of them alone: it works, and never panics.
 //!
 //! What is optional the commands' own help says: an option that is declared and not walked here fails the test. Pictures are of some
 //! pixels, and truths of a light point or two.
@@ -172,7 +172,13 @@ const SETUP: &str = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n
 /// A test for each command, and one that none is left out.
 macro_rules! commands {
     ($( $test:ident = $command:literal; )+) => {
-        $( #[test] fn $test() { walk($command); } )+
+        $( #[test] fn $test() { walk($command, Parts::Together); } )+
+
+        mod each_alone {
+            use super::{Parts, walk};
+
+            $( #[test] #[ignore = "long"] fn $test() { walk($command, Parts::EachAlone); } )+
+        }
 
         #[test]
         fn every_line_is_walked() {
@@ -201,21 +207,36 @@ fn is_of(walk: &Walk, command: &str) -> bool {
     walk.base == command || walk.base.starts_with(&format!("{command} "))
 }
 
+/// Which of a line's optional parts stand behind its base.
+#[derive(Clone, Copy, PartialEq)]
+enum Parts {
+    /// None, and all that go together.
+    Together,
+    /// One at a time.
+    EachAlone,
+}
+
 /// Runs a command as all of its lines say.
-fn walk(command: &str) {
+fn walk(command: &str, parts: Parts) {
     let Some(adapter) = adapter() else { return };
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("s.toml"), SETUP).unwrap();
     for walk in WALKS.iter().filter(|walk| is_of(walk, command)) {
-        let mut lines = vec![walk.base.to_owned()];
         let with = |part: &str| {
             // The light that is named is the setup's.
             let setup = if part.starts_with("--light") { " --setup s.toml" } else { "" };
             format!("{} {part}{setup}", walk.base)
         };
-        lines.extend(walk.parts.iter().chain(walk.alone).map(|part| with(part)));
-        if walk.parts.len() > 1 {
-            lines.push(format!("{} {}", walk.base, walk.parts.join(" ")));
+        // What goes with no others has no other line; and what the others stand on comes first.
+        let mut lines = vec![walk.base.to_owned()];
+        match parts {
+            Parts::Together => {
+                lines.extend(walk.alone.iter().map(|part| with(part)));
+                if !walk.parts.is_empty() {
+                    lines.push(format!("{} {}", walk.base, walk.parts.join(" ")));
+                }
+            }
+            Parts::EachAlone => lines.extend(walk.parts.iter().map(|part| with(part))),
         }
         for line in lines {
             let began = Instant::now();
