@@ -18,11 +18,15 @@ fn lights() -> [Light; 3] {
     ]
 }
 
-/// Two sizes of map and view: the technique's own, and a small one.
-fn sizes(kind: TechniqueKind) -> [(UVec2, Vec<(&'static str, &'static str)>); 2] {
+/// A frame's size in pixels, its mask's format, and what the technique is set to.
+type Size = (UVec2, wgpu::TextureFormat, Vec<(&'static str, &'static str)>);
+
+/// Two sizes of map and view: the technique's own, and a small one with a mask of a format that is converted.
+fn sizes(kind: TechniqueKind) -> [Size; 2] {
     let has = |key: &str| kind.param_specs().iter().any(|spec| spec.key == key);
     let small = [("map_size", "128"), ("view_size", "64"), ("samples", "8"), ("sub", "true")];
-    [(UVec2::new(96, 54), Vec::new()), (UVec2::new(40, 24), small.into_iter().filter(|(key, _)| has(key)).collect())]
+    let small = small.into_iter().filter(|(key, _)| has(key)).collect();
+    [(UVec2::new(96, 54), Mask::FORMAT, Vec::new()), (UVec2::new(40, 24), wgpu::TextureFormat::R8Unorm, small)]
 }
 
 fn shadow_of(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> AnyShadow {
@@ -46,39 +50,37 @@ fn plans_are_kept(device: &Device, kinds: &[TechniqueKind]) {
     /// Uniforms and stand-ins of one texel that reports leave out, bytes for all views that a light is split into.
     const MOST_LEFT_OUT: u64 = 128 << 10;
     for kind in kinds {
-        for (size_px, settings) in sizes(*kind) {
+        for (size_px, format, settings) in sizes(*kind) {
             for light in lights() {
                 let half_m = if light.is_distant() { 2500.0 } else { 10.0 };
                 let scene = Scene::base(half_m);
                 let picture = Picture::draw(device, &scene, &Camera { size_px, ..Camera::base() });
                 let gpu = Gpu::new(device.wgpu(), device.queue());
                 let casters = HostCasters::for_gpu(device, &gpu, &scene);
-                for format in [Mask::FORMAT, wgpu::TextureFormat::R8Unorm] {
-                    let what = format!("{kind}, {size_px}, {format:?}, {:?}", light.shape);
-                    let mask = Mask::with_format(device.wgpu(), size_px, MaskChannels::One, format);
-                    let frame =
-                        Frame { light: &light, casters: casters.all(), receivers: picture.receivers(), mask: &mask };
-                    let mut encoder = device.encoder();
+                let what = format!("{kind}, {size_px}, {format:?}, {:?}", light.shape);
+                let mask = Mask::with_format(device.wgpu(), size_px, MaskChannels::One, format);
+                let frame =
+                    Frame { light: &light, casters: casters.all(), receivers: picture.receivers(), mask: &mask };
+                let mut encoder = device.encoder();
 
-                    let before = gpu.objects_made();
-                    let plan = MemoryPlan::new(&gpu);
-                    let mut planned_shadow = shadow_of(plan.gpu(), *kind, &settings);
-                    let planned = taken(&mut planned_shadow, plan.gpu(), &frame, &mut encoder);
-                    assert_eq!(gpu.objects_made(), before, "{what}: the plan creates");
+                let before = gpu.objects_made();
+                let plan = MemoryPlan::new(&gpu);
+                let mut planned_shadow = shadow_of(plan.gpu(), *kind, &settings);
+                let planned = taken(&mut planned_shadow, plan.gpu(), &frame, &mut encoder);
+                assert_eq!(gpu.objects_made(), before, "{what}: the plan creates");
 
-                    let mut shadow = shadow_of(&gpu, *kind, &settings);
-                    let real = taken(&mut shadow, &gpu, &frame, &mut encoder);
-                    device.queue().submit([encoder.finish()]);
-                    device.wait();
-                    assert_eq!(planned, real, "{what}");
+                let mut shadow = shadow_of(&gpu, *kind, &settings);
+                let real = taken(&mut shadow, &gpu, &frame, &mut encoder);
+                device.queue().submit([encoder.finish()]);
+                device.wait();
+                assert_eq!(planned, real, "{what}");
 
-                    let allocated: u64 = plan.resources().iter().map(|resource| resource.bytes).sum();
-                    let reported = planned.0 + planned.1.shared;
-                    println!("{what}: {} bytes retained, {} shared, {allocated} in all", planned.0, planned.1.shared);
-                    assert!(reported > 0 && reported <= allocated, "{what}: {reported} of {allocated}");
-                    let left_out = allocated - reported;
-                    assert!(left_out <= MOST_LEFT_OUT, "{what}: {left_out}: {:?}", plan.resources());
-                }
+                let allocated: u64 = plan.resources().iter().map(|resource| resource.bytes).sum();
+                let reported = planned.0 + planned.1.shared;
+                println!("{what}: {} bytes retained, {} shared, {allocated} in all", planned.0, planned.1.shared);
+                assert!(reported > 0 && reported <= allocated, "{what}: {reported} of {allocated}");
+                let left_out = allocated - reported;
+                assert!(left_out <= MOST_LEFT_OUT, "{what}: {left_out}: {:?}", plan.resources());
             }
         }
     }
