@@ -81,6 +81,10 @@ fn choice_of_form(technique: &str, form: Form) -> Result<TechniqueChoice, LabErr
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
+    use antumbra::contract::ParamValue;
+
     use super::super::exhibit::error;
     use super::super::papers::PAPERS;
     use super::*;
@@ -108,6 +112,36 @@ mod tests {
             for technique in paper.own {
                 let kind = TechniqueKind::from_name(technique).unwrap();
                 assert!(kind.printed().is_some(), "{}: {technique} has no preset `paper`", paper.id);
+            }
+        }
+    }
+
+    /// The parameters that a row runs with: of the preset, then its own.
+    fn parameters(row: &Row, form: Form) -> BTreeMap<&'static str, ParamValue> {
+        let TechniqueChoice { kind, quality, settings, .. } = row.choice(form).unwrap();
+        let mut values: BTreeMap<_, _> = kind.quality_settings(Quality::Balanced).into_iter().collect();
+        values.extend(kind.quality_settings(quality));
+        values.extend(
+            settings.iter().map(|(key, value)| kind.read(key, value).unwrap()).map(|(spec, value)| (spec.key, value)),
+        );
+        values
+    }
+
+    /// Two rows of an exhibit differ in one form at least: a preset that sets what a row takes for a default would make them one.
+    #[test]
+    fn rows_with_two_names_run_two_things() {
+        for paper in &PAPERS {
+            for exhibit in paper.exhibits {
+                let rows: Vec<&Row> = exhibit.rows.iter().filter(|row| !row.technique.is_empty()).collect();
+                for (i, a) in rows.iter().enumerate() {
+                    for b in &rows[..i] {
+                        let renamed = Row { what: a.what, settings: a.settings, ours: a.ours, ..**b };
+                        let are_alike = |form: &Form| parameters(a, *form) == parameters(b, *form);
+                        let is_same =
+                            format!("{renamed:?}") == format!("{a:?}") && a.forms(paper).iter().all(are_alike);
+                        assert!(!is_same, "{}/{}: `{}` and `{}`", paper.id, exhibit.id, a.what, b.what);
+                    }
+                }
             }
         }
     }

@@ -13,7 +13,7 @@ const SAMPLES_256: Settings = &[("samples", "256")];
 /// (at 192 × 192 an rmse of .0137, with 16 of .0138).
 const ONE_LAYER: Settings = &[("samples", "256"), ("layers", "1"), ("patches", "16")];
 /// Outlines of a single map's texels.
-const OUTLINES: Settings = &[("squares", "64")];
+const OUTLINES: Settings = &[("occluders", "outlines"), ("squares", "64")];
 /// Equation 1, sample by sample.
 const IRRADIANCE_256: Settings = &[("samples", "256"), ("weights", "irradiance")];
 /// Section 4.3: a subset of the view-samples, and reconstruction.
