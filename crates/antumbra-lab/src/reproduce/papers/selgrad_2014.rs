@@ -179,7 +179,10 @@ pub const PAPER: Paper = Paper {
                     "by addition what stands before what is added up: where panes' bars and their glass overlap more is hidden than \
                      there is.",
                 ),
-                claim("On Sponza too.", &[Rule::AtMost(Rmse, "Sponza", 0.05)]),
+                claim("On Sponza too.", &[Rule::AtMost(Rmse, "Sponza", 0.05)]).because(
+                    "fragments are held against one depth, and walls and floors that the light grazes shade themselves: .107 with .271 of what \
+                     is lit lost. Held against the receiver's plane (`planes=true`) they have .033 and .014.",
+                ),
                 claim(
                     "ESSM does not capture distant and close occluders as well.",
                     &[Rule::RatioAtMost(Rmse, "distant and close occluders", "the same, ESSM", 1.0)],
