@@ -208,7 +208,7 @@ fn is_of(walk: &Walk, command: &str) -> bool {
 }
 
 /// Which of a line's optional parts stand behind its base.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 enum Parts {
     /// None, and all that go together.
     Together,
@@ -227,13 +227,13 @@ fn walk(command: &str, parts: Parts) {
             let setup = if part.starts_with("--light") { " --setup s.toml" } else { "" };
             format!("{} {part}{setup}", walk.base)
         };
-        // What goes with no others has no other line; and what the others stand on comes first.
+        // The base comes first: later lines may go on with what it wrote.
         let mut lines = vec![walk.base.to_owned()];
         match parts {
             Parts::Together => {
                 lines.extend(walk.alone.iter().map(|part| with(part)));
                 if !walk.parts.is_empty() {
-                    lines.push(format!("{} {}", walk.base, walk.parts.join(" ")));
+                    lines.push(with(&walk.parts.join(" ")));
                 }
             }
             Parts::EachAlone => lines.extend(walk.parts.iter().map(|part| with(part))),

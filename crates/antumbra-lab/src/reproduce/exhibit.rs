@@ -37,7 +37,7 @@ pub struct Exhibit {
 }
 
 /// One thing to run, and what the paper has for it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// What it is, in the paper's terms. No two rows of an exhibit have one name: claims speak of rows by it.
     pub what: &'static str,

@@ -16,7 +16,7 @@ const MAP_4096: Settings = &[("map_size", "4096")];
 const MAP_512: Settings = &[("map_size", "512")];
 /// Guennebaud, Barthe, Paulin 2006 and 2007; Schwarz, Stamminger 2007, of one map.
 const TEXELS_2006: Settings = &[("occluders", "patches"), ("squares", "64"), ("rotate", "false")];
-const OUTLINES_2007: Settings = &[("occluders", "outlines"), ("squares", "64"), ("rotate", "false")];
+const OUTLINES_2007: Settings = &[("occluders", "outlines"), ("squares", "64")];
 const BITS_2007: Settings = &[("samples", "256"), ("layers", "1"), ("gaps", "all")];
 /// Why images as published err.
 const R_AND_MU: &str = "R and μ exclude one another. With 20 bits the exponent that keeps every depth is 13.9, \
