@@ -20,6 +20,8 @@ shaders! {
     DENOISE_OVER_PIXELS = "frame/denoise/over_pixels";
     /// Smoothing of noisy visibility over pixels.
     SMOOTHING_SMOOTH = "frame/smoothing/smooth";
+    /// Fade of shadows that end at a distance.
+    FADE = "frame/fade/fade";
     /// Half resolution: receivers of half the size.
     HALF_RESOLUTION_PICK = "frame/half_resolution/pick";
     /// Half resolution: a mask of half the size at full size.

@@ -11,7 +11,9 @@ use std::fmt;
 
 use crate::contract::{CastersKey, Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::frame::denoise::{Denoiser, PreparedDenoise};
+use crate::frame::fade::{Fade, PreparedFade};
 use crate::frame::half_resolution::{HalfResolution, PreparedHalf};
+use crate::frame::smoothing::{PreparedSmoothing, Smoothing};
 use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
 use crate::techniques::Technique;
 
@@ -59,6 +61,8 @@ pub struct Shadow<T: Technique> {
     ends: KeptEnds,
     denoiser: Option<Denoiser>,
     half: Option<HalfResolution>,
+    smoothing: Option<Smoothing>,
+    fade: Option<Fade>,
     keep: Keep,
     functions: ShaderFunctions,
     /// What the mask holds, where the last frame was recorded and no commands were dropped.
@@ -99,6 +103,8 @@ impl<T: Technique> Shadow<T> {
             ends: KeptEnds::default(),
             denoiser: None,
             half: None,
+            smoothing: None,
+            fade: None,
             keep: Keep::default(),
             functions: ShaderFunctions::default(),
             mask: Content::default(),
@@ -208,28 +214,39 @@ impl<T: Technique> Shadow<T> {
             let denoiser = self.denoiser.get_or_insert_with(|| Denoiser::new(stage));
             denoiser.prepare(stage, [&host, &wide], settings, is_same)
         });
-        let noisy = PreparedFrame { mask: denoise.as_ref().map_or(wide.mask, |denoise| &denoise.noisy), ..wide };
+        let full = PreparedFrame { mask: denoise.as_ref().map_or(wide.mask, |denoise| &denoise.noisy), ..wide };
 
-        // Points have no neighbours to interpolate between.
-        let is_half = self.half_resolution && noisy.receivers.have_neighbours();
-        let half = is_half.then(|| self.half.get_or_insert_with(|| HalfResolution::new(stage)).prepare(stage, &noisy));
-        let of_technique = half.as_ref().map_or(noisy, |half| half.frame_of(&noisy));
+        // Points have no neighbours, to interpolate between or for means.
+        let are_neighbours = full.receivers.have_neighbours();
+        let is_half = self.half_resolution && are_neighbours;
+        let half = is_half.then(|| self.half.get_or_insert_with(|| HalfResolution::new(stage)).prepare(stage, &full));
+        let of_mask = half.as_ref().map_or(full, |half| half.frame_of(&full));
+
+        let fade = of_mask
+            .receivers
+            .shadow_distance
+            .map(|distance| self.fade.get_or_insert_with(|| Fade::new(stage)).prepare(stage, &of_mask, &distance));
+        let is_noisy = are_neighbours && T::is_noisy(&self.params, of_mask.light);
+        let smoothing =
+            is_noisy.then(|| self.smoothing.get_or_insert_with(|| Smoothing::new(stage)).prepare(stage, &of_mask));
+        let of_technique = PreparedFrame { noisy: smoothing.as_ref().map(PreparedSmoothing::noisy), ..of_mask };
 
         let light = match Parted::prepare(&mut self.parted, stage, &of_technique, meshes, &self.params)? {
             Some(parts) => LightPasses::Parts(Box::new(parts)),
             None => LightPasses::Whole(self.technique.prepare(stage, &of_technique, &self.params)?),
         };
-        Ok(Passes { casters, ends, light, half, denoise })
+        Ok(Passes { casters, ends, light, smoothing, fade, half, denoise })
     }
 
-    /// Records a frame's stages, in the order of the data: reading of points, halving of the receivers, the technique, doubling of its mask,
-    /// denoising, conversion of the mask.
+    /// Records a frame's stages, in the order of the data: reading of points, halving of the receivers, the technique, smoothing of what is
+    /// noisy, the fade, doubling of the mask, denoising, conversion of the mask.
     fn record_passes(&self, recorder: &mut Recorder<'_>, asked: &Asked<'_>, passes: Passes<'_, T::Prepared>) {
-        let Passes { casters, ends, light, half, denoise } = passes;
-        let (receivers, smooth) = ends.inner();
-        let mask = denoise.as_ref().map_or(smooth, |denoise| &denoise.noisy);
-        let noisy = prepared(asked.light(), &casters, receivers, mask);
-        let of_technique = half.as_ref().map_or(noisy, |half| half.frame_of(&noisy));
+        let Passes { casters, ends, light, smoothing, fade, half, denoise } = passes;
+        let (receivers, wide) = ends.inner();
+        let mask = denoise.as_ref().map_or(wide, |denoise| &denoise.noisy);
+        let full = prepared(asked.light(), &casters, receivers, mask);
+        let of_mask = half.as_ref().map_or(full, |half| half.frame_of(&full));
+        let of_technique = PreparedFrame { noisy: smoothing.as_ref().map(PreparedSmoothing::noisy), ..of_mask };
         ends.record_read(recorder);
         if let Some(half) = &half {
             half.record_pick(recorder);
@@ -237,9 +254,18 @@ impl<T: Technique> Shadow<T> {
         match (light, &self.parted) {
             (LightPasses::Whole(technique), _) => self.technique.record(recorder, &of_technique, &technique),
             (LightPasses::Parts(parts), Some(parted)) => {
+                if let Some(smoothing) = &smoothing {
+                    smoothing.record_dark(recorder);
+                }
                 parted.record(recorder, &of_technique, *parts);
             }
             (LightPasses::Parts(_), None) => {}
+        }
+        if let Some(smoothing) = &smoothing {
+            smoothing.record(recorder);
+        }
+        if let Some(fade) = &fade {
+            fade.record(recorder);
         }
         if let Some(half) = &half {
             half.record_upsample(recorder);
@@ -326,6 +352,10 @@ struct Passes<'a, P> {
     casters: FrameCasters<'a>,
     ends: Ends<'a>,
     light: LightPasses<'a, P>,
+    /// Where the technique's visibility is noisy.
+    smoothing: Option<PreparedSmoothing>,
+    /// Where shadows end at a distance.
+    fade: Option<PreparedFade>,
     /// Where the technique writes a mask of half the size.
     half: Option<PreparedHalf>,
     /// Where the mask is denoised.

@@ -392,7 +392,13 @@ impl Case {
     /// Hands out the case as techniques receive a frame.
     pub(crate) fn with_prepared<T>(&self, meshes: &[MeshCaster<'_>], run: impl FnOnce(&PreparedFrame<'_>) -> T) -> T {
         self.with_frame(Casters::Meshes(meshes), |&Frame { light, receivers, mask, .. }| {
-            run(&PreparedFrame { light, casters: PreparedCasters::Draws(meshes), receivers: receivers.into(), mask })
+            run(&PreparedFrame {
+                light,
+                casters: PreparedCasters::Draws(meshes),
+                receivers: receivers.into(),
+                mask,
+                noisy: None,
+            })
         })
     }
 

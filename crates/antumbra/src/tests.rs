@@ -48,6 +48,7 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         entry::<primitives::depth_basis::tests::ProbeInput>(),
         entry::<cover::pictures::JoiningGpu>(),
         entry::<cover::region::RegionGpu>(),
+        entry::<frame::fade::FadeGpu>(),
         entry::<frame::inputs::LightSource>(),
         entry::<frame::inputs::ReceiverView>(),
         entry::<frame::points::PointLayout>(),

@@ -11,14 +11,9 @@ var<storage, read> joining: JoiningGpu;
 
 struct JoiningGpu {
     is_first: u32,
-    fade_begin_m: f32,
-    fade_length_m: f32,
-    padding: u32
-}
-
-fn lit_share(distance_m: f32) -> f32 {
-    let s = saturate((distance_m - joining.fade_begin_m) / joining.fade_length_m);
-    return s * s * (3.0 - 2.0 * s);
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32
 }
 
 @compute @workgroup_size(8, 8)
@@ -27,14 +22,13 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let receiver = inputs_load_receiver(id.xy);
-    let lit = lit_share(inputs_eye_distance_m(receiver.pos_in_world));
     if !receiver.is_background && region_is_in_region(region, receiver.pos_in_world) {
         for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
-            inputs_store_mask(id.xy, layer, mix(textureLoad(part_mask, id.xy, layer, 0).x, 1.0, lit));
+            inputs_store_mask(id.xy, layer, textureLoad(part_mask, id.xy, layer, 0).x);
         }
     }
     else if joining.is_first == 1u {
-        inputs_write_visibility(id.xy, select(lit, 1.0, receiver.is_background));
+        inputs_write_visibility(id.xy, select(0.0, 1.0, receiver.is_background));
     }
 }
 
@@ -118,10 +112,6 @@ fn inputs_is_inside(pixel: vec2u) -> bool {
 
 fn inputs_are_points() -> bool {
     return inputs_receiver_view.are_points == 1u;
-}
-
-fn inputs_eye_distance_m(pos_in_world: vec3f) -> f32 {
-    return select(distance(pos_in_world, inputs_receiver_view.eye_in_world), 0.0, inputs_are_points());
 }
 
 fn inputs_depth_at(pixel: vec2u) -> f32 {

@@ -18,6 +18,9 @@ pub struct PreparedFrame<'a> {
     pub receivers: PreparedReceivers<'a>,
     /// Where visibility goes; the receivers' size.
     pub mask: &'a Mask,
+    /// Where it goes instead, with how far it may be smoothed: of techniques whose visibility [is noisy](crate::techniques::Technique::is_noisy).
+    /// They write the receivers' pixels and no others.
+    pub noisy: Option<&'a wgpu::TextureView>,
 }
 
 impl PreparedFrame<'_> {

@@ -4,7 +4,6 @@
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
-use antumbra_light::ShadowDistance;
 use glam::UVec2;
 
 use super::Part;
@@ -35,11 +34,9 @@ gpu_structs! {
     /// How a part's mask comes into the light's.
     pub(crate) struct JoiningGpu {
         is_first: u32,
-        /// From here on, metres from the eye, shadows fade.
-        fade_begin_m: f32,
-        /// Over so many metres.
-        fade_length_m: f32,
-        padding: u32,
+        padding_0: u32,
+        padding_1: u32,
+        padding_2: u32,
     }
 }
 
@@ -66,8 +63,8 @@ pub(crate) struct PartPictures {
 pub(crate) struct PreparedPictures {
     inputs: PreparedInputs,
     picture: Picture,
-    /// Part by part, groups of `pick` and of `join`.
-    groups: Vec<[wgpu::BindGroup; 2]>,
+    /// Part by part, groups of `pick` and, where parts have a mask of their own, of `join`.
+    groups: Vec<(wgpu::BindGroup, Option<wgpu::BindGroup>)>,
     pick: wgpu::ComputePipeline,
     join: wgpu::ComputePipeline,
 }
@@ -79,8 +76,10 @@ struct Picture {
     depth: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
     /// None where the host's do.
     normals: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
-    scratch: Arc<wgpu::Texture>,
-    mask: Mask,
+    /// None where parts write noisy visibility.
+    mask: Option<Mask>,
+    /// Of the mask.
+    scratch: Option<Arc<wgpu::Texture>>,
 }
 
 impl PartPictures {
@@ -102,11 +101,11 @@ impl PartPictures {
         }
     }
 
-    /// Makes ready for the parts of a frame, whose mask is of 32 bits.
+    /// Makes ready for the parts of a frame, whose mask is of 32 bits, or whose visibility is noisy.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>, parts: &[Part]) -> PreparedPictures {
         let inputs = self.inputs.prepare(stage, frame);
         let picture = Picture::prepare(stage, frame, self.picture.as_ref());
-        let places = places_of_parts(stage, frame, parts);
+        let places = places_of_parts(stage, parts);
         let place = |slot: usize, size: usize| wgpu::BufferBinding {
             buffer: &places,
             offset: (slot * SLOT_BYTES) as u64,
@@ -118,8 +117,11 @@ impl PartPictures {
             let normals = picture.normals.as_ref().map_or(&self.no_normals, |(_, view)| view);
             let depth = picture.depth.as_ref().map_or(&self.no_depth, |(_, view)| view);
             let picked = Picked { region: region.clone(), part_depth: depth, part_normals: normals };
-            let joined = Joined { region, part_mask: picture.mask.layers_view(), joining };
-            groups.push([picked.group(stage, &self.layouts[0]), joined.group(stage, &self.layouts[1])]);
+            let joined = picture
+                .mask
+                .as_ref()
+                .map(|mask| Joined { region, part_mask: mask.layers_view(), joining }.group(stage, &self.layouts[1]));
+            groups.push((picked.group(stage, &self.layouts[0]), joined));
         }
         self.picture = Some(picture.clone());
         PreparedPictures { inputs, picture, groups, pick: self.pick.clone(), join: self.join.clone() }
@@ -142,17 +144,21 @@ impl PreparedPictures {
             seen: &part.seen,
             ..frame.receivers
         };
-        PreparedFrame { light: &part.light, receivers, mask: &picture.mask, ..*frame }
+        // Noisy visibility needs no joining: parts write their own pixels of one texture.
+        let mask = picture.mask.as_ref().unwrap_or(frame.mask);
+        PreparedFrame { light: &part.light, receivers, mask, ..*frame }
     }
 
     /// Records the receivers of part `i`.
     pub(crate) fn pick(&self, recorder: &mut Recorder<'_>, i: usize) {
-        self.record(recorder, "receivers of a part", &self.pick, &self.groups[i][0]);
+        self.record(recorder, "receivers of a part", &self.pick, &self.groups[i].0);
     }
 
-    /// Records the way of its mask into the frame's.
+    /// Records the way of its mask into the frame's, where it has one.
     pub(crate) fn join(&self, recorder: &mut Recorder<'_>, i: usize) {
-        self.record(recorder, "mask of a part", &self.join, &self.groups[i][1]);
+        if let Some(group) = &self.groups[i].1 {
+            self.record(recorder, "mask of a part", &self.join, group);
+        }
     }
 
     fn record(
@@ -171,14 +177,6 @@ impl PreparedPictures {
     }
 }
 
-impl JoiningGpu {
-    fn of(distance: Option<ShadowDistance>) -> Self {
-        const NEVER: [f32; 2] = [f32::MAX, 1.0];
-        let [fade_begin_m, fade_length_m] = distance.map_or(NEVER, |distance| distance.fade_span_m());
-        Self { is_first: 0, fade_begin_m, fade_length_m, padding: 0 }
-    }
-}
-
 impl Picture {
     /// With the textures of an earlier one, where they do.
     fn prepare(stage: &Stage<'_>, frame: &PreparedFrame<'_>, earlier: Option<&Self>) -> Self {
@@ -191,26 +189,26 @@ impl Picture {
             let view = stage.create_view(&texture, &wgpu::TextureViewDescriptor::default());
             (texture, view)
         };
-        let scratch = part_mask(stage, frame.mask.size_px(), frame.mask.channels());
-        let mask = earlier
-            .filter(|earlier| earlier.scratch == scratch)
-            .map_or_else(|| Mask::of_layers(&scratch, 0, frame.mask.channels()), |earlier| earlier.mask.clone());
+        let channels = frame.mask.channels();
+        let scratch = frame.noisy.is_none().then(|| part_mask(stage, frame.mask.size_px(), channels));
+        let made = earlier.filter(|earlier| earlier.scratch == scratch).and_then(|earlier| earlier.mask.clone());
+        let mask = made.or_else(|| scratch.as_ref().map(|texture| Mask::of_layers(texture, 0, channels)));
         Self {
             depth: are_seen.then(|| texture(Scratch::PartDepth, DEPTH_FORMAT)),
             normals: (!are_seen || receivers.normals.is_none()).then(|| texture(Scratch::PartNormals, NORMAL_FORMAT)),
-            scratch,
             mask,
+            scratch,
         }
     }
 }
 
 /// Regions of some parts and how their masks are joined, a slot each, in one buffer: one upload for all. It has room for as many
 /// parts as a light mostly has, which come and go. No uniforms, since drivers may compile for their values.
-fn places_of_parts(stage: &Stage<'_>, frame: &PreparedFrame<'_>, parts: &[Part]) -> wgpu::Buffer {
+fn places_of_parts(stage: &Stage<'_>, parts: &[Part]) -> wgpu::Buffer {
     const ROOM: usize = 8;
     let mut bytes = vec![0u8; 2 * SLOT_BYTES * parts.len().next_multiple_of(ROOM)];
     for (i, (part, slots)) in parts.iter().zip(bytes.chunks_exact_mut(2 * SLOT_BYTES)).enumerate() {
-        let joining = JoiningGpu { is_first: u32::from(i == 0), ..JoiningGpu::of(frame.receivers.shadow_distance) };
+        let joining = JoiningGpu { is_first: u32::from(i == 0), padding_0: 0, padding_1: 0, padding_2: 0 };
         slots[..size_of::<RegionGpu>()].copy_from_slice(bytemuck::bytes_of(&part.region.to_gpu()));
         slots[SLOT_BYTES..SLOT_BYTES + size_of::<JoiningGpu>()].copy_from_slice(bytemuck::bytes_of(&joining));
     }

@@ -115,8 +115,13 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
         // From so high that all of it is seen.
         let view_from_world = look_at_mat4(Vec3::new(0.0, 150.0, 1.0), Vec3::ZERO, Vec3::Y);
         let receivers = Receivers { hull, view_from_world, ..test_receivers(SIZE, &depth) };
-        let frame =
-            PreparedFrame { light, casters: PreparedCasters::Draws(casters), receivers: receivers.into(), mask: &mask };
+        let frame = PreparedFrame {
+            light,
+            casters: PreparedCasters::Draws(casters),
+            receivers: receivers.into(),
+            mask: &mask,
+            noisy: None,
+        };
         parts_of(&frame, coverage, Vec3::ZERO, &mut Still::default(), &SharedValues::default())
     };
     let parts = |light: &Light, hull: &[Vec3], coverage| parts_with(&casters, light, hull, coverage);
@@ -236,6 +241,7 @@ fn slices_stay_while_a_camera_walks() {
             casters: PreparedCasters::Draws(&casters),
             receivers: receivers.into(),
             mask: &mask,
+            noisy: None,
         };
         let parts = parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut still, &SharedValues::default());
         let now: Vec<_> = parts.iter().map(|part| (part.id, part.still.expect("a slice"))).collect();
@@ -300,6 +306,7 @@ fn parts_end_where_shadows_do() {
             casters: PreparedCasters::Draws(&casters),
             receivers: receivers.into(),
             mask: &mask,
+            noisy: None,
         };
         parts_of(&frame, Coverage::Window, Vec3::ZERO, &mut Still::default(), &SharedValues::default())
     };

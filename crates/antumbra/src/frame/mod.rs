@@ -4,13 +4,13 @@
 pub(crate) mod accumulation;
 pub(crate) mod blue_noise;
 pub(crate) mod denoise;
+pub(crate) mod fade;
 pub(crate) mod half_resolution;
 pub(crate) mod inputs;
 pub(crate) mod mask_format;
 pub(crate) mod points;
 #[cfg(any(feature = "multi_layer", feature = "single_map", feature = "summed"))]
 pub(crate) mod resolve;
-#[cfg(feature = "single_map")]
 pub(crate) mod smoothing;
 #[cfg(any(feature = "multi_layer", feature = "receiver_lists", feature = "single_map", feature = "summed"))]
 pub(crate) mod sparse_upsample;

@@ -302,6 +302,14 @@ impl<'a> Recorder<'a> {
         self.begin_render_pass(label, span, &colors, None, record);
     }
 
+    /// A pass that fills a texture with zeros.
+    pub(crate) fn clear(&mut self, label: &'static str, view: &wgpu::TextureView) {
+        self.passes.push(Pass { label, draws_casters: false });
+        let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
+        let color = wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops };
+        self.begin_render_pass(label, Span::Only, &[Some(color)], None, |_| {});
+    }
+
     /// A pass that draws casters to `colors`, with a depth attachment that is only read where it has no operations.
     pub(crate) fn render_pass(
         &mut self,

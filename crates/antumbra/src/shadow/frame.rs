@@ -157,5 +157,5 @@ pub(super) fn prepared<'f>(
         FrameCasters::Set(meshes) => PreparedCasters::Draws(meshes),
         FrameCasters::Host(casters) => *casters,
     };
-    PreparedFrame { light, casters, receivers, mask }
+    PreparedFrame { light, casters, receivers, mask, noisy: None }
 }

@@ -18,6 +18,7 @@ use crate::cover::pictures::PartPictures;
 use crate::frame::denoise::Denoiser;
 use crate::frame::half_resolution::HalfResolution;
 use crate::frame::points::PointTextures;
+use crate::frame::smoothing::Smoothing;
 use crate::gpu::{Gpu, Recorder};
 use crate::techniques::{Coverage, Technique};
 
@@ -120,6 +121,9 @@ impl<T: Technique + 'static> Shadow<T> {
         }
         if self.denoise.is_some() {
             compile.push(|gpu| drop(Denoiser::new(gpu)));
+        }
+        if shapes().iter().any(|shape| T::is_noisy(&self.params, &light_of(shape.clone()))) {
+            compile.push(|gpu| drop(Smoothing::new(gpu)));
         }
         if self.half_resolution {
             compile.push(|gpu| drop(HalfResolution::new(gpu)));

@@ -1,5 +1,7 @@
 //! Interface of every technique: pipelines, a prepared frame, a recorded frame.
 
+use antumbra_light::Light;
+
 use crate::contract::{DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
 use crate::cover::Coverage;
 use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
@@ -19,6 +21,12 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
     /// How much of what a light reaches a state covers; what is more is cut into parts, with a state each.
     fn coverage(_params: &Self::Params) -> Coverage {
         Coverage::Window
+    }
+
+    /// Whether visibility is noisy and written with how far it may be smoothed, as `frame/smoothing/noisy.wesl` says, where a frame has
+    /// [such a target](PreparedFrame::noisy).
+    fn is_noisy(_params: &Self::Params, _light: &Light) -> bool {
+        false
     }
 
     /// Makes what one light needs beside the programs that all lights share.

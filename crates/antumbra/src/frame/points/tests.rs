@@ -108,7 +108,7 @@ impl Scene {
     pub(crate) fn places(&self, gpu: &Gpu) -> Places {
         let light = &lamp(LightShape::Disk { radius_m: 0.1 });
         let casters = PreparedCasters::Draws(&[]);
-        let frame = PreparedFrame { light, casters, receivers: self.receivers().into(), mask: &self.mask };
+        let frame = PreparedFrame { light, casters, receivers: self.receivers().into(), mask: &self.mask, noisy: None };
         let found = storage(gpu, &vec![Vec4::ZERO; 3 * SIZE.element_product() as usize]);
         let mut inputs = FrameInputs::new(gpu);
         let prepared = inputs.prepare(&Stage::at_once(gpu), &frame);

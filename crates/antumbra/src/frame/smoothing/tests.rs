@@ -1,11 +1,11 @@
 //! Through the technique that writes noisy visibility, against closed forms.
 
-use antumbra_light::LightShape;
+use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec3};
 
 use crate::TechniqueKind;
 use crate::gpu::Gpu;
-use crate::testing::{Case, RECTANGLE, SIZE, gpu, half_plane_visibility, rmse, test_ground};
+use crate::testing::{Case, RECTANGLE, SIZE, View, gpu, half_plane_visibility, rmse, test_ground};
 
 const FEW: (&str, &str) = ("samples", "16");
 
@@ -65,4 +65,31 @@ fn steps_of_lists_of_points_stay() {
     let positions_m = [-0.3, 0.0, 0.3].map(|x| Vec3::new(x, 4.0, 0.0)).to_vec();
     let case = Case::half_plane(gpu, LightShape::Points { positions_m });
     assert!(mask(gpu, &case, "true") == mask(gpu, &case, "false"));
+}
+
+/// Share of a disk on one side of a line, whose distance from the middle is so much of the radius.
+fn disk_share(distance: f32) -> f32 {
+    let d = distance.clamp(-1.0, 1.0);
+    ((-d).acos() + d * (1.0 - d * d).sqrt()) / std::f32::consts::PI
+}
+
+/// Where two parts of a light meet in a penumbra, means go on from one into the other.
+#[test]
+fn means_go_on_where_parts_meet() {
+    let Some(gpu) = gpu() else { return };
+    let half_plane = Case::half_plane(gpu, LightShape::Sphere { radius_m: 0.5 });
+    // Faces of the cube about the light meet in the plane z = 0.
+    let (axis, up) = (Vec3::new(0.0, -1.0, 1.0).normalize(), Vec3::new(0.0, 1.0, 1.0).normalize());
+    let light = Light { axis, up, ..half_plane.light };
+    let case = Case::new(gpu, light, View::new(Vec3::new(0.4, 1.0, 0.9), Vec3::ZERO), half_plane.meshes);
+    let mask = mask(gpu, &case, "true");
+    let in_penumbra = |p: Vec3| p.x.abs() < 0.25 && p.z.abs() < 0.6;
+    let (beside, elsewhere): (Vec<_>, Vec<_>) =
+        case.ground_pixels(in_penumbra).into_iter().partition(|(_, p)| p.z.abs() < 0.02);
+    assert!(beside.len() > 90 && elsewhere.len() > 900, "{} {}", beside.len(), elsewhere.len());
+    let square = |(i, p): &(usize, Vec3)| (mask[*i] - disk_share(p.x * (1.0 - 0.375) / 0.375 / 0.5)).powi(2);
+    let [beside, elsewhere] =
+        [beside, elsewhere].map(|pixels| (pixels.iter().map(square).sum::<f32>() / pixels.len() as f32).sqrt());
+    println!("{beside:.4} where parts meet, {elsewhere:.4} elsewhere");
+    assert!(beside < 1.3 * elsewhere, "{beside} {elsewhere}");
 }

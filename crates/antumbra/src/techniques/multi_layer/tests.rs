@@ -215,6 +215,7 @@ fn record(
         casters: PreparedCasters::Draws(&casters),
         receivers: test_receivers(size, &depth).into(),
         mask: &mask,
+        noisy: None,
     };
     let prepared = technique.prepare(&Stage::at_once(gpu), &frame, params).expect("a good frame");
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
+use crate::frame::inputs::FrameInputs;
 use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{
     Bindings, Cached, Embeddable, EmbeddedGroup, Gpu, GpuStruct, Recorder, Stage, TableKey, bindings, create_uniform,
@@ -94,13 +94,6 @@ pub struct PreparedMapResolve {
     map: PreparedMap,
     params_group: wgpu::BindGroup,
     resolve: PreparedResolve,
-}
-
-impl PreparedMapResolve {
-    /// The frame's inputs, for a pass behind the resolve.
-    pub(crate) fn inputs(&self) -> &PreparedInputs {
-        self.resolve.inputs()
-    }
 }
 
 impl<P: GpuStruct> MapResolve<P> {
@@ -213,11 +206,6 @@ impl<P: GpuStruct> MapResolve<P> {
         let params = ResolveParams { params: &self.params_uniform, taps };
         let groups = vec![inputs, map, EmbeddedGroup::of(&params)];
         Some(Embeddable { wgsl, constants: self.constants.clone(), groups, is_own })
-    }
-
-    /// The inputs, for a pass behind the resolve.
-    pub(crate) fn inputs(&self) -> &FrameInputs {
-        &self.inputs
     }
 
     /// The map that the technique has drawn, for pictures of it.

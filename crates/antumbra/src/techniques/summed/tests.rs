@@ -74,7 +74,7 @@ impl Staged {
             shadow_distance: None,
             version: None,
         };
-        let frame = PreparedFrame { light, casters, receivers: receivers.into(), mask: &mask };
+        let frame = PreparedFrame { light, casters, receivers: receivers.into(), mask: &mask, noisy: None };
         let prepared =
             filter.prepare(&Stage::at_once(gpu), &frame, params.design(), &params.settings()).expect("a good frame");
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());

@@ -267,8 +267,11 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     bins_empty_bins(lane);
     workgroupBarrier();
     var open = known(1.0);
+    var is_receiver = false;
     if is_pixel {
-        open = opened(inputs_load_receiver(pixel), pixel);
+        let receiver = inputs_load_receiver(pixel);
+        is_receiver = !receiver.is_background;
+        open = opened(receiver, pixel);
     }
     let may_be_blocked = open.has_rays && open.most_g > 0.0;
     if may_be_blocked {
@@ -301,7 +304,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
             }
         }
     }
-    if is_pixel {
+    if select(is_pixel, is_receiver, IS_SMOOTHED) {
         let share = select(1.0, open.visibility, horizon_has_horizon_share());
         let visibility = select(open.visibility, share * sums.free / max(sums.weight, 1e-20), has_rays);
         write_pixel(pixel, visibility, magnification(open, sums.least_g));

@@ -78,11 +78,11 @@
 //! counts of rays, bins and layers.
 
 use antumbra_light::{Light, LightShape, SampleSet};
-use glam::Vec2;
+use glam::{UVec2, Vec2};
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame, SampleWeights};
-use crate::frame::smoothing::{PreparedSmoothing, Smoothing};
-use crate::gpu::{Gpu, Recorder, Stage};
+use crate::frame::smoothing::NOISY_FORMAT;
+use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, passed_texture};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
 use crate::shaders;
@@ -102,19 +102,27 @@ const TILE_PIXELS: u32 = 64;
 /// Taps over the light and all scales that leave no gap which matters, however many a pixel takes.
 const MOST_SEARCH_TAPS: u32 = 4096;
 
+bindings! {
+    struct NoisyWritten = "noisy visibility, written", COMPUTE, group 3 of [SMRT_RESOLVE] {
+        0 noisy: WrittenTexture(NOISY_FORMAT),
+    }
+}
+
 /// The passes of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedSmrt {
     resolve: PreparedMapResolve,
-    smoothing: PreparedSmoothing,
+    written: wgpu::BindGroup,
 }
 
 /// Shadow map ray tracing.
 #[derive(Debug)]
 pub struct Smrt {
     resolve: MapResolve<SmrtUniform>,
-    smoothing: Smoothing,
+    noisy_layout: wgpu::BindGroupLayout,
+    /// A texture of one texel, where visibility goes into the mask.
+    no_noisy: wgpu::TextureView,
 }
 
 impl Technique for Smrt {
@@ -122,13 +130,22 @@ impl Technique for Smrt {
     type Params = SmrtParams;
     type Prepared = PreparedSmrt;
 
+    /// Of a list of points penumbrae have steps, which are no noise.
+    fn is_noisy(params: &SmrtParams, light: &Light) -> bool {
+        params.smooth && !matches!(light.shape, LightShape::Points { .. })
+    }
+
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let defaults = SmrtParams::default();
         let constants = constants(TapsProgram::usual(defaults.layers), defaults.smooth, defaults.weights);
-        let layouts = vec![Smoothing::written_layout(gpu)];
+        let noisy_layout = NoisyWritten::layout(gpu);
+        let layouts = vec![noisy_layout.clone()];
         let resolve =
             MapResolve::with_groups(gpu, Self::NAME, shaders::SMRT_RESOLVE, &constants, MapSearch::Layers, layouts);
-        Ok(Self { smoothing: Smoothing::new(gpu, resolve.inputs()), resolve })
+        let no_noisy = passed_texture("antumbra no noisy visibility", NOISY_FORMAT, UVec2::ONE, 1);
+        let no_noisy = gpu.device.create_texture(&no_noisy);
+        let no_noisy = gpu.device.create_view(&no_noisy, &wgpu::TextureViewDescriptor::default());
+        Ok(Self { resolve, noisy_layout, no_noisy })
     }
 
     fn prepare(
@@ -142,10 +159,6 @@ impl Technique for Smrt {
         let is_own = matches!(frame.casters, PreparedCasters::Draws(_));
         let layers = if is_own { params.layers } else { 1 };
         let program = TapsProgram::of(&taps, layers);
-        // Of a list of points penumbrae have steps, which are no noise; points in any order have no means over neighbours.
-        let is_smooth = params.smooth
-            && !matches!(frame.light.shape, LightShape::Points { .. })
-            && frame.receivers.have_neighbours();
         // Of a tile's pixels together, up to what is enough for any.
         let tile_search_count = (TILE_PIXELS * params.search_samples).min(MOST_SEARCH_TAPS.max(params.search_samples));
         let uniform = SmrtUniform {
@@ -166,15 +179,18 @@ impl Technique for Smrt {
         let search = (search_taps, TapUse::Search, tile_search_count);
         let lists = TapLists([search, (taps, TapUse::Filter, params.samples)]);
         let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
-        let pass = ResolvePass { map, constants: &constants(program, is_smooth, params.weights), is_sparse: false };
-        let smoothing = self.smoothing.prepare(stage, frame.receivers.size_px, is_smooth);
+        let pass = ResolvePass {
+            map,
+            constants: &constants(program, frame.noisy.is_some(), params.weights),
+            is_sparse: false,
+        };
         let resolve = lists.with_kernel(|kernel| self.resolve.prepare(stage, frame, &pass, &uniform, kernel))?;
-        Ok(PreparedSmrt { resolve, smoothing })
+        let noisy = frame.noisy.unwrap_or(&self.no_noisy);
+        Ok(PreparedSmrt { resolve, written: NoisyWritten { noisy }.group(stage, &self.noisy_layout) })
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedSmrt) {
-        self.resolve.record_with(recorder, frame, &prepared.resolve, &[&prepared.smoothing.written]);
-        prepared.smoothing.record(recorder, prepared.resolve.inputs());
+        self.resolve.record_with(recorder, frame, &prepared.resolve, &[&prepared.written]);
     }
 
     fn drawn_map(&self) -> Option<DrawnMap> {
