@@ -36,6 +36,8 @@ const STRIP = 8u;
 
 const SEGMENT = 8u;
 
+const BATCH = 8u;
+
 const MAX_TILE = 256u;
 
 fn blocks() -> vec2u {
@@ -130,20 +132,32 @@ fn carry(@builtin(global_invocation_id) id: vec3u) {
     let padded = count * BLOCK;
     var sum = Sum(0);
     if id.x < padded.x {
-        for (var by = 0u; by < count.y; by++) {
-            let i = by * padded.x + id.x;
-            let own = above[i];
-            above[i] = sum;
-            sum += own;
+        for (var first = 0u; first < count.y; first += BATCH) {
+            var own: array<Sum, BATCH>;
+            for (var i = 0u; i < BATCH; i++) {
+                own[i] = above[min(first + i, count.y - 1u) * padded.x + id.x];
+            }
+            for (var i = 0u; i < BATCH; i++) {
+                if first + i < count.y {
+                    above[(first + i) * padded.x + id.x] = sum;
+                    sum += own[i];
+                }
+            }
         }
     }
     else if id.x < padded.x + padded.y {
         let y = id.x - padded.x;
-        for (var bx = 0u; bx < count.x; bx++) {
-            let i = bx * padded.y + y;
-            let own = before[i];
-            before[i] = sum;
-            sum += own;
+        for (var first = 0u; first < count.x; first += BATCH) {
+            var own: array<Sum, BATCH>;
+            for (var i = 0u; i < BATCH; i++) {
+                own[i] = before[min(first + i, count.x - 1u) * padded.y + y];
+            }
+            for (var i = 0u; i < BATCH; i++) {
+                if first + i < count.x {
+                    before[(first + i) * padded.y + y] = sum;
+                    sum += own[i];
+                }
+            }
         }
     }
 }
@@ -155,9 +169,17 @@ fn carry_corners(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     var sum = Sum(0);
-    for (var bx = 0u; bx < count.x; bx++) {
-        corner[id.x * count.x + bx] = sum;
-        sum += above[id.x * count.x * BLOCK + bx * BLOCK + BLOCK - 1u];
+    for (var first = 0u; first < count.x; first += BATCH) {
+        var own: array<Sum, BATCH>;
+        for (var i = 0u; i < BATCH; i++) {
+            own[i] = above[(id.x * count.x + min(first + i, count.x - 1u)) * BLOCK + BLOCK - 1u];
+        }
+        for (var i = 0u; i < BATCH; i++) {
+            if first + i < count.x {
+                corner[id.x * count.x + first + i] = sum;
+                sum += own[i];
+            }
+        }
     }
 }
 
