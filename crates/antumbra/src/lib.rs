@@ -77,12 +77,13 @@ compile_error!(
 
 pub mod casters;
 pub mod contract;
-mod cover;
-mod frame;
 pub mod gpu;
 mod light_map;
+mod light_partition;
 pub mod light_set;
+mod mask;
 mod primitives;
+mod receivers;
 mod shadow;
 mod technique_kind;
 pub mod techniques;
@@ -97,13 +98,13 @@ pub use contract::{
     MeshVersion, Opacity, Overflow, PointBuffer, PointReceivers, PointWidths, Quality, Receivers, SurfaceCoverage,
     SurfaceTexture,
 };
-pub use frame::split_receivers::SplitReceivers;
 #[doc(hidden)]
 pub use gpu::programs;
 pub use gpu::{
     Gpu, MemoryBytes, MemoryPlan, ObjectCounts, PassTime, PassTimer, PlannedResource, Recorder, ShaderFunction,
 };
 pub use light_set::{Budget, LightId, LightSet, LightSetFrame, MaskState, PreparedLights, RangedLight};
+pub use receivers::split_receivers::SplitReceivers;
 pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp, WarmUpSteps};
 pub use technique_kind::{TechniqueFacts, TechniqueKind};
 pub use techniques::Technique;

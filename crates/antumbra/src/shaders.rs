@@ -11,30 +11,30 @@ macro_rules! linked_file {
 
 shaders! {
     /// Accumulation: what is in a buffer, as a number.
-    ACCUMULATION_FINGERPRINT = "frame/accumulation/fingerprint";
+    ACCUMULATION_FINGERPRINT = "mask/accumulation/fingerprint";
     /// Accumulation: means over frames.
-    ACCUMULATION_ACCUMULATE = "frame/accumulation/accumulate";
+    ACCUMULATION_ACCUMULATE = "mask/accumulation/accumulate";
     /// Denoising: means over the frames that saw the same point.
-    DENOISE_OVER_TIME = "frame/denoise/over_time";
+    DENOISE_OVER_TIME = "mask/denoise/over_time";
     /// Denoising: planes fitted to the neighbours.
-    DENOISE_OVER_PIXELS = "frame/denoise/over_pixels";
+    DENOISE_OVER_PIXELS = "mask/denoise/over_pixels";
     /// Smoothing of noisy visibility over pixels.
-    SMOOTHING_SMOOTH = "frame/smoothing/smooth";
+    SMOOTHING_SMOOTH = "mask/smoothing/smooth";
     /// Fade of shadows that end at a distance.
-    FADE = "frame/fade/fade";
+    FADE = "mask/fade/fade";
     /// Half resolution: receivers of half the size.
-    HALF_RESOLUTION_PICK = "frame/half_resolution/pick";
+    HALF_RESOLUTION_PICK = "mask/half_resolution/pick";
     /// Half resolution: a mask of half the size at full size.
-    HALF_RESOLUTION_UPSAMPLE = "frame/half_resolution/upsample";
+    HALF_RESOLUTION_UPSAMPLE = "mask/half_resolution/upsample";
     /// Masks of fewer bits than techniques write.
-    MASK_FORMAT_DRAW = "frame/mask_format/draw";
+    MASK_FORMAT_DRAW = "mask/format/draw";
     /// Points as receivers: from a host's buffers to textures.
-    POINTS_PACK = "frame/points/pack";
+    POINTS_PACK = "receivers/points/pack";
     /// What a technique gave for points, into a host's buffer.
-    POINTS_WRITE = "frame/points/write";
+    POINTS_WRITE = "receivers/points/write";
     /// What a frame's receivers are, for tests.
     #[cfg(test)]
-    POINTS_PROBE = "frame/points/probe";
+    POINTS_PROBE = "receivers/points/probe";
     /// hard for hosts' shaders.
     HARD_FUNCTION = "techniques/single_map/hard/shader_function";
     /// pcf for hosts' shaders.
@@ -42,11 +42,11 @@ shaders! {
     /// pcss for hosts' shaders.
     PCSS_FUNCTION = "techniques/single_map/pcss/shader_function";
     /// Receivers of a multisampled depth buffer.
-    SPLIT_RECEIVERS_DRAW = "frame/split_receivers/split";
+    SPLIT_RECEIVERS_DRAW = "receivers/split_receivers/split";
     /// Parts of what a light reaches: the receivers of one.
-    COVER_PICK = "cover/pick";
+    COVER_PICK = "light_partition/pick";
     /// What a technique gave for one, into the light's mask.
-    COVER_JOIN = "cover/join";
+    COVER_JOIN = "light_partition/join";
     /// The rasteriser's grid: slanted triangles.
     RASTERISER_DRAW = "gpu/rasteriser/draw";
     /// The rasteriser's grid: how far their depths are off.
@@ -159,7 +159,7 @@ shaders! {
     /// Lists of fragments, sorted.
     TEXEL_LISTS_SORT = "light_map/texel_lists/sort";
     /// Masks of which every other pixel is known.
-    SPARSE_UPSAMPLE = "frame/sparse_upsample/upsample";
+    SPARSE_UPSAMPLE = "mask/sparse_upsample/upsample";
     /// `multi_layer`: a level of filtered lists.
     MULTI_LAYER_FILTER = "techniques/multi_layer/filter";
     /// `multi_layer`: the nearest fragment of squares of texels.

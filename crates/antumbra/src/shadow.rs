@@ -10,11 +10,11 @@
 use std::fmt;
 
 use crate::contract::{CastersKey, Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
-use crate::frame::denoise::{Denoiser, PreparedDenoise};
-use crate::frame::fade::{Fade, PreparedFade};
-use crate::frame::half_resolution::{HalfResolution, PreparedHalf};
-use crate::frame::smoothing::{PreparedSmoothing, Smoothing};
 use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
+use crate::mask::denoise::{Denoiser, PreparedDenoise};
+use crate::mask::fade::{Fade, PreparedFade};
+use crate::mask::half_resolution::{HalfResolution, PreparedHalf};
+use crate::mask::smoothing::{PreparedSmoothing, Smoothing};
 use crate::techniques::Technique;
 
 mod anchored;

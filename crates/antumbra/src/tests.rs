@@ -10,7 +10,7 @@ use crate::contract::{MapSize, ParamValue, Quality};
 use crate::gpu::shared_constants::constant_of;
 use crate::gpu::{GpuField, GpuStruct};
 use crate::techniques::summed::Basis;
-use crate::{casters, cover, frame, light_map, primitives, shaders, techniques};
+use crate::{casters, light_map, light_partition, mask, primitives, receivers, shaders, techniques};
 
 mod loops;
 
@@ -40,19 +40,19 @@ fn shared_structs() -> Vec<(&'static str, &'static [GpuField], usize)> {
         (T::WGSL_NAME, T::FIELDS, size_of::<T>())
     }
     vec![
-        entry::<frame::accumulation::AccumulationFrame>(),
+        entry::<mask::accumulation::AccumulationFrame>(),
         entry::<light_map::caster_depth::CasterView>(),
         entry::<light_map::caster_depth::Cutout>(),
         entry::<light_map::caster_triangles::runs::TriangleRun>(),
         entry::<light_map::caster_triangles::maps::TriangleMap>(),
         entry::<primitives::depth_basis::tests::ProbeInput>(),
-        entry::<cover::pictures::JoiningGpu>(),
-        entry::<cover::region::RegionGpu>(),
-        entry::<frame::fade::FadeGpu>(),
-        entry::<frame::inputs::LightSource>(),
-        entry::<frame::inputs::ReceiverView>(),
-        entry::<frame::points::PointLayout>(),
-        entry::<frame::split_receivers::Split>(),
+        entry::<light_partition::part_images::JoiningGpu>(),
+        entry::<light_partition::region::RegionGpu>(),
+        entry::<mask::fade::FadeGpu>(),
+        entry::<receivers::inputs::LightSource>(),
+        entry::<receivers::inputs::ReceiverView>(),
+        entry::<receivers::points::PointLayout>(),
+        entry::<receivers::split_receivers::Split>(),
         entry::<light_map::light_view::LightViewGpu>(),
         entry::<techniques::summed::summed_area_table::gpu_types::DoublingUniform>(),
         entry::<techniques::summed::summed_area_table::gpu_types::TableUniform>(),
@@ -144,7 +144,7 @@ fn kinds_have_the_shaders_numbers() {
         ("KIND_POINTS", LightShape::Points { positions_m: vec![Vec3::ZERO] }),
     ];
     for (name, shape) in kinds {
-        assert_in_shaders(name, frame::inputs::kind_of(&shape));
+        assert_in_shaders(name, receivers::inputs::kind_of(&shape));
     }
     for (name, basis) in [
         ("BASIS_TILES", Basis::Tiles),

@@ -19,7 +19,7 @@ use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
 
 use crate::common::{lab, seen_from_outside, snapped_texels};
 
-/// As `receiver_lists/light_bits/ray_offset.wesl` has it, and as `frame/inputs.wesl` has the times that count of what the rasteriser moves surfaces by.
+/// As `receiver_lists/light_bits/ray_offset.wesl` has it, and as `receivers/inputs.wesl` has the times that count of what the rasteriser moves surfaces by.
 const HAIR: f32 = 1.0 / (1 << 18) as f32;
 const HAIR_SNAPS: f32 = 1.5;
 

@@ -82,7 +82,7 @@ struct Programs {
     shared_values: SharedValues,
     /// What `rasteriser` measures.
     snapped_texels: OnceLock<wgpu::Buffer>,
-    /// What `frame/blue_noise` makes.
+    /// What `receivers/blue_noise` makes.
     noise_tile: OnceLock<wgpu::TextureView>,
     counts: Counts,
 }
@@ -399,7 +399,7 @@ impl Device {
         self.programs.snapped_texels.get_or_init(measure)
     }
 
-    /// What `frame/blue_noise` has made, or makes now.
+    /// What `receivers/blue_noise` has made, or makes now.
     pub(crate) fn noise_tile(&self, make: impl FnOnce() -> wgpu::TextureView) -> &wgpu::TextureView {
         self.programs.noise_tile.get_or_init(make)
     }

@@ -32,7 +32,7 @@ pub struct Stage<'a> {
     anchor: Vec3,
     /// Counts frames whose chances differ.
     noise_frame: u32,
-    still: Option<[Vec3; 8]>,
+    stable_box: Option<[Vec3; 8]>,
     auto_texels_before: Option<u32>,
     /// Maps of one light that share what may be spent on them.
     sharers: u32,
@@ -186,7 +186,7 @@ impl<'a> Stage<'a> {
             casters,
             anchor: Vec3::ZERO,
             noise_frame: 0,
-            still: None,
+            stable_box: None,
             auto_texels_before,
             sharers: 1,
             #[cfg(test)]
@@ -196,11 +196,11 @@ impl<'a> Stage<'a> {
 
     /// A stage for a part of the frame, which has a state of its own; its maps are fitted to a box, where one is given, whose
     /// corners these are, so that their texels stay where they are. [`finish_part`](Self::finish_part) ends it.
-    pub(crate) fn of_part(&self, keep: Keep, still: Option<[Vec3; 8]>) -> Self {
+    pub(crate) fn of_part(&self, keep: Keep, stable_box: Option<[Vec3; 8]>) -> Self {
         Self {
             anchor: self.anchor,
             noise_frame: self.noise_frame,
-            still,
+            stable_box,
             #[cfg(test)]
             is_at_once: self.is_at_once,
             ..Self::new(self.gpu, keep, self.casters)
@@ -225,8 +225,8 @@ impl<'a> Stage<'a> {
 
     /// The corners of a box about what receives that mostly stays where it is while the camera moves; `None` where maps
     /// are fitted to what receives itself.
-    pub(crate) fn still(&self) -> Option<[Vec3; 8]> {
-        self.still
+    pub(crate) fn stable_box(&self) -> Option<[Vec3; 8]> {
+        self.stable_box
     }
 
     /// Texels along a side that the map had in the frame before, where its size is chosen for each frame.

@@ -3,9 +3,9 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::Vec3;
 
-use super::between::Between;
 use super::light_spread::LightSpread;
 use super::light_view::{FitTo, Followed, LightView, ViewFit, WindowShape};
+use super::occluding_bounds::Between;
 use crate::contract::SeenPoint;
 
 /// The light's view, fitted in a square window to casters' boxes and receivers' corners.

@@ -10,7 +10,7 @@ use super::frame::Asked;
 use crate::contract::{
     Camera, DepthMapCaster, MeshCaster, PreparedCasters, PreparedFrame, PreparedReceivers, Surfaces,
 };
-use crate::light_map::between::{KNOWN_REACH_M, is_known};
+use crate::light_map::occluding_bounds::{KNOWN_REACH_M, is_known};
 
 /// Sides of boxes are no farther from the anchor than this, metres.
 const MOST_REACH_M: f32 = 10.0 * KNOWN_REACH_M;

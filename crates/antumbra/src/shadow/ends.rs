@@ -3,9 +3,9 @@
 
 use super::frame::{Asked, Frame, PointFrame};
 use crate::contract::{Mask, PreparedReceivers};
-use crate::frame::mask_format::NarrowMask;
-use crate::frame::points::PointTextures;
 use crate::gpu::{Recorder, Stage};
+use crate::mask::format::NarrowMask;
+use crate::receivers::points::PointTextures;
 
 /// Ends of one frame.
 pub(super) enum Ends<'a> {

@@ -3,21 +3,21 @@
 use glam::Vec3;
 
 use crate::contract::{DrawnLists, DrawnMap, Error, MeshCaster, Overflow, Params, PreparedCasters, PreparedFrame};
-use crate::cover::pictures::{PartPictures, PreparedPictures};
-use crate::cover::still::Still;
-use crate::cover::{Part, parts_of};
 use crate::gpu::{Gpu, Keep, Recorder, Stage};
+use crate::light_partition::part_images::{PartImages, PreparedPartImages};
+use crate::light_partition::stable_boxes::StableBoxes;
+use crate::light_partition::{Part, parts_of};
 use crate::techniques::Technique;
 
 /// The parts of a light.
 pub(super) struct Parted<T> {
-    pictures: PartPictures,
+    images: PartImages,
     /// Of the frame prepared; none where the technique covers all that it reaches.
     parts: Vec<Part>,
     /// Of every part that a frame has had: those that come and go make nothing anew.
     states: Vec<PartState<T>>,
     /// Of a sun's parts: where their maps lie.
-    still: Still,
+    stable_boxes: StableBoxes,
 }
 
 struct PartState<T> {
@@ -31,14 +31,14 @@ struct PartState<T> {
 /// What a part is prepared with.
 struct PartStage<'a> {
     of_light: &'a Stage<'a>,
-    still: Option<[Vec3; 8]>,
+    stable_box: Option<[Vec3; 8]>,
     /// Parts of the light.
     part_count: usize,
 }
 
 /// Passes of all parts in one frame; `P` is the technique's.
 pub(super) struct PartedPasses<'a, P> {
-    pictures: PreparedPictures,
+    images: PreparedPartImages,
     parts: Vec<PartPasses<'a, P>>,
 }
 
@@ -56,8 +56,10 @@ impl<T: Technique> Parted<T> {
         meshes: &[MeshCaster<'a>],
         params: &T::Params,
     ) -> Result<Option<PartedPasses<'a, T::Prepared>>, Error> {
-        let mut still = earlier.as_mut().map(|earlier| std::mem::take(&mut earlier.still)).unwrap_or_default();
-        let parts = parts_of(frame, T::coverage(params), stage.anchor(), &mut still, stage.device.shared_values());
+        let mut stable_boxes =
+            earlier.as_mut().map(|earlier| std::mem::take(&mut earlier.stable_boxes)).unwrap_or_default();
+        let parts =
+            parts_of(frame, T::coverage(params), stage.anchor(), &mut stable_boxes, stage.device.shared_values());
         if parts.is_empty() {
             if let Some(earlier) = earlier {
                 earlier.parts = parts;
@@ -65,13 +67,13 @@ impl<T: Technique> Parted<T> {
             return Ok(None);
         }
         let parted = earlier.get_or_insert_with(|| Self {
-            pictures: PartPictures::new(stage),
+            images: PartImages::new(stage),
             parts: Vec::new(),
             states: Vec::new(),
-            still: Still::default(),
+            stable_boxes: StableBoxes::default(),
         });
-        parted.still = still;
-        let pictures = parted.pictures.prepare(stage, frame, &parts);
+        parted.stable_boxes = stable_boxes;
+        let images = parted.images.prepare(stage, frame, &parts);
         parted.parts = parts;
         let Self { parts, states, .. } = parted;
         let mut passes = Vec::with_capacity(parts.len());
@@ -79,10 +81,10 @@ impl<T: Technique> Parted<T> {
         for part in &*parts {
             let casters = part.casters_of(meshes);
             let state = PartState::of(states, stage, part.id)?;
-            let of_part = pictures.frame_of(frame, part);
+            let of_part = images.frame_of(frame, part);
             let frame = PreparedFrame { casters: of_meshes(&frame.casters, &casters), ..of_part };
             state.has_cast |= !casters.is_empty() || !matches!(frame.casters, PreparedCasters::Draws(_));
-            let stage = &PartStage { of_light: stage, still: part.still, part_count };
+            let stage = &PartStage { of_light: stage, stable_box: part.stable_box, part_count };
             let technique = if state.has_cast {
                 state.prepare(stage, &frame, params)?
             } else {
@@ -90,7 +92,7 @@ impl<T: Technique> Parted<T> {
             };
             passes.push(PartPasses { casters, technique });
         }
-        Ok(Some(PartedPasses { pictures, parts: passes }))
+        Ok(Some(PartedPasses { images, parts: passes }))
     }
 
     /// Records a frame, part by part.
@@ -100,14 +102,14 @@ impl<T: Technique> Parted<T> {
         frame: &PreparedFrame<'_>,
         passes: PartedPasses<'_, T::Prepared>,
     ) {
-        let PartedPasses { pictures, parts } = passes;
+        let PartedPasses { images, parts } = passes;
         for (i, (part, passes)) in self.parts.iter().zip(parts).enumerate() {
             let Some(state) = self.states.iter().find(|state| state.id == part.id) else { continue };
-            pictures.pick(recorder, i);
-            let frame = pictures.frame_of(frame, part);
+            images.pick(recorder, i);
+            let frame = images.frame_of(frame, part);
             let casters = of_meshes(&frame.casters, &passes.casters);
             state.technique.record(recorder, &PreparedFrame { casters, ..frame }, &passes.technique);
-            pictures.join(recorder, i);
+            images.join(recorder, i);
         }
     }
 
@@ -189,7 +191,7 @@ impl<T: Technique> PartState<T> {
         params: &T::Params,
     ) -> Result<T::Prepared, Error> {
         let of_light = part.of_light;
-        let stage = of_light.of_part(std::mem::take(&mut self.keep), part.still).sharing(part.part_count);
+        let stage = of_light.of_part(std::mem::take(&mut self.keep), part.stable_box).sharing(part.part_count);
         let outcome = self.technique.prepare(&stage, frame, params);
         self.keep = stage.finish_part(of_light);
         outcome

@@ -495,10 +495,10 @@ fn shadows_fade_and_end_at_a_distance() {
     }
 }
 
-/// While a camera walks under a sun, the maps of slices that still hold what is seen are not drawn again, and what they show
+/// While a camera walks under a sun, the maps of cascades that still hold what is seen are not drawn again, and what they show
 /// is what a state of its own shows.
 #[test]
-fn slices_that_hold_are_not_drawn_again() {
+fn cascades_that_hold_are_not_drawn_again() {
     let Some(gpu) = gpu() else { return };
     let shape = LightShape::Sun { angular_diameter_rad: 0.0093 };
     let sun = Light::new(shape, Vec3::ZERO, Vec3::new(0.4, -0.6, -0.3));

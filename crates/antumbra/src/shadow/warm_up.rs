@@ -14,12 +14,12 @@ use crate::casters::{
     TextureCoordinates,
 };
 use crate::contract::{DepthConvention, Error, Mask, MaskChannels, Receivers, SurfaceCoverage};
-use crate::cover::pictures::PartPictures;
-use crate::frame::denoise::Denoiser;
-use crate::frame::half_resolution::HalfResolution;
-use crate::frame::points::PointTextures;
-use crate::frame::smoothing::Smoothing;
 use crate::gpu::{Gpu, Recorder};
+use crate::light_partition::part_images::PartImages;
+use crate::mask::denoise::Denoiser;
+use crate::mask::half_resolution::HalfResolution;
+use crate::mask::smoothing::Smoothing;
+use crate::receivers::points::PointTextures;
 use crate::techniques::{Coverage, Technique};
 
 /// Features of a scene that decide which pipelines its frames need.
@@ -117,7 +117,7 @@ impl<T: Technique + 'static> Shadow<T> {
     pub fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps {
         let mut compile: Vec<fn(&Gpu)> = vec![PointTextures::compile_ahead];
         if T::coverage(&self.params) != Coverage::Everything {
-            compile.push(|gpu| drop(PartPictures::new(gpu)));
+            compile.push(|gpu| drop(PartImages::new(gpu)));
         }
         if self.denoise.is_some() {
             compile.push(|gpu| drop(Denoiser::new(gpu)));

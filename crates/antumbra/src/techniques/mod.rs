@@ -19,7 +19,7 @@ pub mod summed;
 
 mod technique;
 
-pub use crate::cover::Coverage;
+pub use crate::light_partition::Coverage;
 pub use technique::Technique;
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use antumbra_light::Light;
 
 use crate::contract::{DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
-use crate::cover::Coverage;
 use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
+use crate::light_partition::Coverage;
 
 /// A shadow technique, as the library runs it: hosts use it through [`Shadow`](crate::Shadow).
 ///
@@ -23,7 +23,7 @@ pub trait Technique: Sized + wgpu::WasmNotSendSync {
         Coverage::Window
     }
 
-    /// Whether visibility is noisy and written with how far it may be smoothed, as `frame/smoothing/noisy.wesl` says, where a frame has
+    /// Whether visibility is noisy and written with how far it may be smoothed, as `mask/smoothing/noisy.wesl` says, where a frame has
     /// [such a target](PreparedFrame::noisy).
     fn is_noisy(_params: &Self::Params, _light: &Light) -> bool {
         false

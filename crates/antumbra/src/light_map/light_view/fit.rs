@@ -6,11 +6,11 @@ use glam::{Vec2, Vec3};
 use super::hull::convex_hull;
 use super::window::PlaneWindow;
 use super::{LightView, WindowShape};
-use crate::light_map::between::Between;
+use crate::light_map::occluding_bounds::Between;
 
 /// What one view holds off its axis where receivers lie all around it (70 degrees): the texels that the last 20 degrees
 /// take are missed everywhere else (under a lamp in Sponza, `multi_view`'s rmse was .194 with all of 80 degrees in one view
-/// and .175 of 70). What lies beyond has views of its own: `cover`.
+/// and .175 of 70). What lies beyond has views of its own: `light_partition`.
 pub(crate) const MIDDLE_TANGENT: f32 = 2.75;
 
 /// A view is cut so far off its axis (89 degrees): no planar map can hold a half-space. Receivers beyond are lit.

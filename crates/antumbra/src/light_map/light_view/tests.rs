@@ -7,7 +7,7 @@ use super::{
     FitTo, Followed, LightView, LightViewGpu, MIDDLE_TANGENT, ViewFit, Window, WindowShape, light_view_of_matrix,
 };
 use crate::contract::{DepthConvention, SeenPoint};
-use crate::light_map::between::Between;
+use crate::light_map::occluding_bounds::Between;
 
 const MAP_SIZE: u32 = 512;
 

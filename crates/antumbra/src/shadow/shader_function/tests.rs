@@ -7,8 +7,8 @@ use glam::UVec2;
 
 use crate::TechniqueKind;
 use crate::contract::Mask;
-use crate::frame::points::tests::{Places, SIZE, Scene, create, lights};
 use crate::gpu::{Gpu, Recorder, ShaderFunction};
+use crate::receivers::points::tests::{Places, SIZE, Scene, create, lights};
 use crate::shadow::{AnyShadow, Casters, Frame};
 use crate::testing::{gpu_with, read_texture, view_of};
 

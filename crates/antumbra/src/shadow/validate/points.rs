@@ -2,8 +2,8 @@
 
 use super::{Check, Validator};
 use crate::contract::{Error, PointBuffer, PointWidths};
-use crate::frame::points::size_of_points;
 use crate::gpu::storage_complaint;
+use crate::receivers::points::size_of_points;
 use crate::shadow::PointFrame;
 
 impl Check<'_, PointFrame<'_>> {

@@ -12,8 +12,8 @@ use antumbra_light::Aabb;
 use glam::{Vec2, Vec3};
 
 use crate::contract::param_choice;
-use crate::light_map::between::Between;
 use crate::light_map::light_view::{LightView, LightViewGpu};
+use crate::light_map::occluding_bounds::Between;
 
 param_choice! {
     /// The direction in which a filterable map measures depth.

@@ -19,7 +19,6 @@
 use glam::UVec2;
 
 use crate::contract::{CastersKey, DrawnMap, Error, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, Cached, Content, Gpu, GpuStruct, Recorder, Span, Stage, compute_entry, compute_pipeline, create_uniform,
     write_uniform,
@@ -28,6 +27,7 @@ use crate::light_map::caster_depth::CasterDepth;
 use crate::light_map::hosts_map::view_of_hosts_map;
 use crate::light_map::light_view::LightViewGpu;
 use crate::primitives::packed_map::{PackedMap, Packing};
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 
 pub mod convolution;
 mod depth_axis;

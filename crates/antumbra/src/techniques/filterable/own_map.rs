@@ -6,13 +6,13 @@ use glam::UVec2;
 use super::depth_axis::{DepthAxis, DepthRange};
 use super::{FilterSettings, Filterable, FrameMap};
 use crate::contract::{Error, MeshCaster, PreparedFrame};
-use crate::frame::inputs::PreparedInputs;
 use crate::gpu::{Gpu, GpuStruct, Stage};
-use crate::light_map::between::Between;
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
 use crate::light_map::map_texels::map_texels;
-use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
+use crate::light_map::occluding_bounds::Between;
+use crate::light_map::stable_fit::{corners_to_hold, in_whole_texels};
+use crate::receivers::inputs::PreparedInputs;
 
 /// A light map of our own.
 #[derive(Debug)]

@@ -2,9 +2,9 @@
 
 use super::pipelines::BindGroups;
 use super::{FrameMap, ResolveBy};
-use crate::frame::inputs::PreparedInputs;
 use crate::gpu::{Recorder, Span};
 use crate::primitives::packed_map::PreparedPackedMap;
+use crate::receivers::inputs::PreparedInputs;
 
 /// Threads along each side of a workgroup over the map.
 const TILE: u32 = 8;

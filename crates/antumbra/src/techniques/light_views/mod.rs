@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3};
 
 use crate::contract::SeenPoint;
 use crate::gpu::{Cached, Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
-use crate::light_map::between::Between;
 use crate::light_map::light_view::{Followed, LightView, ViewFit};
+use crate::light_map::occluding_bounds::Between;
 
 mod ball;
 pub(crate) mod gpu_types;

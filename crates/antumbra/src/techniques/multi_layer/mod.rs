@@ -116,8 +116,6 @@ use crate::contract::{
     CastersKey, DrawnLists, Error, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow, PreparedCasters,
     PreparedFrame,
 };
-use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{
     Bindings, Cached, Content, Feedback, Gpu, Recorder, Span, Stage, bindings, compute_pipeline_without_zeroing,
     create_uniform, upload_with_room, write_uniform,
@@ -125,6 +123,8 @@ use crate::gpu::{
 use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::texel_lists::options::Accumulation;
 use crate::light_map::texel_lists::{FRAGMENT_BYTES, PreparedLists, TexelLists};
+use crate::mask::resolve::{PreparedResolve, Resolve, ResolveShader};
+use crate::receivers::inputs::FrameInputs;
 use crate::shaders;
 use crate::techniques::Technique;
 

@@ -18,7 +18,7 @@ use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};
 use crate::light_map::light_view::{FitTo, Followed, LightView, LightViewGpu, Window, WindowShape};
 use crate::light_map::map_texels::map_texels;
-use crate::light_map::still_view::{corners_to_hold, in_whole_texels};
+use crate::light_map::stable_fit::{corners_to_hold, in_whole_texels};
 use crate::light_map::texel_lists::options::{Accumulation, DepthTolerance, Gather, ListOptions};
 
 /// How near in depth, in texel widths, fragments in one texel must be for a sample to count the nearest alone. Against

@@ -40,12 +40,12 @@ use glam::{Vec3, Vec4};
 use antumbra_light::{Light, LightShape};
 
 use crate::contract::{CastersKey, Error, MeshCaster, Opacity, PreparedFrame, SampleWeights};
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, sized_buffer, upload_with_room,
 };
 use crate::light_map::caster_surface::SurfaceValues;
 use crate::light_map::readable_meshes::readable_meshes;
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::shaders;
 use crate::techniques::{Coverage, Technique};
 

@@ -15,8 +15,8 @@ use super::plan::FramePlan;
 use super::raster::{Draw, Hulls, Raster, RasterTargets};
 use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES};
 use super::{Options, settings_uniform, stride_of};
-use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Bindings, Stage, shared_constants};
+use crate::receivers::inputs::FrameInputs;
 
 shared_constants! {
     /// Triangles that are tested together, at most.

@@ -4,8 +4,8 @@ use glam::Vec4;
 
 use super::buffers::BufferSet;
 use super::light_points::LocalPoint;
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, upload_storage};
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::shaders;
 
 bindings! {

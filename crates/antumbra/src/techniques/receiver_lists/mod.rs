@@ -66,11 +66,11 @@ use std::collections::HashMap;
 use antumbra_light::{Light, LightShape};
 
 use crate::contract::{Error, PreparedFrame, param_choice};
-use crate::frame::inputs::{FrameInputs, PreparedInputs, clip_depth_rows, matrix_rounding_m};
-use crate::frame::sparse_upsample::SparseUpsample;
 use crate::gpu::{Gpu, Stage, white_texture};
 use crate::light_map::readable_meshes::readable_meshes;
+use crate::mask::sparse_upsample::SparseUpsample;
 use crate::primitives::prefix_scan::PrefixScan;
+use crate::receivers::inputs::{FrameInputs, PreparedInputs, clip_depth_rows, matrix_rounding_m};
 
 pub mod alias_free;
 mod batches;

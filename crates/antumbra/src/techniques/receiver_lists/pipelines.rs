@@ -1,7 +1,7 @@
 //! Pipelines of the passes.
 
-use crate::frame::inputs::FrameInputs;
 use crate::gpu::{Gpu, compute_entry, compute_pipeline};
+use crate::receivers::inputs::FrameInputs;
 use crate::shaders;
 
 use super::Options;

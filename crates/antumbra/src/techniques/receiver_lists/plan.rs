@@ -11,7 +11,7 @@ use super::settings::{CELL_COUNT, CHOOSES, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_P
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};
 use crate::contract::{Error, MeshCaster, PreparedFrame};
-use crate::light_map::between::Between;
+use crate::light_map::occluding_bounds::Between;
 
 /// The bits of all pixels take at most this; more light points are taken in turn.
 const BITS_BUDGET_BYTES: u64 = 120 << 20;

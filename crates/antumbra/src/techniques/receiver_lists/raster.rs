@@ -5,11 +5,11 @@ use std::sync::LazyLock;
 
 use glam::UVec2;
 
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, compute_pipeline, depth_state, dispatch_threads,
     sized_buffer, with_early_depth_test,
 };
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::shaders;
 
 use super::groups::{DrawArguments, Layouts, RegionHulls, Window};

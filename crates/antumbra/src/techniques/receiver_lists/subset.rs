@@ -3,9 +3,9 @@
 
 use super::buffers::BufferSet;
 use crate::contract::PreparedFrame;
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
-use crate::frame::sparse_upsample::{PreparedUpsample, SparseUpsample};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline};
+use crate::mask::sparse_upsample::{PreparedUpsample, SparseUpsample};
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::shaders;
 
 bindings! {

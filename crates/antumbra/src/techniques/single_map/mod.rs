@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
-use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{
     Bindings, Cached, Embeddable, EmbeddedGroup, Gpu, GpuStruct, Recorder, Stage, TableKey, bindings, create_uniform,
     shared_table, upload_storage, write_uniform,
 };
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
+use crate::mask::resolve::{PreparedResolve, Resolve, ResolveShader};
+use crate::receivers::inputs::FrameInputs;
 
 pub mod backprojection;
 pub mod bitmask;

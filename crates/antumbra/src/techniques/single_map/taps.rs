@@ -4,8 +4,8 @@ use antumbra_light::{Light, LightShape, SampleSet, ball_from_cube, disk_from_squ
 use glam::{Vec2, Vec3, Vec4};
 
 use super::KernelPoints;
-use crate::frame::inputs::kind_of;
 use crate::gpu::TableKey;
+use crate::receivers::inputs::kind_of;
 
 /// 2 / (1 + √5).
 const INVERSE_GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
@@ -116,7 +116,7 @@ impl Taps<'_> {
 /// `light_map/depth_layers/behind.wesl`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TapsProgram {
-    /// Of a light source in `frame/light.wesl`.
+    /// Of a light source in `receivers/light.wesl`.
     light_kind: u32,
     /// Of the casters, the light map's own included.
     layers: u32,

@@ -13,11 +13,11 @@ use super::table_fit::{LEAST_TILE, TableFit};
 use super::texture::written;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::FrameInputs;
-use crate::frame::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Stage, bindings, create_uniform, texels, write_uniform};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
+use crate::mask::resolve::{PreparedResolve, Resolve, ResolveShader};
+use crate::receivers::inputs::FrameInputs;
 use crate::shaders;
 use crate::techniques::summed::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
 

@@ -17,6 +17,205 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
+const bias_HALF_TEXEL = 0.5;
+
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
+}
+
+@group(1) @binding(0)
+var<uniform> map_light_view: space_LightViewGpu;
+
+fn map_is_in_map(uv: vec2f) -> bool {
+    return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+}
+
+fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
+    let towards = select(inputs_light_source.center_in_world - receiver.pos_in_world, -inputs_light_source.axis_in_world, inputs_light_source.kind == light_KIND_SUN);
+    return dot(receiver.normal_in_world, towards) > 0.0;
+}
+
+fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
+    return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
+}
+
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+}
+
+struct space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    held_from_m: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+const space_MIN_GRAZING_SINE = 0.00390625;
+
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
+}
+
+struct space_ReceiverPlane {
+    uv: vec2f,
+    depth: f32,
+    depth_per_uv: vec2f,
+    farthest_depth: f32,
+    surface_step: f32,
+    bias: f32,
+    faces_away: bool
+}
+
+const space_SURFACE_SLOPE = 8.0;
+
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
+    let p = x - view.origin_in_world;
+    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
+}
+
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
+}
+
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
+        return view.texel_in_plane;
+    }
+    let w = 1.0 + dot(view.warp, from_center);
+    let u = view.plane_from_uv.xy / view.map_size.x;
+    let v = view.plane_from_uv.zw / view.map_size.y;
+    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
+}
+
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
+    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
+}
+
+fn space_is_warped(view: space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
+    let from_origin = uv - view.uv_origin;
+    return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
+}
+
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
+    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
+    var plane: vec2f;
+    var biased_z: f32;
+    var depth_per_plane: vec2f;
+    var faces_away: bool;
+    if view.perspective == 1u {
+        let distance = length(p);
+        plane = p.xy / p.z;
+        let toward = max(1.0 - bias_m / distance, 0.001);
+        biased_z = p.z * toward;
+        let k = dot(n, p) * toward;
+        let k_min = least_sine * distance;
+        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+        faces_away = k > 0.0;
+    }
+    else {
+        plane = p.xy;
+        biased_z = p.z - bias_m;
+        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        depth_per_plane = -view.depth_scale * n.xy / nz;
+        faces_away = n.z > 0.0;
+    }
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + dot(view.warp, from_center);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
+    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
+}
+
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
+    if view.perspective == 1u {
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+    }
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
+    let scaled = depth - view.depth_offset;
+    let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
+    return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
+}
+
+fn exponential_exponential_visibility(filtered: f32, t: f32, c: f32) -> f32 {
+    return saturate(filtered * exp(c * (1.0 - t)));
+}
+
+fn levels_level_size(map_size: vec2u, level: u32) -> vec2u {
+    return map_size >> vec2u(level);
+}
+
+fn levels_level_origin(map_size: vec2u, level: u32) -> vec2u {
+    if level <= 1u {
+        return vec2u();
+    }
+    return vec2u(map_size.x >> 1u, (map_size.y >> 1u) - (map_size.y >> (level - 1u)));
+}
+
+fn levels_mips_size(map_size: vec2u) -> vec2u {
+    return vec2u((map_size.x >> 1u) + (map_size.x >> 2u), map_size.y >> 1u);
+}
+
+const packing_PACKING_FLOAT16 = 1u;
+
+const packing_PACKING_UNORM16 = 2u;
+
+const packing_PACKING_UNORM8 = 3u;
+
+fn packing_unpack_word(word: u32, packing: u32) -> vec4f {
+    switch packing {
+        case packing_PACKING_FLOAT16 {
+            return vec4f(unpack2x16float(word), 0.0, 0.0);
+        }
+        case packing_PACKING_UNORM16 {
+            return vec4f(unpack2x16unorm(word), 0.0, 0.0);
+        }
+        case packing_PACKING_UNORM8 {
+            return unpack4x8unorm(word);
+        }
+        case default {
+            return vec4f(bitcast<f32>(word), 0.0, 0.0, 0.0);
+        }
+    }
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -217,205 +416,6 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
-}
-
-const bias_HALF_TEXEL = 0.5;
-
-const bias_SNAPPED_TEXELS = 0.00390625;
-
-fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
-    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
-}
-
-@group(1) @binding(0)
-var<uniform> map_light_view: space_LightViewGpu;
-
-fn map_is_in_map(uv: vec2f) -> bool {
-    return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
-}
-
-fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
-    let towards = select(inputs_light_source.center_in_world - receiver.pos_in_world, -inputs_light_source.axis_in_world, inputs_light_source.kind == light_KIND_SUN);
-    return dot(receiver.normal_in_world, towards) > 0.0;
-}
-
-fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> space_ReceiverPlane {
-    return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
-}
-
-fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
-    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
-    let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
-}
-
-struct space_LightViewGpu {
-    origin_in_world: vec3f,
-    perspective: u32,
-    right_in_world: vec3f,
-    depth_scale: f32,
-    up_in_world: vec3f,
-    depth_offset: f32,
-    axis_in_world: vec3f,
-    depth_sign: f32,
-    uv_from_plane: vec4f,
-    plane_from_uv: vec4f,
-    uv_origin: vec2f,
-    map_size: vec2f,
-    near_m: f32,
-    far_m: f32,
-    texel_in_plane: f32,
-    held_from_m: f32,
-    warp: vec2f,
-    plane_center: vec2f
-}
-
-const space_MIN_GRAZING_SINE = 0.00390625;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
-
-fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
-    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
-}
-
-struct space_ReceiverPlane {
-    uv: vec2f,
-    depth: f32,
-    depth_per_uv: vec2f,
-    farthest_depth: f32,
-    surface_step: f32,
-    bias: f32,
-    faces_away: bool
-}
-
-const space_SURFACE_SLOPE = 8.0;
-
-fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
-    let p = x - view.origin_in_world;
-    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
-}
-
-fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
-}
-
-fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !space_is_warped(view) {
-        return view.texel_in_plane;
-    }
-    let w = 1.0 + dot(view.warp, from_center);
-    let u = view.plane_from_uv.xy / view.map_size.x;
-    let v = view.plane_from_uv.zw / view.map_size.y;
-    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
-}
-
-fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
-    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
-}
-
-fn space_is_warped(view: space_LightViewGpu) -> bool {
-    return any(view.warp != vec2f());
-}
-
-fn space_warped_plane(view: space_LightViewGpu, uv: vec2f) -> vec2f {
-    let from_origin = uv - view.uv_origin;
-    return view.plane_from_uv.xy * from_origin.x + view.plane_from_uv.zw * from_origin.y;
-}
-
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
-    let p = space_light_from_world(view, x);
-    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
-    var plane: vec2f;
-    var biased_z: f32;
-    var depth_per_plane: vec2f;
-    var faces_away: bool;
-    if view.perspective == 1u {
-        let distance = length(p);
-        plane = p.xy / p.z;
-        let toward = max(1.0 - bias_m / distance, 0.001);
-        biased_z = p.z * toward;
-        let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
-        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
-        faces_away = k > 0.0;
-    }
-    else {
-        plane = p.xy;
-        biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
-        depth_per_plane = -view.depth_scale * n.xy / nz;
-        faces_away = n.z > 0.0;
-    }
-    let from_center = plane - view.plane_center;
-    let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = space_depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = space_texel_in_plane_at(view, from_center);
-    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
-    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
-    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
-}
-
-fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
-    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
-    return abs(dot(normal_in_world, ray));
-}
-
-fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
-    let p = space_light_from_world(view, x);
-    if view.perspective == 1u {
-        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
-    }
-    return space_texel_in_plane_at(view, p.xy - view.plane_center);
-}
-
-fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
-    let scaled = depth - view.depth_offset;
-    let divisor = select(scaled, 1e-20 * view.depth_scale, scaled == 0.0);
-    return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
-}
-
-fn exponential_exponential_visibility(filtered: f32, t: f32, c: f32) -> f32 {
-    return saturate(filtered * exp(c * (1.0 - t)));
-}
-
-fn levels_level_size(map_size: vec2u, level: u32) -> vec2u {
-    return map_size >> vec2u(level);
-}
-
-fn levels_level_origin(map_size: vec2u, level: u32) -> vec2u {
-    if level <= 1u {
-        return vec2u();
-    }
-    return vec2u(map_size.x >> 1u, (map_size.y >> 1u) - (map_size.y >> (level - 1u)));
-}
-
-fn levels_mips_size(map_size: vec2u) -> vec2u {
-    return vec2u((map_size.x >> 1u) + (map_size.x >> 2u), map_size.y >> 1u);
-}
-
-const packing_PACKING_FLOAT16 = 1u;
-
-const packing_PACKING_UNORM16 = 2u;
-
-const packing_PACKING_UNORM8 = 3u;
-
-fn packing_unpack_word(word: u32, packing: u32) -> vec4f {
-    switch packing {
-        case packing_PACKING_FLOAT16 {
-            return vec4f(unpack2x16float(word), 0.0, 0.0);
-        }
-        case packing_PACKING_UNORM16 {
-            return vec4f(unpack2x16unorm(word), 0.0, 0.0);
-        }
-        case packing_PACKING_UNORM8 {
-            return unpack4x8unorm(word);
-        }
-        case default {
-            return vec4f(bitcast<f32>(word), 0.0, 0.0, 0.0);
-        }
-    }
 }
 
 struct encode_EsmUniform {

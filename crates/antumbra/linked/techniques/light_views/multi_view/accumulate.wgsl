@@ -49,6 +49,168 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
+const bias_HALF_TEXEL = 0.5;
+
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
+}
+
+struct space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    held_from_m: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+const space_MIN_GRAZING_SINE = 0.00390625;
+
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
+}
+
+struct space_ReceiverPlane {
+    uv: vec2f,
+    depth: f32,
+    depth_per_uv: vec2f,
+    farthest_depth: f32,
+    surface_step: f32,
+    bias: f32,
+    faces_away: bool
+}
+
+const space_SURFACE_SLOPE = 8.0;
+
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
+    let p = x - view.origin_in_world;
+    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
+}
+
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
+}
+
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
+        return view.texel_in_plane;
+    }
+    let w = 1.0 + dot(view.warp, from_center);
+    let u = view.plane_from_uv.xy / view.map_size.x;
+    let v = view.plane_from_uv.zw / view.map_size.y;
+    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
+}
+
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
+    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
+}
+
+fn space_is_warped(view: space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    return space_receiver_plane_within(view, x, normal_in_world, bias_m, space_min_grazing_sine(view));
+}
+
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
+    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
+    var plane: vec2f;
+    var biased_z: f32;
+    var depth_per_plane: vec2f;
+    var faces_away: bool;
+    if view.perspective == 1u {
+        let distance = length(p);
+        plane = p.xy / p.z;
+        let toward = max(1.0 - bias_m / distance, 0.001);
+        biased_z = p.z * toward;
+        let k = dot(n, p) * toward;
+        let k_min = least_sine * distance;
+        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+        faces_away = k > 0.0;
+    }
+    else {
+        plane = p.xy;
+        biased_z = p.z - bias_m;
+        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        depth_per_plane = -view.depth_scale * n.xy / nz;
+        faces_away = n.z > 0.0;
+    }
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + dot(view.warp, from_center);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
+    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
+}
+
+fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
+    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
+    return saturate(no_farther);
+}
+
+fn space_lit_quad(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
+    let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
+    let from_here = space_from_quad_center(t);
+    let across = stored.yxwz - stored;
+    let along = stored.wzyx - stored;
+    let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
+    let in_front = space_in_front_of_plane(view, plane, here, from_here, stored, carried);
+    return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
+}
+
+struct space_Quad2 {
+    x: vec4f,
+    y: vec4f
+}
+
+fn space_from_quad_center(t: vec2f) -> space_Quad2 {
+    return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+}
+
+fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane, here: f32, from_here: space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
+    let step = plane.depth_per_uv / view.map_size;
+    let at_centers = space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
+    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - space_held(view, plane, vec4f(here))));
+}
+
+fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
+    return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
+}
+
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
+    if view.perspective == 1u {
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+    }
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -242,168 +404,6 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
-}
-
-const bias_HALF_TEXEL = 0.5;
-
-const bias_SNAPPED_TEXELS = 0.00390625;
-
-fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
-    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
-}
-
-struct space_LightViewGpu {
-    origin_in_world: vec3f,
-    perspective: u32,
-    right_in_world: vec3f,
-    depth_scale: f32,
-    up_in_world: vec3f,
-    depth_offset: f32,
-    axis_in_world: vec3f,
-    depth_sign: f32,
-    uv_from_plane: vec4f,
-    plane_from_uv: vec4f,
-    uv_origin: vec2f,
-    map_size: vec2f,
-    near_m: f32,
-    far_m: f32,
-    texel_in_plane: f32,
-    held_from_m: f32,
-    warp: vec2f,
-    plane_center: vec2f
-}
-
-const space_MIN_GRAZING_SINE = 0.00390625;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
-
-fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
-    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
-}
-
-struct space_ReceiverPlane {
-    uv: vec2f,
-    depth: f32,
-    depth_per_uv: vec2f,
-    farthest_depth: f32,
-    surface_step: f32,
-    bias: f32,
-    faces_away: bool
-}
-
-const space_SURFACE_SLOPE = 8.0;
-
-fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
-    let p = x - view.origin_in_world;
-    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
-}
-
-fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
-}
-
-fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !space_is_warped(view) {
-        return view.texel_in_plane;
-    }
-    let w = 1.0 + dot(view.warp, from_center);
-    let u = view.plane_from_uv.xy / view.map_size.x;
-    let v = view.plane_from_uv.zw / view.map_size.y;
-    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
-}
-
-fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
-    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
-}
-
-fn space_is_warped(view: space_LightViewGpu) -> bool {
-    return any(view.warp != vec2f());
-}
-
-fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
-    return space_receiver_plane_within(view, x, normal_in_world, bias_m, space_min_grazing_sine(view));
-}
-
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
-    let p = space_light_from_world(view, x);
-    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
-    var plane: vec2f;
-    var biased_z: f32;
-    var depth_per_plane: vec2f;
-    var faces_away: bool;
-    if view.perspective == 1u {
-        let distance = length(p);
-        plane = p.xy / p.z;
-        let toward = max(1.0 - bias_m / distance, 0.001);
-        biased_z = p.z * toward;
-        let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
-        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
-        faces_away = k > 0.0;
-    }
-    else {
-        plane = p.xy;
-        biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
-        depth_per_plane = -view.depth_scale * n.xy / nz;
-        faces_away = n.z > 0.0;
-    }
-    let from_center = plane - view.plane_center;
-    let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = space_depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = space_texel_in_plane_at(view, from_center);
-    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
-    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
-    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
-}
-
-fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
-    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
-    return saturate(no_farther);
-}
-
-fn space_lit_quad(view: space_LightViewGpu, plane: space_ReceiverPlane, uv: vec2f, t: vec2f, stored: vec4f) -> vec4f {
-    let here = plane.depth + dot(plane.depth_per_uv, uv - plane.uv);
-    let from_here = space_from_quad_center(t);
-    let across = stored.yxwz - stored;
-    let along = stored.wzyx - stored;
-    let carried = stored + abs(from_here.x) * select(vec4f(0.0), across, abs(across) < vec4f(plane.surface_step)) + abs(from_here.y) * select(vec4f(0.0), along, abs(along) < vec4f(plane.surface_step));
-    let in_front = space_in_front_of_plane(view, plane, here, from_here, stored, carried);
-    return select(vec4f(1.0), vec4f(0.0), in_front > vec4f(0.0));
-}
-
-struct space_Quad2 {
-    x: vec4f,
-    y: vec4f
-}
-
-fn space_from_quad_center(t: vec2f) -> space_Quad2 {
-    return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
-}
-
-fn space_in_front_of_plane(view: space_LightViewGpu, plane: space_ReceiverPlane, here: f32, from_here: space_Quad2, stored: vec4f, carried: vec4f) -> vec4f {
-    let step = plane.depth_per_uv / view.map_size;
-    let at_centers = space_held(view, plane, here + from_here.x * step.x + from_here.y * step.y);
-    return min(view.depth_sign * (stored - at_centers), view.depth_sign * (carried - space_held(view, plane, vec4f(here))));
-}
-
-fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
-    return mix(mix(quad.w, quad.z, t.x), mix(quad.x, quad.y, t.x), t.y);
-}
-
-fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
-    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
-    return abs(dot(normal_in_world, ray));
-}
-
-fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
-    let p = space_light_from_world(view, x);
-    if view.perspective == 1u {
-        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
-    }
-    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
 struct sample_views_ViewBatch {

@@ -194,6 +194,239 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
+const bias_HALF_TEXEL = 0.5;
+
+const bias_SNAPPED_TEXELS = 0.00390625;
+
+fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
+    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
+}
+
+const triangles_NO_NEIGHBOUR = 4294967295u;
+
+fn triangles_corner_of(word: vec4u) -> vec3f {
+    return bitcast<vec3f>(word.xyz);
+}
+
+@group(1) @binding(8)
+var<storage, read> walk_caster_triangles: array<vec4u>;
+
+struct walk_Segment {
+    start: vec3f,
+    towards: vec3f,
+    inverse_end: f32,
+    depth_error_m: vec3f
+}
+
+const walk_STAYS_ASIDE = 0u;
+
+const walk_PASSES_BY = 1u;
+
+const walk_GOES_ON = 2u;
+
+const walk_MEETS = 3u;
+
+const walk_STARTS_ON = 4u;
+
+struct walk_Meeting {
+    kind: u32,
+    t: f32
+}
+
+const walk_MOST_STEPS = 8u;
+
+fn walk_meeting(segment: walk_Segment, first: u32) -> walk_Meeting {
+    var result = walk_Meeting(walk_STAYS_ASIDE, 0.0);
+    var at = first;
+    var passed = vec3f();
+    for (var step = 0u; step < walk_MOST_STEPS && at != triangles_NO_NEIGHBOUR; step++) {
+        let word_a = walk_caster_triangles[3u * at];
+        let word_b = walk_caster_triangles[3u * at + 1u];
+        let word_c = walk_caster_triangles[3u * at + 2u];
+        let corner_a = triangles_corner_of(word_a);
+        let corner_b = triangles_corner_of(word_b);
+        let corner_c = triangles_corner_of(word_c);
+        let a = corner_a - segment.start;
+        let b = corner_b - segment.start;
+        let c = corner_c - segment.start;
+        let beyond = vec3f(dot(passed, a), dot(passed, b), dot(passed, c));
+        if max(beyond.x, max(beyond.y, beyond.z)) < -min(beyond.x, min(beyond.y, beyond.z)) {
+            break;
+        }
+        let n = cross(corner_b - corner_a, corner_c - corner_a);
+        let height = dot(a, n);
+        var away = dot(segment.depth_error_m, n);
+        if abs(height) <= abs(away) {
+            away *= depth_error_largest_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, corner_a, corner_b, corner_c);
+        }
+        let starts_on = abs(height) <= abs(away);
+        let side = sign(select(height, away, starts_on));
+        let approach = dot(segment.towards, n);
+        if side == 0.0 || side * approach <= abs(height) * segment.inverse_end {
+            result.kind = select(result.kind, walk_STARTS_ON, starts_on && step == 0u);
+            break;
+        }
+        result = walk_Meeting(walk_PASSES_BY, max(height / approach, 0.0));
+        let n_a = side * cross(corner_b - corner_c, b + c);
+        let n_b = side * cross(corner_c - corner_a, c + a);
+        let n_c = side * cross(corner_a - corner_b, a + b);
+        let inside = vec3f(dot(n_a, segment.towards), dot(n_b, segment.towards), dot(n_c, segment.towards));
+        let least = min(inside.x, min(inside.y, inside.z));
+        if least >= 0.0 {
+            result.kind = walk_MEETS;
+            break;
+        }
+        at = word_c.w;
+        passed = -n_c;
+        if inside.x == least {
+            at = word_a.w;
+            passed = -n_a;
+        }
+        else if inside.y == least {
+            at = word_b.w;
+            passed = -n_b;
+        }
+        if step + 1u == walk_MOST_STEPS && at != triangles_NO_NEIGHBOUR {
+            result.kind = walk_GOES_ON;
+        }
+    }
+    return result;
+}
+
+struct space_LightViewGpu {
+    origin_in_world: vec3f,
+    perspective: u32,
+    right_in_world: vec3f,
+    depth_scale: f32,
+    up_in_world: vec3f,
+    depth_offset: f32,
+    axis_in_world: vec3f,
+    depth_sign: f32,
+    uv_from_plane: vec4f,
+    plane_from_uv: vec4f,
+    uv_origin: vec2f,
+    map_size: vec2f,
+    near_m: f32,
+    far_m: f32,
+    texel_in_plane: f32,
+    held_from_m: f32,
+    warp: vec2f,
+    plane_center: vec2f
+}
+
+const space_MIN_GRAZING_SINE = 0.00390625;
+
+const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
+
+fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
+    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
+}
+
+struct space_ReceiverPlane {
+    uv: vec2f,
+    depth: f32,
+    depth_per_uv: vec2f,
+    farthest_depth: f32,
+    surface_step: f32,
+    bias: f32,
+    faces_away: bool
+}
+
+const space_SURFACE_SLOPE = 8.0;
+
+fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
+    let p = x - view.origin_in_world;
+    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
+}
+
+fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
+    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
+}
+
+fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
+    if !space_is_warped(view) {
+        return view.texel_in_plane;
+    }
+    let w = 1.0 + dot(view.warp, from_center);
+    let u = view.plane_from_uv.xy / view.map_size.x;
+    let v = view.plane_from_uv.zw / view.map_size.y;
+    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
+}
+
+fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
+    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
+}
+
+fn space_is_warped(view: space_LightViewGpu) -> bool {
+    return any(view.warp != vec2f());
+}
+
+fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
+    return space_receiver_plane_within(view, x, normal_in_world, bias_m, space_min_grazing_sine(view));
+}
+
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+    let p = space_light_from_world(view, x);
+    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
+    var plane: vec2f;
+    var biased_z: f32;
+    var depth_per_plane: vec2f;
+    var faces_away: bool;
+    if view.perspective == 1u {
+        let distance = length(p);
+        plane = p.xy / p.z;
+        let toward = max(1.0 - bias_m / distance, 0.001);
+        biased_z = p.z * toward;
+        let k = dot(n, p) * toward;
+        let k_min = least_sine * distance;
+        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
+        faces_away = k > 0.0;
+    }
+    else {
+        plane = p.xy;
+        biased_z = p.z - bias_m;
+        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        depth_per_plane = -view.depth_scale * n.xy / nz;
+        faces_away = n.z > 0.0;
+    }
+    let from_center = plane - view.plane_center;
+    let divisor = 1.0 + dot(view.warp, from_center);
+    let unwarped_depth = space_depth_of_z(view, biased_z);
+    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
+    let texel_in_plane = space_texel_in_plane_at(view, from_center);
+    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
+    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
+    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
+    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
+}
+
+fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
+    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
+    return saturate(no_farther);
+}
+
+struct space_Quad2 {
+    x: vec4f,
+    y: vec4f
+}
+
+fn space_from_quad_center(t: vec2f) -> space_Quad2 {
+    return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
+}
+
+fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
+    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
+    return abs(dot(normal_in_world, ray));
+}
+
+fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
+    let p = space_light_from_world(view, x);
+    if view.perspective == 1u {
+        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
+    }
+    return space_texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
 const depth_error_ROUNDING = 4.76837158203125e-7;
 
 fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
@@ -432,239 +665,6 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     }
     let half_width = depth * light.reach_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
-}
-
-const bias_HALF_TEXEL = 0.5;
-
-const bias_SNAPPED_TEXELS = 0.00390625;
-
-fn bias_automatic_bias_m(texel_width_m: f32, grazing_sine: f32, bias_scale: f32) -> f32 {
-    return bias_scale * texel_width_m * max(bias_HALF_TEXEL, bias_SNAPPED_TEXELS / grazing_sine);
-}
-
-const triangles_NO_NEIGHBOUR = 4294967295u;
-
-fn triangles_corner_of(word: vec4u) -> vec3f {
-    return bitcast<vec3f>(word.xyz);
-}
-
-@group(1) @binding(8)
-var<storage, read> walk_caster_triangles: array<vec4u>;
-
-struct walk_Segment {
-    start: vec3f,
-    towards: vec3f,
-    inverse_end: f32,
-    depth_error_m: vec3f
-}
-
-const walk_STAYS_ASIDE = 0u;
-
-const walk_PASSES_BY = 1u;
-
-const walk_GOES_ON = 2u;
-
-const walk_MEETS = 3u;
-
-const walk_STARTS_ON = 4u;
-
-struct walk_Meeting {
-    kind: u32,
-    t: f32
-}
-
-const walk_MOST_STEPS = 8u;
-
-fn walk_meeting(segment: walk_Segment, first: u32) -> walk_Meeting {
-    var result = walk_Meeting(walk_STAYS_ASIDE, 0.0);
-    var at = first;
-    var passed = vec3f();
-    for (var step = 0u; step < walk_MOST_STEPS && at != triangles_NO_NEIGHBOUR; step++) {
-        let word_a = walk_caster_triangles[3u * at];
-        let word_b = walk_caster_triangles[3u * at + 1u];
-        let word_c = walk_caster_triangles[3u * at + 2u];
-        let corner_a = triangles_corner_of(word_a);
-        let corner_b = triangles_corner_of(word_b);
-        let corner_c = triangles_corner_of(word_c);
-        let a = corner_a - segment.start;
-        let b = corner_b - segment.start;
-        let c = corner_c - segment.start;
-        let beyond = vec3f(dot(passed, a), dot(passed, b), dot(passed, c));
-        if max(beyond.x, max(beyond.y, beyond.z)) < -min(beyond.x, min(beyond.y, beyond.z)) {
-            break;
-        }
-        let n = cross(corner_b - corner_a, corner_c - corner_a);
-        let height = dot(a, n);
-        var away = dot(segment.depth_error_m, n);
-        if abs(height) <= abs(away) {
-            away *= depth_error_largest_depth(inputs_receiver_view.clip_z_row, inputs_receiver_view.clip_w_row, corner_a, corner_b, corner_c);
-        }
-        let starts_on = abs(height) <= abs(away);
-        let side = sign(select(height, away, starts_on));
-        let approach = dot(segment.towards, n);
-        if side == 0.0 || side * approach <= abs(height) * segment.inverse_end {
-            result.kind = select(result.kind, walk_STARTS_ON, starts_on && step == 0u);
-            break;
-        }
-        result = walk_Meeting(walk_PASSES_BY, max(height / approach, 0.0));
-        let n_a = side * cross(corner_b - corner_c, b + c);
-        let n_b = side * cross(corner_c - corner_a, c + a);
-        let n_c = side * cross(corner_a - corner_b, a + b);
-        let inside = vec3f(dot(n_a, segment.towards), dot(n_b, segment.towards), dot(n_c, segment.towards));
-        let least = min(inside.x, min(inside.y, inside.z));
-        if least >= 0.0 {
-            result.kind = walk_MEETS;
-            break;
-        }
-        at = word_c.w;
-        passed = -n_c;
-        if inside.x == least {
-            at = word_a.w;
-            passed = -n_a;
-        }
-        else if inside.y == least {
-            at = word_b.w;
-            passed = -n_b;
-        }
-        if step + 1u == walk_MOST_STEPS && at != triangles_NO_NEIGHBOUR {
-            result.kind = walk_GOES_ON;
-        }
-    }
-    return result;
-}
-
-struct space_LightViewGpu {
-    origin_in_world: vec3f,
-    perspective: u32,
-    right_in_world: vec3f,
-    depth_scale: f32,
-    up_in_world: vec3f,
-    depth_offset: f32,
-    axis_in_world: vec3f,
-    depth_sign: f32,
-    uv_from_plane: vec4f,
-    plane_from_uv: vec4f,
-    uv_origin: vec2f,
-    map_size: vec2f,
-    near_m: f32,
-    far_m: f32,
-    texel_in_plane: f32,
-    held_from_m: f32,
-    warp: vec2f,
-    plane_center: vec2f
-}
-
-const space_MIN_GRAZING_SINE = 0.00390625;
-
-const space_MIN_GRAZING_SINE_OF_PARALLEL = 0.0078;
-
-fn space_min_grazing_sine(view: space_LightViewGpu) -> f32 {
-    return select(space_MIN_GRAZING_SINE_OF_PARALLEL, space_MIN_GRAZING_SINE, view.perspective == 1u);
-}
-
-struct space_ReceiverPlane {
-    uv: vec2f,
-    depth: f32,
-    depth_per_uv: vec2f,
-    farthest_depth: f32,
-    surface_step: f32,
-    bias: f32,
-    faces_away: bool
-}
-
-const space_SURFACE_SLOPE = 8.0;
-
-fn space_light_from_world(view: space_LightViewGpu, x: vec3f) -> vec3f {
-    let p = x - view.origin_in_world;
-    return vec3f(dot(p, view.right_in_world), dot(p, view.up_in_world), dot(p, view.axis_in_world));
-}
-
-fn space_depth_of_z(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return view.depth_scale * select(z_m, 1.0 / z_m, view.perspective == 1u) + view.depth_offset;
-}
-
-fn space_texel_in_plane_at(view: space_LightViewGpu, from_center: vec2f) -> f32 {
-    if !space_is_warped(view) {
-        return view.texel_in_plane;
-    }
-    let w = 1.0 + dot(view.warp, from_center);
-    let u = view.plane_from_uv.xy / view.map_size.x;
-    let v = view.plane_from_uv.zw / view.map_size.y;
-    return w * max(length(u + from_center * dot(view.warp, u)), length(v + from_center * dot(view.warp, v)));
-}
-
-fn space_uv_step_of_plane(view: space_LightViewGpu, step: vec2f) -> vec2f {
-    return view.uv_from_plane.xy * step.x + view.uv_from_plane.zw * step.y;
-}
-
-fn space_is_warped(view: space_LightViewGpu) -> bool {
-    return any(view.warp != vec2f());
-}
-
-fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32) -> space_ReceiverPlane {
-    return space_receiver_plane_within(view, x, normal_in_world, bias_m, space_min_grazing_sine(view));
-}
-
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
-    let p = space_light_from_world(view, x);
-    let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
-    var plane: vec2f;
-    var biased_z: f32;
-    var depth_per_plane: vec2f;
-    var faces_away: bool;
-    if view.perspective == 1u {
-        let distance = length(p);
-        plane = p.xy / p.z;
-        let toward = max(1.0 - bias_m / distance, 0.001);
-        biased_z = p.z * toward;
-        let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
-        depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
-        faces_away = k > 0.0;
-    }
-    else {
-        plane = p.xy;
-        biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
-        depth_per_plane = -view.depth_scale * n.xy / nz;
-        faces_away = n.z > 0.0;
-    }
-    let from_center = plane - view.plane_center;
-    let divisor = 1.0 + dot(view.warp, from_center);
-    let unwarped_depth = space_depth_of_z(view, biased_z);
-    let bias = (unwarped_depth - space_depth_of_z(view, p.z)) / divisor;
-    let texel_in_plane = space_texel_in_plane_at(view, from_center);
-    let surface_step = space_SURFACE_SLOPE * texel_in_plane * abs(view.depth_scale) / divisor * select(1.0, 1.0 / p.z, view.perspective == 1u);
-    depth_per_plane -= view.warp * (unwarped_depth - dot(depth_per_plane, from_center));
-    let depth_per_uv = vec2f(dot(view.plane_from_uv.xy, depth_per_plane), dot(view.plane_from_uv.zw, depth_per_plane));
-    return space_ReceiverPlane(view.uv_origin + space_uv_step_of_plane(view, from_center / divisor), unwarped_depth / divisor, depth_per_uv, select(1.0, 0.0, view.depth_sign > 0.0), surface_step, bias, faces_away);
-}
-
-fn space_held(view: space_LightViewGpu, plane: space_ReceiverPlane, depth: vec4f) -> vec4f {
-    let no_farther = view.depth_sign * max(view.depth_sign * depth, vec4f(view.depth_sign * plane.farthest_depth));
-    return saturate(no_farther);
-}
-
-struct space_Quad2 {
-    x: vec4f,
-    y: vec4f
-}
-
-fn space_from_quad_center(t: vec2f) -> space_Quad2 {
-    return space_Quad2(vec4f(-t.x, 1.0 - t.x, 1.0 - t.x, -t.x), vec4f(1.0 - t.y, 1.0 - t.y, -t.y, -t.y));
-}
-
-fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
-    let ray = select(view.axis_in_world, normalize(x - view.origin_in_world), view.perspective == 1u);
-    return abs(dot(normal_in_world, ray));
-}
-
-fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
-    let p = space_light_from_world(view, x);
-    if view.perspective == 1u {
-        return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
-    }
-    return space_texel_in_plane_at(view, p.xy - view.plane_center);
 }
 
 struct band_PixelBand {

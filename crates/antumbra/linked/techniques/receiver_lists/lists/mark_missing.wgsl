@@ -8,6 +8,18 @@ fn mark_missing(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     }
 }
 
+@group(0) @binding(7)
+var<storage, read> missing_missing: array<u32>;
+
+fn missing_missing_count() -> u32 {
+    return min(missing_missing[0], arrayLength(&missing_missing) - 1u);
+}
+
+fn missing_missing_pixel(i: u32) -> vec2u {
+    let packed = missing_missing[i + 1u];
+    return vec2u(packed & 65535u, packed >> 16u);
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -34,18 +46,6 @@ struct inputs_ReceiverView {
 
 @group(0) @binding(0)
 var<uniform> inputs_receiver_view: inputs_ReceiverView;
-
-@group(0) @binding(7)
-var<storage, read> missing_missing: array<u32>;
-
-fn missing_missing_count() -> u32 {
-    return min(missing_missing[0], arrayLength(&missing_missing) - 1u);
-}
-
-fn missing_missing_pixel(i: u32) -> vec2u {
-    let packed = missing_missing[i + 1u];
-    return vec2u(packed & 65535u, packed >> 16u);
-}
 
 @group(1) @binding(3)
 var<storage, read_write> bindings_places: array<vec2u>;

@@ -21,6 +21,10 @@ fn raster_after(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     open_bits_write_open(bits_pixel_of(pixel_index), pixel_index, seen);
 }
 
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -86,10 +90,6 @@ fn inputs_read_visibility_rgb(pixel: vec2u) -> vec3f {
         return vec3f(first);
     }
     return vec3f(first, inputs_load_mask(pixel, 1u), inputs_load_mask(pixel, 2u));
-}
-
-fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
-    return id.y * group_counts.x * 64u + id.x;
 }
 
 @group(1) @binding(0)

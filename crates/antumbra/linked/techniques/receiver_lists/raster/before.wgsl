@@ -23,6 +23,10 @@ fn raster_before(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     }
 }
 
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
+
 const depth_error_ROUNDING = 4.76837158203125e-7;
 
 fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
@@ -248,10 +252,6 @@ const ray_offset_ROUNDING = 3.814697265625e-6;
 fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
     let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + inputs_eye_distance_m(pos_in_world));
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
-}
-
-fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
-    return id.y * group_counts.x * 64u + id.x;
 }
 
 @group(1) @binding(0)

@@ -111,6 +111,62 @@ fn fragment(fragment: Fragment) {
     }
 }
 
+const caster_surface_COVERAGE_WHOLE: u32 = 0u;
+
+const caster_surface_COVERAGE_ALPHA: u32 = 1u;
+
+const caster_surface_COVERAGE_CUTOFF: u32 = 2u;
+
+fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
+    switch coverage {
+        case caster_surface_COVERAGE_WHOLE {
+            return 1.0;
+        }
+        case caster_surface_COVERAGE_ALPHA {
+            return saturate(alpha);
+        }
+        case default {
+            return select(0.0, 1.0, alpha >= cutoff);
+        }
+    }
+}
+
+fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
+    return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
+}
+
+fn thresholds_hash_combine(seed: u32, value: u32) -> u32 {
+    return seed ^ (value + (seed << 6u) + (seed >> 2u));
+}
+
+fn thresholds_hash(value: u32) -> u32 {
+    var x = value;
+    x ^= x >> 16u;
+    x *= 2146121005u;
+    x ^= x >> 15u;
+    x *= 2221713035u;
+    return x ^ (x >> 16u);
+}
+
+fn thresholds_hash_of_position(seed: u32, position: vec3f) -> u32 {
+    let bits = bitcast<vec3u>(position);
+    return thresholds_hash(thresholds_hash_combine(thresholds_hash(thresholds_hash_combine(thresholds_hash(thresholds_hash_combine(seed, bits.x)), bits.y)), bits.z));
+}
+
+fn thresholds_laine_karras_permutation(value: u32, seed: u32) -> u32 {
+    var x = value + seed;
+    x ^= x * 1817228412u;
+    x ^= x * 3090095698u;
+    x ^= x * 3350193720u;
+    return x ^ (x * 2367878886u);
+}
+
+fn thresholds_stochastic_threshold(point: u32, seed: u32) -> f32 {
+    let shuffled = reverseBits(thresholds_laine_karras_permutation(reverseBits(point), thresholds_hash(seed)));
+    let scrambled = reverseBits(thresholds_laine_karras_permutation(shuffled, thresholds_hash(seed ^ 2654435769u)));
+    return (f32(scrambled >> 8u) + 0.5) / 16777216.0;
+}
+
 const depth_error_ROUNDING = 4.76837158203125e-7;
 
 fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
@@ -336,62 +392,6 @@ const ray_offset_ROUNDING = 3.814697265625e-6;
 fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
     let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + inputs_eye_distance_m(pos_in_world));
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
-}
-
-const caster_surface_COVERAGE_WHOLE: u32 = 0u;
-
-const caster_surface_COVERAGE_ALPHA: u32 = 1u;
-
-const caster_surface_COVERAGE_CUTOFF: u32 = 2u;
-
-fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
-    switch coverage {
-        case caster_surface_COVERAGE_WHOLE {
-            return 1.0;
-        }
-        case caster_surface_COVERAGE_ALPHA {
-            return saturate(alpha);
-        }
-        case default {
-            return select(0.0, 1.0, alpha >= cutoff);
-        }
-    }
-}
-
-fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
-    return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
-}
-
-fn thresholds_hash_combine(seed: u32, value: u32) -> u32 {
-    return seed ^ (value + (seed << 6u) + (seed >> 2u));
-}
-
-fn thresholds_hash(value: u32) -> u32 {
-    var x = value;
-    x ^= x >> 16u;
-    x *= 2146121005u;
-    x ^= x >> 15u;
-    x *= 2221713035u;
-    return x ^ (x >> 16u);
-}
-
-fn thresholds_hash_of_position(seed: u32, position: vec3f) -> u32 {
-    let bits = bitcast<vec3u>(position);
-    return thresholds_hash(thresholds_hash_combine(thresholds_hash(thresholds_hash_combine(thresholds_hash(thresholds_hash_combine(seed, bits.x)), bits.y)), bits.z));
-}
-
-fn thresholds_laine_karras_permutation(value: u32, seed: u32) -> u32 {
-    var x = value + seed;
-    x ^= x * 1817228412u;
-    x ^= x * 3090095698u;
-    x ^= x * 3350193720u;
-    return x ^ (x * 2367878886u);
-}
-
-fn thresholds_stochastic_threshold(point: u32, seed: u32) -> f32 {
-    let shuffled = reverseBits(thresholds_laine_karras_permutation(reverseBits(point), thresholds_hash(seed)));
-    let scrambled = reverseBits(thresholds_laine_karras_permutation(shuffled, thresholds_hash(seed ^ 2654435769u)));
-    return (f32(scrambled >> 8u) + 0.5) / 16777216.0;
 }
 
 @group(1) @binding(0)

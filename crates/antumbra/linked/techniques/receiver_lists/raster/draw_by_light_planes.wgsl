@@ -63,6 +63,28 @@ fn fragment(fragment: Fragment) {
     }
 }
 
+const caster_surface_COVERAGE_WHOLE: u32 = 0u;
+
+const caster_surface_COVERAGE_ALPHA: u32 = 1u;
+
+fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
+    switch coverage {
+        case caster_surface_COVERAGE_WHOLE {
+            return 1.0;
+        }
+        case caster_surface_COVERAGE_ALPHA {
+            return saturate(alpha);
+        }
+        case default {
+            return select(0.0, 1.0, alpha >= cutoff);
+        }
+    }
+}
+
+fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
+    return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
+}
+
 const depth_error_ROUNDING = 4.76837158203125e-7;
 
 fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
@@ -269,28 +291,6 @@ const ray_offset_ROUNDING = 3.814697265625e-6;
 fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_rounding_m: f32) -> f32 {
     let rounding_m = ray_offset_ROUNDING * (length(pos_in_world) + inputs_eye_distance_m(pos_in_world));
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
-}
-
-const caster_surface_COVERAGE_WHOLE: u32 = 0u;
-
-const caster_surface_COVERAGE_ALPHA: u32 = 1u;
-
-fn caster_surface_coverage_of(coverage: u32, cutoff: f32, alpha: f32) -> f32 {
-    switch coverage {
-        case caster_surface_COVERAGE_WHOLE {
-            return 1.0;
-        }
-        case caster_surface_COVERAGE_ALPHA {
-            return saturate(alpha);
-        }
-        case default {
-            return select(0.0, 1.0, alpha >= cutoff);
-        }
-    }
-}
-
-fn caster_surface_stopped_light(coverage: u32, cutoff: f32, value: vec4f) -> vec3f {
-    return caster_surface_coverage_of(coverage, cutoff, value.a) * (1.0 - saturate(value.rgb));
 }
 
 @group(1) @binding(0)

@@ -230,6 +230,10 @@ fn region_hulls(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroup
     write_widened(first, hull, half);
 }
 
+fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
+    return id.y * group_counts.x * 64u + id.x;
+}
+
 @group(0) @binding(1)
 var<uniform> inputs_light_source: light_LightSource;
 
@@ -249,10 +253,6 @@ struct light_LightSource {
     padding_0: f32,
     padding_1: f32,
     padding_2: f32
-}
-
-fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
-    return id.y * group_counts.x * 64u + id.x;
 }
 
 @group(1) @binding(0)

@@ -55,19 +55,6 @@ fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
 }
 
-fn depth_error_corner_depth(clip_z_row: vec4f, clip_w_row: vec4f, corner: vec3f) -> f32 {
-    let z = dot(clip_z_row, vec4f(corner, 1.0));
-    let w = dot(clip_w_row, vec4f(corner, 1.0));
-    return select(1.0, z / w, z >= 0.0 && z <= w && w > 0.0);
-}
-
-fn depth_error_largest_depth(clip_z_row: vec4f, clip_w_row: vec4f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
-    let depth_a = depth_error_corner_depth(clip_z_row, clip_w_row, a);
-    let depth_b = depth_error_corner_depth(clip_z_row, clip_w_row, b);
-    let depth_c = depth_error_corner_depth(clip_z_row, clip_w_row, c);
-    return max(depth_a, max(depth_b, depth_c));
-}
-
 fn edges_hash(x: u32) -> u32 {
     let state = x * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
@@ -145,6 +132,19 @@ fn runs_triangle_of(run: runs_TriangleRun, thread: u32) -> runs_Triangle {
 
 fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
+}
+
+fn depth_error_corner_depth(clip_z_row: vec4f, clip_w_row: vec4f, corner: vec3f) -> f32 {
+    let z = dot(clip_z_row, vec4f(corner, 1.0));
+    let w = dot(clip_w_row, vec4f(corner, 1.0));
+    return select(1.0, z / w, z >= 0.0 && z <= w && w > 0.0);
+}
+
+fn depth_error_largest_depth(clip_z_row: vec4f, clip_w_row: vec4f, a: vec3f, b: vec3f, c: vec3f) -> f32 {
+    let depth_a = depth_error_corner_depth(clip_z_row, clip_w_row, a);
+    let depth_b = depth_error_corner_depth(clip_z_row, clip_w_row, b);
+    let depth_c = depth_error_corner_depth(clip_z_row, clip_w_row, c);
+    return max(depth_a, max(depth_b, depth_c));
 }
 
 struct settings_SampleSettings {

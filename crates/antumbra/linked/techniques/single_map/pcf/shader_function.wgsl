@@ -9,120 +9,6 @@ fn keep_visibility_at() {
     _ = visibility_at(vec3f(), vec3f(), vec2u());
 }
 
-struct inputs_ReceiverView {
-    view_from_clip: mat4x4f,
-    world_from_view: mat4x4f,
-    eye_in_world: vec3f,
-    background_depth: f32,
-    size_px: vec2u,
-    has_normals: u32,
-    mask_layers: u32,
-    origin_px: vec2u,
-    mask_origin_px: vec2u,
-    noise_frame: u32,
-    pixel_stride: u32,
-    matrix_rounding_m: f32,
-    pixel_m_per_w: f32,
-    clip_z_row: vec4f,
-    clip_w_row: vec4f,
-    are_points: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
-    anchor_in_world: vec3f,
-    padding_3: u32
-}
-
-@group(0) @binding(0)
-var<uniform> inputs_receiver_view: inputs_ReceiverView;
-
-@group(0) @binding(1)
-var<uniform> inputs_light_source: light_LightSource;
-
-struct inputs_Receiver {
-    pos_in_world: vec3f,
-    normal_in_world: vec3f,
-    is_background: bool,
-    is_reached: bool
-}
-
-fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
-    if any(normal != vec3f()) {
-        return normal;
-    }
-    if inputs_light_source.kind == light_KIND_SUN {
-        return -inputs_light_source.axis_in_world;
-    }
-    let towards = inputs_light_source.center_in_world - pos_in_world;
-    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
-}
-
-fn inputs_point_receiver(pos_in_world: vec3f, normal: vec3f) -> inputs_Receiver {
-    return inputs_Receiver(pos_in_world, inputs_point_normal(normal, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
-}
-
-fn inputs_receiver_at(position: vec3f, normal: vec3f) -> inputs_Receiver {
-    return inputs_point_receiver(position - inputs_receiver_view.anchor_in_world, normal);
-}
-
-const light_KIND_RECTANGLE = 0u;
-
-const light_KIND_DISK = 1u;
-
-const light_KIND_SPHERE = 2u;
-
-const light_KIND_SUN = 4u;
-
-struct light_LightSource {
-    center_in_world: vec3f,
-    kind: u32,
-    right_in_world: vec3f,
-    half_right: f32,
-    up_in_world: vec3f,
-    half_up: f32,
-    axis_in_world: vec3f,
-    half_axis: f32,
-    reach_tangent: f32,
-    point_count: u32,
-    emission_size: vec2u,
-    cone_cosine: f32,
-    padding_0: f32,
-    padding_1: f32,
-    padding_2: f32
-}
-
-fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
-    if light.kind == light_KIND_SUN {
-        return true;
-    }
-    let from_center = x - light.center_in_world;
-    let depth = dot(from_center, light.axis_in_world);
-    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
-        return false;
-    }
-    if light.reach_tangent == 0.0 {
-        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
-        return depth > 0.0 || !has_front;
-    }
-    let half_width = depth * light.reach_tangent;
-    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
-}
-
-@group(0) @binding(6)
-var noise_noise_tile: texture_2d<f32>;
-
-const noise_TILE_SIDE: u32 = 64;
-
-fn noise_blue_noise(pixel: vec2u) -> f32 {
-    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
-}
-
-const noise_GOLDEN = 0.618033989;
-
-fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
-    return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
-}
-
 const bias_HALF_TEXEL = 0.5;
 
 const bias_SNAPPED_TEXELS = 0.00390625;
@@ -390,6 +276,120 @@ fn space_texel_width_m(view: space_LightViewGpu, x: vec3f) -> f32 {
         return space_texel_in_plane_at(view, p.xy / p.z - view.plane_center) * p.z;
     }
     return space_texel_in_plane_at(view, p.xy - view.plane_center);
+}
+
+struct inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    pixel_stride: u32,
+    matrix_rounding_m: f32,
+    pixel_m_per_w: f32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+    anchor_in_world: vec3f,
+    padding_3: u32
+}
+
+@group(0) @binding(0)
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> inputs_light_source: light_LightSource;
+
+struct inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_point_receiver(pos_in_world: vec3f, normal: vec3f) -> inputs_Receiver {
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+fn inputs_receiver_at(position: vec3f, normal: vec3f) -> inputs_Receiver {
+    return inputs_point_receiver(position - inputs_receiver_view.anchor_in_world, normal);
+}
+
+const light_KIND_RECTANGLE = 0u;
+
+const light_KIND_DISK = 1u;
+
+const light_KIND_SPHERE = 2u;
+
+const light_KIND_SUN = 4u;
+
+struct light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u,
+    cone_cosine: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
+}
+
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
+        return false;
+    }
+    if light.reach_tangent == 0.0 {
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
+        return depth > 0.0 || !has_front;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+@group(0) @binding(6)
+var noise_noise_tile: texture_2d<f32>;
+
+const noise_TILE_SIDE: u32 = 64;
+
+fn noise_blue_noise(pixel: vec2u) -> f32 {
+    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
+}
+
+const noise_GOLDEN = 0.618033989;
+
+fn noise_noise_of_pixel(pixel: vec2u) -> f32 {
+    return fract(noise_blue_noise(pixel) + noise_GOLDEN * f32(inputs_receiver_view.noise_frame));
 }
 
 struct resolve_PcfUniform {

@@ -81,13 +81,13 @@ use antumbra_light::{Aabb, LightPoint};
 use glam::{Mat4, Vec2, Vec3};
 
 use crate::contract::{DrawnMap, Error, MaskChannels, MeshCaster, Opacity, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, texels};
 use crate::light_map::caster_depth::{CasterDepth, DrawnView, check_map_size};
 use crate::light_map::caster_triangles::maps::TriangleMaps;
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::light_map::light_view::LightView;
 use crate::light_map::readable_meshes::readable_meshes;
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::light_views::gpu_types::ALL_CHANNELS;

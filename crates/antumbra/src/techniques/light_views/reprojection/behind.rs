@@ -11,9 +11,9 @@ use antumbra_light::{Aabb, Light, LightFrame};
 use glam::{DVec4, Vec3};
 
 use crate::contract::MeshCaster;
-use crate::light_map::between::Between;
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::light_view::{Followed, LightView, MIDDLE_TANGENT, ViewFit};
+use crate::light_map::occluding_bounds::Between;
 
 /// The light is seen at this tangent: by the middle face of a cube. From nearer behind, what is before its rim would be seen at a grazing
 /// angle; from farther, in coarser texels.

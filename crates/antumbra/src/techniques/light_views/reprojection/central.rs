@@ -7,9 +7,9 @@ use glam::{DMat4, DVec4, Mat4, Vec3};
 use super::behind::Behind;
 use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{ReprojectionProjection, Settings};
-use crate::light_map::between::Between;
 use crate::light_map::central_view::{central_fit, central_reach};
 use crate::light_map::light_view::{Followed, LightView, LightViewGpu, Window};
+use crate::light_map::occluding_bounds::Between;
 use crate::techniques::light_views::{Batch, views_from};
 
 /// A plane view wider than this tangent is cut or wasteful; a cube takes its place.

@@ -15,11 +15,11 @@ use super::resolve::{PreparedResolve, Resolve};
 use super::scatter::{PreparedScatter, Scatter, Targets};
 use super::settings::{ReprojectionFilter, Settings, Splat};
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{Gpu, LeasedBuffer, Recorder, Scratch, Stage};
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::light_map::light_view::{LightView, LightViewGpu};
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::techniques::light_views::{Comparison, SampleViews, UnitPoints, batch_size, light_points};
 
 /// Integer maps of one batch together stay below this: half of WebGPU's smallest limit for a binding.

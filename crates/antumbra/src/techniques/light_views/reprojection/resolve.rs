@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::gpu_types::DrawMaps;
 use super::scatter::Targets;
 use super::settings::ReprojectionFilter;
-use crate::frame::inputs::{FrameInputs, PreparedInputs};
 use crate::gpu::{
     Bindings, DrawPipeline, Gpu, Lease, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline,
     depth_state, samples, slice_views, texels,
 };
 use crate::light_map::caster_depth::CasterDepth;
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::shaders;
 use crate::techniques::light_views::{Batch, BatchBindings, DepthMapsBatch, MapSamplers, SampleViews};
 

@@ -18,7 +18,7 @@
 //! bands for noise where the light's shape allows: every pixel turns the points about the light's axis by another angle
 //! (section 4.2). `accumulate` takes other points in each frame (by the table, of a light that is the same at any angle,
 //! the same points at other angles, which evens out angles alone), and gives the mean of the frames since something last
-//! moved (figure 7); `frame/accumulation` says what counts as moving. The first frame after a change is as without it.
+//! moved (figure 7); `mask/accumulation` says what counts as moving. The first frame after a change is as without it.
 //!
 //! **Lighting and visibility** are apart, as in the paper: a light point counts by its luminance, and the host shades.
 //! `weights=irradiance` is equation 1 instead: each point gives a receiver its emission, in colour, times both cosines over the
@@ -41,8 +41,8 @@ use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec3;
 
 use crate::contract::{DrawnLists, Error, PreparedFrame};
-use crate::frame::accumulation::{Accumulation, PreparedAccumulation};
 use crate::gpu::{Cached, Gpu, Recorder, Stage};
+use crate::mask::accumulation::{Accumulation, PreparedAccumulation};
 use crate::techniques::receiver_lists::{
     CULL_FACING, CUT_BY_PLANE, Drawn, Options, PENUMBRA_ONLY, PreparedSamples, Region, STOP_WHEN_OCCLUDED, ViewSamples,
     local_points,

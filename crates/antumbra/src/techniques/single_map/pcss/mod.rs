@@ -55,10 +55,10 @@
 use antumbra_light::Light;
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
-use crate::frame::inputs::kind_of;
 use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::receivers::inputs::kind_of;
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{TapLists, TapUse, Taps, TapsProgram};

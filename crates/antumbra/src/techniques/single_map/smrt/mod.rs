@@ -37,7 +37,7 @@
 //!    and what the others find is a share of that part.
 //! 3. **Early end.** Where the first quarter of the rays of all 64 pixels are free, or all blocked, so are the others; without
 //!    `smooth` likewise those of a pixel whose first half are.
-//! 4. **Means over pixels** (`smooth`; [`frame/smoothing`](crate::frame)). In penumbrae wider than eight pixels the first quarter of
+//! 4. **Means over pixels** (`smooth`; `mask/smoothing`). In penumbrae wider than eight pixels the first quarter of
 //!    the rays is all: what noise they leave is taken out by means over neighbours on the same surface, much narrower than the
 //!    penumbra, whose width follows from the light's shape and the nearest blocker that the rays found. In narrower ones all
 //!    rays are followed, and means reach less far.
@@ -81,10 +81,10 @@ use antumbra_light::{Light, LightShape, SampleSet};
 use glam::{UVec2, Vec2};
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame, SampleWeights};
-use crate::frame::smoothing::NOISY_FORMAT;
 use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, passed_texture};
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::mask::smoothing::NOISY_FORMAT;
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{TapLists, TapUse, Taps, TapsProgram};

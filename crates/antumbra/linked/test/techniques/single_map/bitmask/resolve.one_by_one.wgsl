@@ -200,236 +200,6 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     }
 }
 
-struct inputs_ReceiverView {
-    view_from_clip: mat4x4f,
-    world_from_view: mat4x4f,
-    eye_in_world: vec3f,
-    background_depth: f32,
-    size_px: vec2u,
-    has_normals: u32,
-    mask_layers: u32,
-    origin_px: vec2u,
-    mask_origin_px: vec2u,
-    noise_frame: u32,
-    pixel_stride: u32,
-    matrix_rounding_m: f32,
-    pixel_m_per_w: f32,
-    clip_z_row: vec4f,
-    clip_w_row: vec4f,
-    are_points: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
-    anchor_in_world: vec3f,
-    padding_3: u32
-}
-
-@group(0) @binding(0)
-var<uniform> inputs_receiver_view: inputs_ReceiverView;
-
-@group(0) @binding(1)
-var<uniform> inputs_light_source: light_LightSource;
-
-@group(0) @binding(2)
-var inputs_receiver_depth: texture_2d<f32>;
-
-@group(0) @binding(3)
-var inputs_receiver_normals: texture_2d<f32>;
-
-@group(0) @binding(4)
-var inputs_mask: texture_storage_2d_array<r32float, read_write>;
-
-@group(0) @binding(5)
-var<storage, read> inputs_light_data: array<vec4f>;
-
-struct inputs_Receiver {
-    pos_in_world: vec3f,
-    normal_in_world: vec3f,
-    is_background: bool,
-    is_reached: bool
-}
-
-const inputs_QUOTIENT_ROUNDING = 1e-5;
-
-fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
-    let is_one = visibility > 1.0 && visibility < 1.0 + inputs_QUOTIENT_ROUNDING;
-    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(select(visibility, 1.0, is_one)));
-}
-
-fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
-    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
-        inputs_store_mask(pixel, layer, visibility);
-    }
-}
-
-fn inputs_known_pixel(thread: vec2u) -> vec2u {
-    return inputs_receiver_view.pixel_stride * thread;
-}
-
-fn inputs_is_inside(pixel: vec2u) -> bool {
-    return all(pixel < inputs_receiver_view.size_px);
-}
-
-fn inputs_are_points() -> bool {
-    return inputs_receiver_view.are_points == 1u;
-}
-
-fn inputs_depth_at(pixel: vec2u) -> f32 {
-    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
-}
-
-fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
-    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
-    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
-    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
-}
-
-fn inputs_camera_ray(pos_in_world: vec3f) -> vec3f {
-    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
-    return select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
-}
-
-fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
-    let last = vec2i(inputs_receiver_view.size_px) - 1;
-    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
-    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
-    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
-    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
-    let depth_ahead = inputs_depth_at(ahead);
-    let depth_behind = inputs_depth_at(behind);
-    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
-    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
-    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
-        return inputs_position_in_world(ahead, depth_ahead) - center;
-    }
-    return center - inputs_position_in_world(behind, depth_behind);
-}
-
-fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
-    var normal: vec3f;
-    if inputs_receiver_view.has_normals == 1u {
-        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
-    }
-    else {
-        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
-    }
-    let to_camera = -inputs_camera_ray(pos_in_world);
-    let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
-        return normalize(to_camera);
-    }
-    normal *= inverseSqrt(length_squared);
-    return select(-normal, normal, dot(normal, to_camera) >= 0.0);
-}
-
-fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
-    if any(normal != vec3f()) {
-        return normal;
-    }
-    if inputs_light_source.kind == light_KIND_SUN {
-        return -inputs_light_source.axis_in_world;
-    }
-    let towards = inputs_light_source.center_in_world - pos_in_world;
-    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
-}
-
-fn inputs_point_receiver(pos_in_world: vec3f, normal: vec3f) -> inputs_Receiver {
-    return inputs_Receiver(pos_in_world, inputs_point_normal(normal, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
-}
-
-fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
-    let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
-    if normal.w == 0.0 {
-        return inputs_Receiver(vec3f(), vec3f(), true, true);
-    }
-    return inputs_point_receiver(textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz, normal.xyz);
-}
-
-fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
-    if inputs_are_points() {
-        return inputs_load_point(pixel);
-    }
-    let depth = inputs_depth_at(pixel);
-    if depth == inputs_receiver_view.background_depth {
-        return inputs_Receiver(vec3f(), vec3f(), true, true);
-    }
-    let pos_in_world = inputs_position_in_world(pixel, depth);
-    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
-}
-
-const light_KIND_RECTANGLE = 0u;
-
-const light_KIND_DISK = 1u;
-
-const light_KIND_SPHERE = 2u;
-
-const light_KIND_ELLIPSOID = 3u;
-
-const light_KIND_SUN = 4u;
-
-const light_KIND_POINTS = 5u;
-
-const light_PI = 3.141592653589793;
-
-struct light_LightSource {
-    center_in_world: vec3f,
-    kind: u32,
-    right_in_world: vec3f,
-    half_right: f32,
-    up_in_world: vec3f,
-    half_up: f32,
-    axis_in_world: vec3f,
-    half_axis: f32,
-    reach_tangent: f32,
-    point_count: u32,
-    emission_size: vec2u,
-    cone_cosine: f32,
-    padding_0: f32,
-    padding_1: f32,
-    padding_2: f32
-}
-
-fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
-    if light.kind == light_KIND_SUN {
-        return true;
-    }
-    let from_center = x - light.center_in_world;
-    let depth = dot(from_center, light.axis_in_world);
-    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
-        return false;
-    }
-    if light.reach_tangent == 0.0 {
-        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
-        return depth > 0.0 || !has_front;
-    }
-    let half_width = depth * light.reach_tangent;
-    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
-}
-
-fn light_emission_index(light: light_LightSource, u: vec2f) -> u32 {
-    let size = light.emission_size;
-    let column = min(u32(u.x * f32(size.x)), size.x - 1u);
-    let row = min(u32((1.0 - u.y) * f32(size.y)), size.y - 1u);
-    return row * size.x + column;
-}
-
-@group(0) @binding(6)
-var noise_noise_tile: texture_2d<f32>;
-
-const noise_TILE_SIDE: u32 = 64;
-
-fn noise_blue_noise(pixel: vec2u) -> f32 {
-    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
-}
-
-const noise_SECOND_TILE_X: u32 = 29;
-
-const noise_SECOND_TILE_Y: u32 = 41;
-
-fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
-    return vec2f(noise_blue_noise(pixel), noise_blue_noise(pixel + vec2u(noise_SECOND_TILE_X, noise_SECOND_TILE_Y)));
-}
-
 const bias_HALF_TEXEL = 0.5;
 
 const bias_SNAPPED_TEXELS = 0.00390625;
@@ -728,6 +498,236 @@ fn bits_even_bits(number: u32) -> u32 {
     x = (x | (x >> 2u)) & 252645135u;
     x = (x | (x >> 4u)) & 16711935u;
     return (x | (x >> 8u)) & 65535u;
+}
+
+struct inputs_ReceiverView {
+    view_from_clip: mat4x4f,
+    world_from_view: mat4x4f,
+    eye_in_world: vec3f,
+    background_depth: f32,
+    size_px: vec2u,
+    has_normals: u32,
+    mask_layers: u32,
+    origin_px: vec2u,
+    mask_origin_px: vec2u,
+    noise_frame: u32,
+    pixel_stride: u32,
+    matrix_rounding_m: f32,
+    pixel_m_per_w: f32,
+    clip_z_row: vec4f,
+    clip_w_row: vec4f,
+    are_points: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+    anchor_in_world: vec3f,
+    padding_3: u32
+}
+
+@group(0) @binding(0)
+var<uniform> inputs_receiver_view: inputs_ReceiverView;
+
+@group(0) @binding(1)
+var<uniform> inputs_light_source: light_LightSource;
+
+@group(0) @binding(2)
+var inputs_receiver_depth: texture_2d<f32>;
+
+@group(0) @binding(3)
+var inputs_receiver_normals: texture_2d<f32>;
+
+@group(0) @binding(4)
+var inputs_mask: texture_storage_2d_array<r32float, read_write>;
+
+@group(0) @binding(5)
+var<storage, read> inputs_light_data: array<vec4f>;
+
+struct inputs_Receiver {
+    pos_in_world: vec3f,
+    normal_in_world: vec3f,
+    is_background: bool,
+    is_reached: bool
+}
+
+const inputs_QUOTIENT_ROUNDING = 1e-5;
+
+fn inputs_store_mask(pixel: vec2u, layer: u32, visibility: f32) {
+    let is_one = visibility > 1.0 && visibility < 1.0 + inputs_QUOTIENT_ROUNDING;
+    textureStore(inputs_mask, inputs_receiver_view.mask_origin_px + pixel, layer, vec4f(select(visibility, 1.0, is_one)));
+}
+
+fn inputs_write_visibility(pixel: vec2u, visibility: f32) {
+    for (var layer = 0u; layer < inputs_receiver_view.mask_layers; layer++) {
+        inputs_store_mask(pixel, layer, visibility);
+    }
+}
+
+fn inputs_known_pixel(thread: vec2u) -> vec2u {
+    return inputs_receiver_view.pixel_stride * thread;
+}
+
+fn inputs_is_inside(pixel: vec2u) -> bool {
+    return all(pixel < inputs_receiver_view.size_px);
+}
+
+fn inputs_are_points() -> bool {
+    return inputs_receiver_view.are_points == 1u;
+}
+
+fn inputs_depth_at(pixel: vec2u) -> f32 {
+    return textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).x;
+}
+
+fn inputs_position_in_world(pixel: vec2u, depth: f32) -> vec3f {
+    let ndc = (vec2f(pixel) + 0.5) / vec2f(inputs_receiver_view.size_px) * vec2f(2.0, -2.0) + vec2f(-1.0, 1.0);
+    let pos_in_view = inputs_receiver_view.view_from_clip * vec4f(ndc, depth, 1.0);
+    return (inputs_receiver_view.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
+}
+
+fn inputs_camera_ray(pos_in_world: vec3f) -> vec3f {
+    let is_parallel = all(inputs_receiver_view.clip_w_row.xyz == vec3f());
+    return select(pos_in_world - inputs_receiver_view.eye_in_world, -inputs_receiver_view.world_from_view[2].xyz, is_parallel);
+}
+
+fn inputs_best_difference(pixel: vec2u, step: vec2i, center: vec3f, depth: f32) -> vec3f {
+    let last = vec2i(inputs_receiver_view.size_px) - 1;
+    let ahead = vec2u(clamp(vec2i(pixel) + step, vec2i(0), last));
+    let behind = vec2u(clamp(vec2i(pixel) - step, vec2i(0), last));
+    let ahead_2 = vec2u(clamp(vec2i(pixel) + 2 * step, vec2i(0), last));
+    let behind_2 = vec2u(clamp(vec2i(pixel) - 2 * step, vec2i(0), last));
+    let depth_ahead = inputs_depth_at(ahead);
+    let depth_behind = inputs_depth_at(behind);
+    let miss_ahead = abs(2.0 * depth_ahead - inputs_depth_at(ahead_2) - depth);
+    let miss_behind = abs(2.0 * depth_behind - inputs_depth_at(behind_2) - depth);
+    if all(behind == pixel) || (miss_ahead < miss_behind && any(ahead != pixel)) {
+        return inputs_position_in_world(ahead, depth_ahead) - center;
+    }
+    return center - inputs_position_in_world(behind, depth_behind);
+}
+
+fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec3f {
+    var normal: vec3f;
+    if inputs_receiver_view.has_normals == 1u {
+        normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0).xyz;
+    }
+    else {
+        normal = cross(inputs_best_difference(pixel, vec2i(1, 0), pos_in_world, depth), inputs_best_difference(pixel, vec2i(0, 1), pos_in_world, depth));
+    }
+    let to_camera = -inputs_camera_ray(pos_in_world);
+    let length_squared = dot(normal, normal);
+    if !(length_squared > 0.0) {
+        return normalize(to_camera);
+    }
+    normal *= inverseSqrt(length_squared);
+    return select(-normal, normal, dot(normal, to_camera) >= 0.0);
+}
+
+fn inputs_point_normal(normal: vec3f, pos_in_world: vec3f) -> vec3f {
+    if any(normal != vec3f()) {
+        return normal;
+    }
+    if inputs_light_source.kind == light_KIND_SUN {
+        return -inputs_light_source.axis_in_world;
+    }
+    let towards = inputs_light_source.center_in_world - pos_in_world;
+    return select(-inputs_light_source.axis_in_world, normalize(towards), dot(towards, towards) > 0.0);
+}
+
+fn inputs_point_receiver(pos_in_world: vec3f, normal: vec3f) -> inputs_Receiver {
+    return inputs_Receiver(pos_in_world, inputs_point_normal(normal, pos_in_world), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+fn inputs_load_point(pixel: vec2u) -> inputs_Receiver {
+    let normal = textureLoad(inputs_receiver_normals, inputs_receiver_view.origin_px + pixel, 0);
+    if normal.w == 0.0 {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    return inputs_point_receiver(textureLoad(inputs_receiver_depth, inputs_receiver_view.origin_px + pixel, 0).xyz, normal.xyz);
+}
+
+fn inputs_load_receiver(pixel: vec2u) -> inputs_Receiver {
+    if inputs_are_points() {
+        return inputs_load_point(pixel);
+    }
+    let depth = inputs_depth_at(pixel);
+    if depth == inputs_receiver_view.background_depth {
+        return inputs_Receiver(vec3f(), vec3f(), true, true);
+    }
+    let pos_in_world = inputs_position_in_world(pixel, depth);
+    return inputs_Receiver(pos_in_world, inputs_geometric_normal(pixel, pos_in_world, depth), false, light_reaches(inputs_light_source, pos_in_world));
+}
+
+const light_KIND_RECTANGLE = 0u;
+
+const light_KIND_DISK = 1u;
+
+const light_KIND_SPHERE = 2u;
+
+const light_KIND_ELLIPSOID = 3u;
+
+const light_KIND_SUN = 4u;
+
+const light_KIND_POINTS = 5u;
+
+const light_PI = 3.141592653589793;
+
+struct light_LightSource {
+    center_in_world: vec3f,
+    kind: u32,
+    right_in_world: vec3f,
+    half_right: f32,
+    up_in_world: vec3f,
+    half_up: f32,
+    axis_in_world: vec3f,
+    half_axis: f32,
+    reach_tangent: f32,
+    point_count: u32,
+    emission_size: vec2u,
+    cone_cosine: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32
+}
+
+fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
+    if light.kind == light_KIND_SUN {
+        return true;
+    }
+    let from_center = x - light.center_in_world;
+    let depth = dot(from_center, light.axis_in_world);
+    if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
+        return false;
+    }
+    if light.reach_tangent == 0.0 {
+        let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
+        return depth > 0.0 || !has_front;
+    }
+    let half_width = depth * light.reach_tangent;
+    return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
+}
+
+fn light_emission_index(light: light_LightSource, u: vec2f) -> u32 {
+    let size = light.emission_size;
+    let column = min(u32(u.x * f32(size.x)), size.x - 1u);
+    let row = min(u32((1.0 - u.y) * f32(size.y)), size.y - 1u);
+    return row * size.x + column;
+}
+
+@group(0) @binding(6)
+var noise_noise_tile: texture_2d<f32>;
+
+const noise_TILE_SIDE: u32 = 64;
+
+fn noise_blue_noise(pixel: vec2u) -> f32 {
+    return (255.0 * textureLoad(noise_noise_tile, pixel % noise_TILE_SIDE, 0).x + 0.5) / 256.0;
+}
+
+const noise_SECOND_TILE_X: u32 = 29;
+
+const noise_SECOND_TILE_Y: u32 = 41;
+
+fn noise_shift_of_pixel(pixel: vec2u) -> vec2f {
+    return vec2f(noise_blue_noise(pixel), noise_blue_noise(pixel + vec2u(noise_SECOND_TILE_X, noise_SECOND_TILE_Y)));
 }
 
 const light_bits_BINS = 32u;

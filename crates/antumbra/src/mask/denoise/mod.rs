@@ -1,0 +1,287 @@
+//! A noisy mask made smooth, over frames and over neighbouring pixels, for whatever technique wrote it.
+//!
+//! ```text
+//! technique ──► noisy mask ──► over time ──► means ──► over pixels ──► the host's mask
+//!                 means and depth of the frame before ──┘
+//! ```
+//!
+//! **Over time** (`over_time.wesl`): each point is looked up where the camera of the frame before had it (Nehab et al. 2007,
+//! "Accelerating real-time shading with reverse reprojection caching"; Scherzer, Jeschke, Wimmer 2007, "Pixel-correct shadow
+//! maps with temporal reprojection and shadow test confidence"), dropped where that frame saw another surface, and its mean
+//! goes on by the newest value. An earlier mean is held within what its neighbours have in the new frame (as in temporal
+//! antialiasing: Salvi 2016, "An excursion in temporal supersampling") and counts for as many frames as it can be right for:
+//! where light or casters move it forgets as fast as they are seen to.
+//!
+//! **Over pixels** (`over_pixels.wesl`): a plane fitted to the means on the same surface, by Gaussian weights no wider than an
+//! eighth of the penumbra, which is known from the slope of visibility itself, and narrower the more frames the means are of.
+//! What is filtered is shown, not kept, so that nothing is filtered twice.
+//!
+//! Per pixel and channel, over time: reads 4 bytes of the noisy mask, 12 of what is kept, four times, and 4 of depth; writes 12.
+//! Over pixels: reads 8 and 4 of depth, writes 4. Workgroups fetch once what is about their pixels: 2.3 times as much over time, 3.1
+//! times over pixels. Neither looks about where a pixel is lit or dark and was so. Memory: 24 bytes a pixel, 8 a pixel and channel
+//! more where there are three.
+//!
+//! # Limits
+//! Bias is no noise: a blocker search of few taps misses faint blockers in most frames, so that the outer penumbra stays too
+//! bright (half-plane, 8 + 8 taps, 16 frames: rmse .020; 64 + 8: .006). Mirrors and glass are not receivers here. What moves of itself and has no motion vectors is known by its depth alone: a
+//! point of a surface that slides along itself keeps the shadow of the place. Slow changes of a faint penumbra stay within
+//! chance for some frames, and lag by them. Under a moving camera means are mixed from four pixels anew each frame, which
+//! softens edges finer than a pixel.
+
+use std::sync::Arc;
+
+use glam::{Mat4, UVec2, Vec3};
+
+use crate::contract::{Camera, Denoise, Mask, PreparedFrame};
+use crate::gpu::{
+    Bindings, Gpu, Recorder, Scratch, Span, Stage, array_view, bindings, compute_pipeline_without_zeroing,
+    create_uniform, gpu_structs, texels, write_uniform,
+};
+use crate::receivers::DEPTH_FORMAT;
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
+use crate::shaders;
+
+#[cfg(test)]
+mod tests;
+
+/// A mean, that of the square, and how many frames they are of: 11 bits tell a 2048th, an eighth of what one sample in eight
+/// changes a mean of 32 frames by.
+const MEANS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// Numbers of frames are counted up to this: multiples of the golden ratio keep three digits of their fraction.
+const NOISE_FRAMES: u32 = 1024;
+
+gpu_structs! {
+    /// The frame before, in this frame's coordinates.
+    pub(crate) struct DenoiseFrame {
+        clip_from_world_before: Mat4,
+        world_from_clip_before: Mat4,
+        background_depth_before: f32,
+        most_frames: f32,
+        has_before: u32,
+        has_motion: u32,
+    }
+}
+
+bindings! {
+    struct OverTime = "denoise over time", COMPUTE, group 1 of [DENOISE_OVER_TIME] {
+        0 denoise: Uniform,
+        1 noisy: TextureArray(texels::FLOAT),
+        2 means_before: TextureArray(texels::FLOAT),
+        3 depth_before: Texture(texels::FLOAT),
+        4 motion: Texture(texels::FLOAT),
+        5 means_now: WrittenArray(MEANS_FORMAT),
+        6 depth_now: WrittenTexture(DEPTH_FORMAT),
+    }
+
+    struct OverPixels = "denoise over pixels", COMPUTE, group 1 of [DENOISE_OVER_PIXELS] {
+        0 means: TextureArray(texels::FLOAT),
+    }
+}
+
+/// Makes one light's mask smooth, seen by one camera.
+#[derive(Debug)]
+pub(crate) struct Denoiser {
+    inputs: FrameInputs,
+    over_time_layout: wgpu::BindGroupLayout,
+    over_pixels_layout: wgpu::BindGroupLayout,
+    over_time: wgpu::ComputePipeline,
+    over_pixels: wgpu::ComputePipeline,
+    uniform: wgpu::Buffer,
+    noisy: Option<NoisyMask>,
+    /// Of the frame before and of this one, in turns.
+    kept: Option<[Kept; 2]>,
+    before: Option<Camera>,
+    /// Frames since the first.
+    frames: u32,
+    /// Of these the last in which nothing changed.
+    still_frames: u32,
+}
+
+/// Passes of one frame.
+#[derive(Debug)]
+pub(crate) struct PreparedDenoise {
+    /// The mask that the technique is to write.
+    pub(crate) noisy: Mask,
+    inputs: PreparedInputs,
+    /// Over time, over pixels.
+    passes: [(&'static str, wgpu::ComputePipeline, wgpu::BindGroup); 2],
+    channels: u32,
+}
+
+/// What the technique writes.
+#[derive(Debug)]
+struct NoisyMask {
+    /// Each light's commands fill it and read it before another's do, so lights share it.
+    scratch: Arc<wgpu::Texture>,
+    mask: Mask,
+}
+
+/// What is kept of a frame.
+#[derive(Debug)]
+struct Kept {
+    size_px: UVec2,
+    channels: u32,
+    means_view: wgpu::TextureView,
+    depth_view: wgpu::TextureView,
+}
+
+impl Denoiser {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let inputs = FrameInputs::new(gpu);
+        let over_time_layout = OverTime::layout(gpu);
+        let over_pixels_layout = OverPixels::layout(gpu);
+        let pipeline = |label, shader, layout| {
+            compute_pipeline_without_zeroing(gpu, label, shader, &[], &[&inputs.layout, layout])
+        };
+        Self {
+            over_time: pipeline("denoise over time", shaders::DENOISE_OVER_TIME, &over_time_layout),
+            over_pixels: pipeline("denoise over pixels", shaders::DENOISE_OVER_PIXELS, &over_pixels_layout),
+            uniform: create_uniform::<DenoiseFrame>(gpu, "antumbra denoising"),
+            inputs,
+            over_time_layout,
+            over_pixels_layout,
+            noisy: None,
+            kept: None,
+            before: None,
+            frames: 0,
+            still_frames: 0,
+        }
+    }
+
+    /// What tells the next frame's chances from others'.
+    pub(crate) fn noise_frame(&self) -> u32 {
+        self.frames % NOISE_FRAMES
+    }
+
+    /// Whether the mask is as smooth as it becomes, if nothing changes.
+    pub(crate) fn is_settled(&self, settings: &Denoise) -> bool {
+        self.still_frames >= settings.most_frames
+    }
+
+    /// The mask that the technique is to write, for one of the host's.
+    fn noisy_mask(&mut self, gpu: &Gpu, mask: &Mask) -> Mask {
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some("antumbra noisy mask"),
+            size: extent(mask.size_px(), mask.channels().count()),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: Mask::FORMAT,
+            usage: Mask::usages(Mask::FORMAT),
+            view_formats: &[],
+        };
+        let scratch = gpu.device.scratch_texture(Scratch::NoisyMask, &descriptor);
+        let made = self.noisy.take().filter(|noisy| noisy.scratch == scratch);
+        let noisy = made.unwrap_or_else(|| {
+            let mask = Mask::of_layers(&scratch, 0, mask.channels());
+            NoisyMask { scratch, mask }
+        });
+        self.noisy.insert(noisy).mask.clone()
+    }
+
+    /// Makes ready for a frame. `frame` is counted from the stage's anchor and has the mask to smooth into; `host` is the
+    /// same in the host's world. `is_same`: nothing has changed since the frame before.
+    pub(crate) fn prepare(
+        &mut self,
+        stage: &Stage<'_>,
+        [host, frame]: [&PreparedFrame<'_>; 2],
+        settings: &Denoise,
+        is_same: bool,
+    ) -> PreparedDenoise {
+        let inputs = self.inputs.prepare(stage, frame);
+        let noisy = self.noisy_mask(stage, frame.mask);
+        let (size, channels) = (frame.receivers.size_px, frame.mask.channels().count());
+        let kept = self.kept.take().filter(|[kept, _]| (kept.size_px, kept.channels) == (size, channels));
+        if kept.is_none() {
+            self.before = None;
+        }
+        let kept = kept.unwrap_or_else(|| [Kept::new(stage, size, channels), Kept::new(stage, size, channels)]);
+        let [before, now] = if self.frames.is_multiple_of(2) { [&kept[0], &kept[1]] } else { [&kept[1], &kept[0]] };
+        let most_frames = settings.most_frames as f32;
+        let uniform = DenoiseFrame {
+            most_frames,
+            has_motion: settings.motion.is_some().into(),
+            ..self.seen_before(stage.anchor())
+        };
+        write_uniform(stage, &self.uniform, &uniform);
+        let over_time = OverTime {
+            denoise: &self.uniform,
+            noisy: noisy.layers_view(),
+            means_before: &before.means_view,
+            depth_before: &before.depth_view,
+            motion: settings.motion.as_ref().unwrap_or(&before.depth_view),
+            means_now: &now.means_view,
+            depth_now: &now.depth_view,
+        };
+        let over_pixels = OverPixels { means: &now.means_view }.group(stage, &self.over_pixels_layout);
+        let passes = [
+            ("denoise over time", self.over_time.clone(), over_time.group(stage, &self.over_time_layout)),
+            ("denoise over pixels", self.over_pixels.clone(), over_pixels),
+        ];
+        self.kept = Some(kept);
+        self.before = host.receivers.camera().copied();
+        self.frames += 1;
+        self.still_frames = if is_same { self.still_frames + 1 } else { 1 };
+        PreparedDenoise { noisy, inputs, passes, channels }
+    }
+
+    /// The frame before's camera, for places counted from an anchor.
+    fn seen_before(&self, anchor: Vec3) -> DenoiseFrame {
+        let Some(before) = self.before else { return DenoiseFrame::default() };
+        let from_anchor = glam::DMat4::from_translation(anchor.as_dvec3());
+        let clip_from_world = before.clip_from_view.as_dmat4() * before.view_from_world.as_dmat4() * from_anchor;
+        DenoiseFrame {
+            clip_from_world_before: clip_from_world.as_mat4(),
+            world_from_clip_before: clip_from_world.inverse().as_mat4(),
+            background_depth_before: before.depth_convention.background(),
+            has_before: 1,
+            ..DenoiseFrame::default()
+        }
+    }
+
+    /// Bytes of what is kept from frame to frame.
+    pub(crate) fn memory_bytes(&self) -> u64 {
+        let of = |kept: &Kept| u64::from(kept.size_px.element_product() * (8 * kept.channels + 4));
+        self.kept.iter().flatten().map(of).sum()
+    }
+}
+
+impl PreparedDenoise {
+    /// Smooths what the technique has written into the host's mask.
+    pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
+        for (label, pipeline, group) in &self.passes {
+            recorder.compute(label, Span::Only, |pass| {
+                pass.set_pipeline(pipeline);
+                self.inputs.bind(pass);
+                pass.set_bind_group(1, group, &[]);
+                self.inputs.dispatch_layers(pass, self.channels);
+            });
+        }
+    }
+}
+
+impl Kept {
+    fn new(gpu: &Gpu, size_px: UVec2, channels: u32) -> Self {
+        let texture = |label, format, layers| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: extent(size_px, layers),
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+                view_formats: &[],
+            })
+        };
+        let view = |texture: &wgpu::Texture| gpu.device.create_view(texture, &wgpu::TextureViewDescriptor::default());
+        let means = texture("antumbra means", MEANS_FORMAT, channels);
+        let depth = texture("antumbra depth of the means", DEPTH_FORMAT, 1);
+        Self { size_px, channels, means_view: array_view(gpu, &means), depth_view: view(&depth) }
+    }
+}
+
+fn extent(size_px: UVec2, layers: u32) -> wgpu::Extent3d {
+    wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: layers }
+}

@@ -1,0 +1,264 @@
+//! Receivers of a multisampled depth buffer, as two pictures of one sample a pixel.
+
+use glam::{Mat4, UVec2};
+
+use crate::contract::{Error, Receivers};
+use crate::gpu::{
+    Bindings, Commands, Gpu, Keep, Recorder, Span, Stage, array_view, bindings, color_pipeline, gpu_structs,
+    slice_views, texels,
+};
+use crate::receivers::{DEPTH_FORMAT, NORMAL_FORMAT};
+use crate::shaders;
+
+#[cfg(test)]
+mod tests;
+
+/// Who speaks in errors.
+const NAME: &str = "SplitReceivers";
+
+/// WebGPU's one sample count beside 1.
+const SAMPLES: u32 = 4;
+
+gpu_structs! {
+    pub(crate) struct Split {
+        view_from_clip: Mat4,
+        world_from_view: Mat4,
+        origin_px: UVec2,
+        size_px: UVec2,
+        background_depth: f32,
+        has_normals: u32,
+        padding_0: u32,
+        padding_1: u32,
+    }
+}
+
+bindings! {
+    struct Samples = "split receivers", FRAGMENT, group 0 of [SPLIT_RECEIVERS_DRAW] {
+        0 split: Uniform,
+        1 depths: MultisampledTexture(texels::FLOAT),
+        2 normals: MultisampledTexture(texels::FLOAT),
+    }
+}
+
+/// What a multisampled depth buffer shows, for techniques, which take one sample a pixel: a *front* picture of the nearest
+/// surface that a pixel's samples see, and a *back* picture of the farthest where it is another one, and background elsewhere.
+///
+/// A pixel on an edge so has a visibility for each of its two surfaces, and a host's shading takes its own surface's: that of the
+/// picture whose depth is nearer to the fragment's ([`SPLIT_WGSL`](Self::SPLIT_WGSL)). Where three surfaces and more meet in one
+/// pixel, those between get the nearer one's. Depths are what each surface has at the pixel's centre, extrapolated along it from
+/// the sample that saw it, as a rasteriser does: so nothing shadows itself for having been seen elsewhere. On strips narrower than
+/// a pixel, of which no neighbour sees more, it is the sample's own. Where the host has no
+/// normals, each surface's come from the same extrapolation.
+///
+/// Sample counts: 4, as in WebGPU. One is made for a view, serves all lights, and is recorded once a frame:
+///
+/// ```no_run
+/// # use antumbra::*;
+/// # fn example(gpu: &Gpu, recorder: &mut Recorder<'_>, receivers: Receivers<'_>, shadow: &mut AnyShadow,
+/// #     light: &light::Light, casters: Casters<'_>, masks: &[Mask; 2]) -> Result<(), Error> {
+/// let mut split = SplitReceivers::new(gpu); // kept from frame to frame
+/// split.record(recorder, &receivers)?;      // whose depth has four samples a pixel
+/// for (receivers, mask) in split.pictures(&receivers).into_iter().zip(masks) {
+///     shadow.prepare(&Frame { light, casters, receivers, mask })?.record(recorder);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+///
+/// The second picture's light maps stand from the first's. Its receivers are few, so it costs little more than what a technique
+/// spends on background.
+#[derive(Debug)]
+pub struct SplitReceivers {
+    gpu: Gpu,
+    layout: wgpu::BindGroupLayout,
+    no_normals: wgpu::TextureView,
+    keep: Keep,
+    made: Option<Pictures>,
+}
+
+/// Front and back.
+#[derive(Debug)]
+struct Pictures {
+    size_px: UVec2,
+    normal_format: wgpu::TextureFormat,
+    depth: [wgpu::TextureView; 2],
+    depth_layers: wgpu::TextureView,
+    normals: [wgpu::TextureView; 2],
+}
+
+impl SplitReceivers {
+    /// For a host's shading: which of the two pictures, and so which of two masks, a fragment of depth `position.z` is in. `depths`
+    /// is [`depth_layers`](Self::depth_layers), `pixel` counts from the viewport's corner.
+    pub const SPLIT_WGSL: &'static str = "
+fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u32 {
+    let front = textureLoad(depths, pixel, 0u, 0).x;
+    let back = textureLoad(depths, pixel, 1u, 0).x;
+    let has_back = back > 0.0 && back < 1.0;
+    return select(0u, 1u, has_back && abs(depth - back) < abs(depth - front));
+}
+";
+
+    /// For views of any size.
+    pub fn new(gpu: &Gpu) -> Self {
+        let no_normals = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("antumbra no normals"),
+            size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: SAMPLES,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        Self {
+            layout: Samples::layout(gpu),
+            no_normals: gpu.device.create_view(&no_normals, &wgpu::TextureViewDescriptor::default()),
+            gpu: gpu.clone(),
+            keep: Keep::default(),
+            made: None,
+        }
+    }
+
+    /// Records the two pictures of `receivers`, whose depth and normals have four samples a pixel, and whose normals are of a
+    /// format that can be drawn to.
+    ///
+    /// # Errors
+    /// [`Error::BadFrame`] where depth or normals have another count of samples, or do not hold the receivers.
+    pub fn record(&mut self, recorder: &mut Recorder<'_>, receivers: &Receivers<'_>) -> Result<(), Error> {
+        check(receivers)?;
+        let view_from_clip = receivers.clip_from_view.as_dmat4().inverse().as_mat4();
+        let world_from_view = receivers.view_from_world.as_dmat4().inverse().as_mat4();
+        let normal_format = receivers.normals.map_or(NORMAL_FORMAT, |normals| normals.texture().format());
+        if !self
+            .made
+            .as_ref()
+            .is_some_and(|made| (made.size_px, made.normal_format) == (receivers.size_px, normal_format))
+        {
+            self.made = Some(Pictures::new(&self.gpu, receivers.size_px, normal_format));
+        }
+        let made = self.made.as_ref().expect("made above where it was missing");
+        let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep), None);
+        let uniform = stage.uniform(
+            "antumbra split receivers",
+            &Split {
+                origin_px: receivers.origin_px,
+                size_px: receivers.size_px,
+                view_from_clip,
+                world_from_view,
+                background_depth: receivers.depth_convention.background(),
+                has_normals: receivers.normals.is_some().into(),
+                padding_0: 0,
+                padding_1: 0,
+            },
+        );
+        let samples = Samples {
+            split: &uniform,
+            depths: receivers.depth,
+            normals: receivers.normals.unwrap_or(&self.no_normals),
+        };
+        let group = samples.group(&stage, &self.layout);
+        let pipeline = pipeline(&stage, &self.layout, normal_format);
+        let (keep, uploads) = stage.finish();
+        self.keep = keep;
+        recorder.upload(uploads, Commands::default().end());
+        for picture in 0..2 {
+            recorder.color_pass("split receivers", Span::of(picture, 2), &made.targets(picture), |pass| {
+                pass.set_pipeline(&pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                pass.draw(0..3, picture as u32..picture as u32 + 1);
+            });
+        }
+        Ok(())
+    }
+
+    /// The front and the back picture of the receivers last recorded, with the camera and bounds of `receivers`.
+    ///
+    /// # Panics
+    /// Where nothing was recorded.
+    pub fn pictures<'a>(&'a self, receivers: &Receivers<'a>) -> [Receivers<'a>; 2] {
+        let made = self.made.as_ref().expect("`record` comes before");
+        [0, 1].map(|picture: usize| Receivers {
+            size_px: made.size_px,
+            origin_px: UVec2::ZERO,
+            depth: &made.depth[picture],
+            normals: Some(&made.normals[picture]),
+            ..*receivers
+        })
+    }
+
+    /// Depth of the front picture and of the back one, in two layers: a `texture_2d_array<f32>` for a host's shading. `None`
+    /// before anything was recorded.
+    pub fn depth_layers(&self) -> Option<&wgpu::TextureView> {
+        self.made.as_ref().map(|made| &made.depth_layers)
+    }
+
+    /// Bytes of the pictures.
+    pub fn memory_bytes(&self) -> u64 {
+        self.made.as_ref().map_or(0, |made| {
+            let pixels = u64::from(made.size_px.x) * u64::from(made.size_px.y);
+            let normal = made.normal_format.block_copy_size(None).unwrap_or(0);
+            2 * pixels * u64::from(4 + normal)
+        })
+    }
+}
+
+fn check(receivers: &Receivers<'_>) -> Result<(), Error> {
+    let bad = |what, had: String, needed: String| Err(Error::BadFrame { technique: NAME, what, had, needed });
+    if receivers.size_px.min_element() == 0 {
+        return bad("the receivers' size", format!("{}", receivers.size_px), "at least 1 × 1 pixels".into());
+    }
+    let end_px = receivers.origin_px.saturating_add(receivers.size_px);
+    for (what, view) in [("the depth buffer", Some(receivers.depth)), ("the normals", receivers.normals)] {
+        let Some(texture) = view.map(wgpu::TextureView::texture) else { continue };
+        if texture.sample_count() != SAMPLES {
+            let had = format!("of {} samples a pixel", texture.sample_count());
+            return bad(what, had, format!("of {SAMPLES}; those of one need no splitting"));
+        }
+        let size_px = UVec2::new(texture.width(), texture.height());
+        if end_px.cmpgt(size_px).any() {
+            return bad(what, format!("of {size_px} pixels"), format!("up to pixel {end_px} at least"));
+        }
+    }
+    Ok(())
+}
+
+impl Pictures {
+    fn new(gpu: &Gpu, size_px: UVec2, normal_format: wgpu::TextureFormat) -> Self {
+        let texture = |format| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("antumbra split receivers"),
+                size: wgpu::Extent3d { width: size_px.x, height: size_px.y, depth_or_array_layers: 2 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        };
+        let layers =
+            |texture: &wgpu::Texture| -> [_; 2] { slice_views(gpu, texture).try_into().expect("of two layers") };
+        let depth = texture(DEPTH_FORMAT);
+        Self {
+            size_px,
+            normal_format,
+            depth: layers(&depth),
+            depth_layers: array_view(gpu, &depth),
+            normals: layers(&texture(normal_format)),
+        }
+    }
+
+    /// What is drawn to for the front picture, 0, or the back one, 1.
+    fn targets(&self, picture: usize) -> [&wgpu::TextureView; 2] {
+        [&self.depth[picture], &self.normals[picture]]
+    }
+}
+
+fn pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout, normal_format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
+    let label = "antumbra split receivers";
+    let targets = [DEPTH_FORMAT, normal_format]
+        .map(|format| Some(wgpu::ColorTargetState { format, blend: None, write_mask: wgpu::ColorWrites::ALL }));
+    color_pipeline(gpu, label, shaders::SPLIT_RECEIVERS_DRAW, layout, &targets)
+}
