@@ -7,6 +7,7 @@ pub const VIEWS: &[(&str, &str)] = &[
     ("tree-near", include_str!("views/tree-near.toml")),
     ("fence-close", include_str!("views/fence-close.toml")),
     ("all-penumbra", include_str!("views/all-penumbra.toml")),
+    ("sky", include_str!("views/sky.toml")),
     ("fence-distant", include_str!("views/fence-distant.toml")),
 ];
 
