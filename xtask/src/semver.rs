@@ -54,7 +54,10 @@ fn tool() -> Result<PathBuf, String> {
 }
 
 fn install(tools: &Path) -> Result<(), String> {
-    eprintln!("xtask: installing cargo-semver-checks {TOOL} in {}, by cargo: ten minutes on two cores", tools.display());
+    eprintln!(
+        "xtask: installing cargo-semver-checks {TOOL} in {}, by cargo: ten minutes on two cores",
+        tools.display()
+    );
     let install = ["install", "--quiet", "--locked", "cargo-semver-checks", "--version", TOOL, "--root"];
     shell::run(cargo().args(install).arg(tools))
 }

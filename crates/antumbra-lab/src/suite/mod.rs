@@ -122,6 +122,11 @@ impl Results {
         self.0.get("rows").and_then(Value::as_object).into_iter().flat_map(Map::values)
     }
 
+    /// Names of all results.
+    fn ids(&self) -> impl Iterator<Item = &str> {
+        self.0.get("rows").and_then(Value::as_object).into_iter().flat_map(Map::keys).map(String::as_str)
+    }
+
     /// What the file says of itself: `adapter`, `commit`, `begun`.
     pub fn about(&self, key: &str) -> &str {
         self.0.get(key).and_then(Value::as_str).unwrap_or_default()

@@ -495,7 +495,7 @@ fn shadows_fade_and_end_at_a_distance() {
     }
 }
 
-/// While a camera walks under a sun, the maps of slices that still hold what is seen are not drawn again, and what they show
+/// While a camera walks under a sun, the maps of cascades that still hold what is seen are not drawn again, and what they show
 /// is what a state of its own shows.
 #[test]
 fn slices_that_hold_are_not_drawn_again() {
