@@ -352,7 +352,8 @@ mod tests {
         for (page, file) in [
             ("BENCHMARKS.md", "bench/results/nvidia-h200-2026-11-27.json"),
             ("bench/nvidia-h200-2026-11-26.md", "bench/results/nvidia-h200-2026-11-26.json"),
-            ("bench/llvmpipe.md", "bench/results/llvmpipe-2026-11-25.json"),
+            ("bench/llvmpipe.md", "bench/results/llvmpipe-2026-11-29.json"),
+            ("bench/llvmpipe-2026-11-25.md", "bench/results/llvmpipe-2026-11-25.json"),
         ] {
             let text = std::fs::read_to_string(root.join(page)).unwrap();
             let of_file = markdown(&Results::read(&root.join(file)).unwrap());
