@@ -11,7 +11,7 @@
 //! |---|---|
 //! | that is held to 70° of its axis, or whose receivers lie there | one: the light as it is, and no pass more |
 //! | that shines all around | the faces of a cube about it; a technique sees six lights of 90° |
-//! | a sun, whose receivers' depths differ much | cascades along the camera's view: [`slices`], that stay where they are: [`still`] |
+//! | a sun, whose receivers' depths differ much | slices along the camera's view: [`slices`], that stay where they are: [`still`] |
 //! | before its plane | its middle, [`MIDDLE_TANGENT`] wide, and about it square rings to the horizon, four sides each, in the same light plane |
 //!
 //! Where shadows end at a distance from the camera, parts end there too, and a light without parts is one part; what lies
@@ -28,7 +28,7 @@
 //! # Limits
 //! Receivers nearer to the light than it is large lie beside some of its points: what such a point sees of them may be in
 //! another part's maps. Beyond the last ring, within a degree of the light's plane, texels of a map that is cut there are
-//! missed: [`HORIZON_TANGENT`]. Under a sun what is so far before a cascade that it blurs over more than all of it may lie
+//! missed: [`HORIZON_TANGENT`]. Under a sun what is so far before a slice that it blurs over more than all of it may lie
 //! beside its map. What a technique gets wrong by its map's texels is another thing on the two sides of an edge: `hard`,
 //! `pcss` and `multi_view` err as little across edges as beside them, `essm` twice as much (`builtin:lamp-room`, 160 × 90).
 
@@ -77,7 +77,7 @@ pub(crate) struct Part {
     pub(crate) hull: Vec<Vec3>,
     /// Those of the points that the camera is known to see.
     pub(crate) seen: Vec<Vec3>,
-    /// Corners of a box that holds the hull and mostly stays where it is; of a sun's cascade.
+    /// Corners of a box that holds the hull and mostly stays where it is; of a sun's slice.
     pub(crate) still: Option<[Vec3; 8]>,
 }
 

@@ -1,7 +1,7 @@
-//! A sun over a world: what the camera sees, in cascades along its view, each of which has maps of its own.
+//! A sun over a world: what the camera sees, in slices along its view, each of which has maps of its own.
 //!
 //! A map of all that a camera sees has texels as wide as the farthest receivers want them, which is far too wide for what
-//! is near. In a cascade from depth `a` to depth `b` a map's texel covers about `b / a` times as many pixels at the near end
+//! is near. In a slice from depth `a` to depth `b` a map's texel covers about `b / a` times as many pixels at the near end
 //! as at the far one, so ends that grow by one ratio waste the least (Zhang, Sun, Xu, Lun, "Parallel-split shadow maps for
 //! large-scale virtual environments", VRCIA 2006; Lloyd, Govindaraju, Quammen, Molnar, Manocha, "Logarithmic perspective
 //! shadow maps", TOG 27(4), 2008), and where they begin is best taken from what is seen (Lauritzen, Salvi, Lefohn, "Sample
@@ -18,39 +18,39 @@ use glam::{Vec2, Vec3};
 use super::region::Region;
 use crate::contract::PreparedReceivers;
 
-/// Depths within this ratio need no cascades.
+/// Depths within this ratio need no slices.
 const WORTH_SLICES: f32 = 16.0;
 
-/// How much deeper a cascade ends than it begins. Less gives more cascades, whose far ends have no finer texels.
+/// How much deeper a slice ends than it begins. Less gives more slices, whose far ends have no finer texels.
 pub(super) const SLICE_RATIO: f32 = 2.5;
 
-/// Where one of the cascades ends, metres: others at 9.1, 23, 143, 356.
+/// Where one of the slices ends, metres: others at 9.1, 23, 143, 356.
 pub(super) const ONE_END_M: f32 = 57.0;
 
 /// What is nearer than this part of the farthest receiver is in the first slice: there are eight of them at most within two
 /// kilometres.
 const NEAREST_SHARE: f32 = 1.0 / 512.0;
 
-/// But the first cascade begins no farther than this, metres: a world's bounds may reach anywhere, and what is seen of it is near.
+/// But the first slice begins no farther than this, metres: a world's bounds may reach anywhere, and what is seen of it is near.
 const FARTHEST_BEGIN_M: f32 = 4.0;
 
 /// Where nothing is known of what is seen, little is taken to be nearer than this, metres.
 const USUALLY_NEAREST_M: f32 = 0.5;
 
-/// The part of the points seen that may be nearer than where cascades begin.
+/// The part of the points seen that may be nearer than where slices begin.
 const LEFT_NEARER: f32 = 0.01;
 
 /// A map of usual size has so many texels along a side.
 const USUAL_TEXELS: f32 = 1024.0;
 
-/// Texels of one map are small enough where they are no wider than so many pixels at the end of a cascade that began at the
+/// Texels of one map are small enough where they are no wider than so many pixels at the end of a slice that began at the
 /// nearest that is seen.
 const FINE_PIXELS: f32 = 2.0;
 
 /// What there was in the frame before stays until what asks for it has changed by this factor.
 const STAYS_FOR: f32 = 1.25;
 
-/// Where cascades end: at the powers of [`SLICE_RATIO`] from `first` to `last`, times [`ONE_END_M`].
+/// Where slices end: at the powers of [`SLICE_RATIO`] from `first` to `last`, times [`ONE_END_M`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SliceEnds {
     first: i32,
@@ -78,7 +78,7 @@ impl SliceEnds {
     }
 }
 
-/// A cascade.
+/// A slice.
 #[derive(Clone, Debug)]
 pub(super) struct Slice {
     /// The same for what lies between the same depths.
@@ -86,7 +86,7 @@ pub(super) struct Slice {
     pub(super) region: Region,
 }
 
-/// The cascades, from near to far; none where one map does as well. `corners` span all receivers, `ends` are those of the
+/// The slices, from near to far; none where one map does as well. `corners` span all receivers, `ends` are those of the
 /// frame before, and then of this one. Points, which no camera sees, have none.
 pub(super) fn slices_of(
     sun: &Light,
@@ -127,7 +127,7 @@ pub(super) fn slices_of(
     (found.first - 1..=found.last).map(slice).collect()
 }
 
-/// Where the cascades of a power end.
+/// Where the slices of a power end.
 fn end_m(power: i32) -> f32 {
     ONE_END_M * SLICE_RATIO.powi(power)
 }

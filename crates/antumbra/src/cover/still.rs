@@ -1,7 +1,7 @@
 //! Stable placement of a sun's maps while the camera moves.
 //!
-//! A map that is fitted to what the camera sees lies elsewhere in every frame of a walk, and its texels with it: edges flicker
-//! over what stands still, filters change their minds, and all is drawn again. So what a cascade receives is held by a box
+//! A map that is fitted to what the camera sees lies elsewhere in every frame of a walk, and its texels with it: edges crawl
+//! over what stands still, filters change their minds, and all is drawn again. So what a slice receives is held by a box
 //! along the sun's axes, somewhat larger than it, and the box stays as long as it holds it and is not far too large. Its side
 //! is one of few: a new box mostly has the old one's texels, and is laid in whole ones of them by
 //! [`in_whole_texels`](crate::light_map::still_view::in_whole_texels) (Valient, "Stable rendering of cascaded shadow maps",

@@ -172,7 +172,7 @@ fn a_sun_has_slices_where_one_map_is_too_coarse() {
         held[holders[0]] += 1;
     }
     assert!(held.iter().all(|count| *count > 50), "{held:?}");
-    // Where it is known what is seen, cascades begin there.
+    // Where it is known what is seen, slices begin there.
     let seen: Vec<Vec3> = (0..500).map(|i| world_from_view.transform_point3(Vec3::Z * -(200.0 + i as f32))).collect();
     let receivers = Receivers { seen: &seen, ..receivers };
     assert!(slices::slices_of(&sun, &receivers.into(), &far, &mut None).is_empty(), "all that is seen is far");
@@ -223,7 +223,7 @@ fn slices_stay_while_a_camera_walks() {
         let eye = Vec3::new(0.02 * frame as f32, 1.7, 0.03 * frame as f32);
         let view_from_world = look_at_mat4(eye, eye + Vec3::new(-1.0, -0.05, -0.3), Vec3::Y);
         let world_from_view = view_from_world.inverse();
-        // The nearest that is seen comes and goes by a tenth about an end of cascades.
+        // The nearest that is seen comes and goes by a tenth about an end of slices.
         let nearest_m = slices::ONE_END_M / slices::SLICE_RATIO.powi(2) * (1.0 + 0.1 * unit(frame).x);
         let seen: Vec<Vec3> =
             (0..200).map(|i| world_from_view.transform_point3(Vec3::Z * -(nearest_m + 3.0 * i as f32))).collect();

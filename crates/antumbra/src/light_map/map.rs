@@ -26,9 +26,9 @@ use crate::gpu::{
 pub(crate) enum MapWindow {
     /// A square along the light's right and up, for kernels that are counted in texels.
     Square,
-    /// The same, but in a sun's cascades, which are long and narrow, a rectangle.
+    /// The same, but in a sun's slices, which are long and narrow, a rectangle.
     Narrow,
-    /// Rolled, and warped to what is seen, where that makes its texels half as wide; in a sun's cascades a rectangle along the
+    /// Rolled, and warped to what is seen, where that makes its texels half as wide; in a sun's slices a rectangle along the
     /// light's right and up.
     Seen,
 }
@@ -53,7 +53,7 @@ impl OwnMapSettings {
         Self { size, window: MapWindow::Square, followed: Followed::All, layers: 1, more_bytes_per_texel: 0 }
     }
 
-    /// The same, narrow in a sun's cascades.
+    /// The same, narrow in a sun's slices.
     pub(crate) fn narrow(size: MapSize) -> Self {
         Self { window: MapWindow::Narrow, ..Self::square(size) }
     }
@@ -318,7 +318,7 @@ fn own_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>, casters: &[Aabb], sett
     let window = settings.window;
     let (followed, reach) = (settings.followed, central_reach(frame.light));
     if stage.still().is_some() {
-        // What a cascade receives lies at depths that differ little, and a warp would move with the camera.
+        // What a slice receives lies at depths that differ little, and a warp would move with the camera.
         let shape = if window == MapWindow::Square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
         let receivers = &corners_to_hold(stage, &frame.receivers);
         return fit_central_view_within(frame.light, followed, reach, &FitTo { casters, receivers, window: shape });
