@@ -222,7 +222,7 @@ pub fn claim_lights(
         let own_bias = layers.with_maps.get(&entity).copied();
         (own_bias.is_some(), numbered(own_bias.unwrap_or(1.0), number(entity)))
     };
-    // Where in Bevy's array a spot's map lies hangs on what other maps there are, and is asked only where lights change.
+    // Where in Bevy's array a spot's map lies depends on what other maps there are, and is asked only where lights change.
     let have_maps_changed = layers.with_maps != maps_before;
     for (entity, mut light) in &mut points {
         if have_maps_changed {

@@ -1,6 +1,6 @@
 //! Points that a view's camera sees, read back some frames late.
 //!
-//! Light maps have their small texels where something is seen, and a sun's slices begin at what is nearest. A hint that is late
+//! Light maps have their small texels where something is seen, and a sun's cascades begin at what is nearest. A hint that is late
 //! costs sharpness for some frames and nothing else: what receives at all is told by bounds of this frame.
 
 use std::sync::Arc;

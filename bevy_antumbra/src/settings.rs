@@ -51,13 +51,13 @@ pub enum BevyMaps {
     Never,
 }
 
-/// How masks are made smooth: for techniques that take few samples a pixel, turned by chance, `Pcss` and `SampleBased` among
+/// How masks are made smooth: for techniques that take few samples a pixel, with random offsets, `Pcss` and `SampleBased` among
 /// them. Where things move by themselves, give the camera a `MotionVectorPrepass` too: without it only the camera's own motion
 /// is known. At four samples a pixel it always is so.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct ShadowDenoise {
-    /// Frames that a pixel is the mean of at most: 1 to 64, 16 as it comes. More: less noise, and shadows that lag by some
+    /// Frames that a pixel is the mean of at most: 1 to 64, 16 by default. More: less noise, and shadows that lag by some
     /// frames where lights or casters move slowly.
     pub most_frames: u32,
 }
@@ -221,7 +221,7 @@ pub enum ShadowQuality {
     /// The least error that the technique reaches, whatever the time.
     Best,
     /// No step of these: the algorithm as its paper prints it, to compare with. Techniques that are of none of the five papers
-    /// are as they come.
+    /// are at their defaults.
     Paper,
 }
 

@@ -294,7 +294,7 @@ fn transparent_surfaces_keep_bevys_shadows() {
 #[test]
 fn a_skeleton_bends() {
     let mut mesh: Mesh = Cuboid::from_size(SLAB_M).into();
-    // What is on the right hangs on the second joint.
+    // What is on the right depends on the second joint.
     let Some(VertexAttributeValues::Float32x3(positions)) = mesh.attribute(Mesh::ATTRIBUTE_POSITION) else {
         panic!("a cuboid has positions");
     };

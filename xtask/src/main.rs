@@ -15,6 +15,7 @@ mod machine;
 mod packages;
 mod portability;
 mod qualities;
+mod semver;
 mod shell;
 mod site;
 mod skips;
@@ -42,7 +43,7 @@ Development commands of Antumbra. They install what is missing where they can, a
         Choose with --driver or ANTUMBRA_DRIVER; VK_DRIVER_FILES is respected.
 
     cargo xtask ci [--driver default|installed|newer]
-        Runs `test`, each family of techniques alone, that the program of `packages` compiles, `wasm`, `web --shaders`,
+        Runs `test`, each family of techniques alone, that the program of `packages` compiles, `semver`, `wasm`, `web --shaders`,
         `portability` and `gpu-cost --check`. Fails where a check would be skipped, except in the last three, where a browser, a
         compiler or a driver may be missing.
 
@@ -62,6 +63,10 @@ Development commands of Antumbra. They install what is missing where they can, a
     cargo xtask packages
         Makes the packages for publication, and builds and runs a program from them outside the repository; with nightly, too, where
         that is installed.
+
+    cargo xtask semver [--baseline REVISION]
+        Compares the library's public API with that of the last release (tag v*), or of a revision, by cargo-semver-checks, which is
+        installed in target/tools once. Without a release there is nothing to do.
 
     cargo xtask portability [--only TEXT]
         Translates the programs of every pipeline as wgpu does on other systems, and has their compilers judge them: HLSL by DXC, SPIR-V
@@ -125,6 +130,7 @@ fn main() -> ExitCode {
         "portability" => portability::run(rest),
         "packages" => packages::run(),
         "qualities" => qualities::run(),
+        "semver" => semver::run(rest),
         "cases" => cases::run(rest),
         "wasm" => wasm::check(Missing::Skip),
         "web" => web::run(rest),

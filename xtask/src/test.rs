@@ -7,7 +7,7 @@ use crate::driver::{self, Driver};
 use crate::machine::{self, Missing};
 use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
-use crate::{bevy, families, find_mutants, gpu_cost, packages, portability, wasm, web};
+use crate::{bevy, families, find_mutants, gpu_cost, packages, portability, semver, wasm, web};
 
 /// How much is tested.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,8 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
         if missing == Missing::Fail {
             // What builds in folders of its own, beside what builds in ours: one crate often waits for another.
             let (inside, outside) = std::thread::scope(|scope| {
-                let outside = scope.spawn(|| packages::check().and_then(|()| wasm::check(missing)));
+                let outside = scope
+                    .spawn(|| packages::check().and_then(|()| wasm::check(missing)).and_then(|()| semver::run(&[])));
                 let inside = lint().and_then(|()| families::check());
                 (inside, outside.join().expect("checks do not panic"))
             });

@@ -123,8 +123,8 @@ fn report_usage(error: &clap::Error) -> ExitCode {
             let text = error.to_string();
             // Everything before the usage: what is wrong, where, and clap's tips.
             let end = text.find("\n\nUsage:").or_else(|| text.find("\n\nFor more information")).unwrap_or(text.len());
-            let message = text[..end].trim_start_matches("error: ");
-            refused(message)
+            let message = text[..end].trim_start_matches("error: ").replace("\n\n  tip: ", "; ");
+            refused(&message)
         }
     }
 }

@@ -14,9 +14,9 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
     (distance <= 1.max(typed.chars().count() / 3)).then_some(name)
 }
 
-/// `, did you mean `x`?`, or nothing.
+/// ` (did you mean `x`?)`, or nothing.
 pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> String {
-    nearest(typed, known).map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
+    nearest(typed, known).map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }
 
 fn normalised(name: &str) -> String {

@@ -207,7 +207,7 @@ pub fn techniques(text: &str) -> Result<Techniques, String> {
     Ok(Techniques(techniques))
 }
 
-/// A paper's techniques, each as printed there, and then what it measures them against, as it comes or as its own paper
+/// A paper's techniques, each as published there, and then what it measures them against, at its defaults or as its own paper
 /// has it.
 pub fn techniques_of(preset: &Preset) -> Vec<Technique> {
     let of = |kind: &TechniqueKind| Technique {

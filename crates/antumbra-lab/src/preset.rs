@@ -3,7 +3,7 @@
 //! ```toml
 //! technique = "pcss"     # or with a quality, "pcss:fast", whose parameters come first
 //!
-//! [parameters]           # what is not named stays as it comes
+//! [parameters]           # what is not named keeps its default
 //! map_size = 2048
 //! means = "ranges"
 //! ```

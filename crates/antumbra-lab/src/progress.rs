@@ -1,6 +1,6 @@
 //! Observers of long work. The laboratory reports what it does and how far it is; the caller decides what to show.
 
-/// Someone who is told how far long work is. All methods may be called from any thread.
+/// Receiver of progress reports of long work. All methods may be called from any thread.
 pub trait Progress: Sync {
     /// A stage begins that has `steps` steps.
     fn begin(&self, stage: &str, steps: u64);

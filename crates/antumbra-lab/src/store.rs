@@ -42,7 +42,7 @@ pub(crate) struct Store<R> {
 }
 
 impl<R: Serialize + DeserializeOwned> Store<R> {
-    /// That of a file, with what stands there from before; without one, of memory alone. `about` is what measurements hang on.
+    /// That of a file, with what stands there from before; without one, of memory alone. `about` is what measurements depend on.
     ///
     /// # Errors
     /// Where the file is of something else, or cannot be read or written.

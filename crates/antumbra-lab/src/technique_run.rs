@@ -81,7 +81,7 @@ fn without_end<'n>(name: &'n str, end: &str) -> Option<&'n str> {
 }
 
 impl TechniqueChoice {
-    /// A technique as it comes.
+    /// A technique at its defaults.
     pub fn default_of(kind: TechniqueKind) -> Self {
         Self::of_quality(kind, Quality::Balanced)
     }
@@ -91,7 +91,7 @@ impl TechniqueChoice {
         Self { kind, quality, settings: Vec::new(), extras: Extras::default() }
     }
 
-    /// A technique as it comes, with settings.
+    /// A technique at its defaults, with settings.
     pub fn with_settings(kind: TechniqueKind, settings: Vec<(String, String)>) -> Self {
         Self { settings, ..Self::default_of(kind) }
     }
@@ -342,7 +342,7 @@ pub fn run(
     let compile_ms = began.elapsed().as_secs_f64() * 1e3;
     let mask = mask_for(lab, technique, &casters, receivers.size_px);
     let asked_for = (timing.warm_up + timing.frames.max(1)) as usize;
-    // The error of what is denoised hangs on how many frames it has seen, so that all of them are drawn.
+    // The error of what is denoised depends on how many frames it has seen, so that all of them are drawn.
     let least = if technique.denoise().is_some() { asked_for } else { 1 };
     let watch = Stopwatch::new(*timing, clock_rise(lab.adapter.is_software()));
     let mut timed = Timed { lab, mask: &mask, watch, asked_for, least, frames: Vec::new(), visibility: None };

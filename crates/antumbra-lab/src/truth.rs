@@ -179,7 +179,7 @@ const SAME_SURFACE: f32 = 2e-3;
 /// within [`SAME_SURFACE`], and one may be lit where the other faces away.
 const SAME_FACE: f32 = 0.99;
 
-/// How finely progress is told.
+/// Number of steps in which progress is reported.
 const STEPS: u64 = 1000;
 
 #[cfg(test)]

@@ -169,7 +169,7 @@ struct Object {
     matrix: Mat4,
 }
 
-/// Triangles of an object: what the processor does hangs on objects, and what the adapter does should not take long.
+/// Triangles of an object: what the processor does depends on objects, and what the adapter does should not take long.
 const OBJECT_TRIANGLES: usize = 12;
 
 /// Five hundred parts of the street, from all over it.

@@ -3,7 +3,7 @@
 //! **The hair.** A segment to the light must start off its own surface, on the side that the camera sees, or it would
 //! meet that surface. How far? The hit is rebuilt from the triangle's corners in double precision and then rounded to
 //! single, so it lies off the triangle's plane by at most half a unit in the last place per axis: `2⁻²⁴ |x|`, whatever
-//! the distance to the camera and the size of the triangle. Adding the hair rounds once more. The planes of the test
+//! the distance to the camera and the size of the triangle. Adding the ray offset rounds once more. The planes of the test
 //! itself are made in double precision and add nothing (see `planes.rs`). Neighbouring triangles of a tessellated
 //! plane are as flat as their own corners' rounding, another `2⁻²⁴ |x|` each. Four such errors, doubled:
 //!
@@ -11,7 +11,7 @@
 //! hair = 2⁻²¹ |x| + 2⁻⁴⁶ · largest |corner|
 //! ```
 //!
-//! where the second term is the double-precision rounding of the corners' sum. At 10 m from the world's origin the hair
+//! where the second term is the double-precision rounding of the corners' sum. At 10 m from the world's origin the offset
 //! is 5 µm; at 10 km, 5 mm.
 
 use glam::{UVec2, Vec3};

@@ -41,7 +41,7 @@ impl Ground {
         }
     }
 
-    /// What is told of a ground that nobody asked for.
+    /// Note about a ground that nobody asked for.
     pub fn told(scene: &Scene) -> String {
         format!("{} stands on nothing, and was put on a ground; --ground=no leaves it out", scene.name)
     }

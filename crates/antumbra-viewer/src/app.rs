@@ -34,6 +34,8 @@ const FIRST_SCENE: &str = "builtin:lantern-wall";
 const SCREENSHOT_POINTS: u32 = 256;
 /// And for so many frames in which nothing is left to do.
 const SCREENSHOT_STILL_FRAMES: u32 = 8;
+/// Width below which a window opens without the panel at the side, which would leave nothing of the image, in points.
+const NARROW_WINDOW: f32 = 640.0;
 /// How soon to look again for what the GPU has finished.
 const SOON: Duration = Duration::from_millis(15);
 
@@ -634,6 +636,9 @@ impl App {
         self.take_chosen(&ctx);
         self.pose();
         self.history.note(&self.state, ctx.input(|input| input.time));
+        if ctx.cumulative_pass_nr() == 0 && ui.max_rect().width() < NARROW_WINDOW {
+            self.panels.is_side_shown = false;
+        }
         let mut actions = self.keys(&ctx);
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {

@@ -55,7 +55,7 @@ pub fn cases() -> Vec<Case> {
                 // It asks for places, in metres from the light: any between the scene's casters.
                 side.set("split_depths", "2, 3, 4");
             }
-            // Some settings are refused beside others as they come.
+            // Some settings are refused beside others at their defaults.
             if side.refusal(key).is_none() {
                 cases.push(Case { scene: SCENES[0], side });
             }

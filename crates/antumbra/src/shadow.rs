@@ -47,7 +47,7 @@ pub struct Shadow<T: Technique> {
     validator: Validator,
     /// Parameters of the next frame.
     pub params: T::Params,
-    /// How the next frame's mask is made smooth; `None`, as it comes, leaves it as the technique writes it. What the frames
+    /// How the next frame's mask is made smooth; `None`, the default, leaves it as the technique writes it. What the frames
     /// before had is kept as long as there is one.
     pub denoise: Option<Denoise>,
     /// Whether the next frame's technique writes a mask of half the width and height, which is then interpolated within surfaces: any

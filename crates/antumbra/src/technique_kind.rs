@@ -203,7 +203,7 @@ techniques! {
         light_maps: "3",
         good_for: "occluders one behind another; sharp contacts",
         fails_where: "near and far bars side by side: one mean depth per layer",
-        worst_case: "window", "one mean depth for near and far bars; `means=ranges` reduces the error from .058 to .024",
+        worst_case: "window", "one mean depth for near and far bars; `means=ranges` reduces the error from .043 to .026",
     }
     "single_map", Smrt, "smrt", "single_map::smrt", {
         title: "Shadow map ray tracing",

@@ -281,3 +281,40 @@ fn wgsl_snippets_stand_in_a_shader_that_runs() {
     let snippets = compiled_snippets("text,wgsl", &["examples"], &["wgsl", "rs"]);
     assert!(snippets >= 2, "{snippets}");
 }
+
+/// Value of a key of a manifest, between quotes.
+fn quoted<'a>(manifest: &'a str, key: &str) -> &'a str {
+    let value = manifest.lines().find_map(|line| line.strip_prefix(key)?.trim_start().strip_prefix("= "));
+    value.and_then(|value| value.split('"').nth(1)).unwrap_or_else(|| panic!("no `{key}` in quotes"))
+}
+
+/// The table of versions, the citation and each crate's address of documentation follow the manifests.
+#[test]
+fn versions_are_those_of_the_manifests() {
+    let read = |path: &str| std::fs::read_to_string(root().join(path)).unwrap();
+    let (workspace, plugin) = (read("Cargo.toml"), read("bevy_antumbra/Cargo.toml"));
+    let version = quoted(&workspace, "version");
+    let minor = |version: &str| version.splitn(3, '.').take(2).collect::<Vec<_>>().join(".");
+    let row = format!(
+        "| {}, unreleased | {} | {} | {} | {}, with Rust {} |",
+        minor(version),
+        quoted(&workspace, "rust-version"),
+        quoted(&workspace, "wgpu"),
+        quoted(&workspace, "glam"),
+        minor(quoted(&plugin, "bevy")),
+        quoted(&plugin, "rust-version"),
+    );
+    let start = page("docs/start.md").text;
+    assert!(start.contains(&row) || start.contains(&row.replace(", unreleased", "")), "docs/start.md has no row {row}");
+    assert!(read("CITATION.cff").contains(&format!("\nversion: {version}\n")), "CITATION.cff is not of {version}");
+    let mut published = 0;
+    for entry in std::fs::read_dir(root().join("crates")).unwrap() {
+        let manifest = std::fs::read_to_string(entry.unwrap().path().join("Cargo.toml")).unwrap();
+        if !manifest.contains("\npublish = false") {
+            let name = quoted(&manifest, "name");
+            assert_eq!(quoted(&manifest, "documentation"), format!("https://docs.rs/{name}"));
+            published += 1;
+        }
+    }
+    assert_eq!(published, 8);
+}

@@ -64,7 +64,7 @@ mod tests {
         all.dedup();
         assert_eq!(all.len(), order.len(), "each once");
         assert_ne!(order, order_of(8, &sources));
-        // What is chosen of one does not hang on another.
+        // What is chosen of one does not depend on another.
         let of_the_last = |sources: &[(&str, usize)]| -> Vec<usize> {
             order_of(7, sources).into_iter().filter(|(source, _)| *source == 3).map(|(_, change)| change).collect()
         };

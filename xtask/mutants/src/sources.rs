@@ -51,7 +51,7 @@ impl Sources {
         Ok(Self { texts, linked, parts })
     }
 
-    /// Applies a change to a source, in a folder of one's own that has all sources, and links what hangs on it.
+    /// Applies a change to a source, in a folder of one's own that has all sources, and links what depends on it.
     ///
     /// # Errors
     /// Where the folder cannot be written.

@@ -124,7 +124,7 @@ impl Suite {
         Ok(tests)
     }
 
-    /// Runs the tests of kept masks with nothing changed, of which nothing is known yet: whole techniques use many shaders, and
+    /// Runs the tests of golden masks with nothing changed, of which nothing is known yet: whole techniques use many shaders, and
     /// notice most of what is changed in them, so that it pays to know which.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ impl Row {
         self.name.split(' ').nth(1).unwrap_or_default()
     }
 
-    /// The parameters that are not as they come.
+    /// The parameters that are not at their defaults.
     fn settings(&self) -> String {
         self.name.split(' ').skip(2).collect::<Vec<_>>().join(" ")
     }
@@ -98,7 +98,7 @@ fn difference(ours: &[f32], theirs: &[f32]) -> Result<f64, String> {
     if mean.is_finite() { Ok(mean) } else { Err("visibility that is no number".into()) }
 }
 
-/// A line a technique: as it comes on each scene, and the worst of its choices.
+/// A line a technique: at its defaults on each scene, and the worst of its choices.
 fn markdown(rows: &[Row], native: &str, web: &str) -> String {
     let mut scenes: Vec<&str> = Vec::new();
     let mut techniques: Vec<&str> = Vec::new();

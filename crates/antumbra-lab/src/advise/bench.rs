@@ -93,7 +93,7 @@ impl<'a> Bench<'a> {
         RUNGS[rung].samples.min(self.request.samples)
     }
 
-    /// What a measurement of a rung hangs on, for the store.
+    /// What a measurement of a rung depends on, for the store.
     pub(super) fn place(&self, rung: usize) -> String {
         let size_px = self.size_px(rung);
         format!("{}x{}/{}", size_px.x, size_px.y, self.samples(rung))

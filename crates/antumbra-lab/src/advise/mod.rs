@@ -51,7 +51,7 @@ use store::Store;
 pub enum Budget {
     /// Milliseconds, on every view.
     Ms(f64),
-    /// So many times what `pcf` takes as it comes, on each view.
+    /// So many times what `pcf` takes at its defaults, on each view.
     TimesPcf(f64),
 }
 
@@ -324,7 +324,7 @@ pub fn advise(
     Ok(advice)
 }
 
-/// What measurements hang on: all but budget and techniques.
+/// What measurements depend on: all but budget and techniques.
 fn about(lab: &LabDevice, request: &AdviseRequest<'_>) -> Value {
     let views = request.views.iter().map(|view| {
         json!({

@@ -178,7 +178,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(measured)
     }
 
-    /// `pcf` as it comes at the full size, which budgets are counted in: the median of several turns of more frames than others have.
+    /// `pcf` at its defaults at the full size, which budgets are counted in: the median of several turns of more frames than others have.
     pub(super) fn measure_base(&mut self) -> Result<Measured, LabError> {
         let (pcf, place) = (Config::default_of(TechniqueKind::Pcf), self.bench.place(FULL));
         if let Some(known) = self.store.get(&pcf, &place) {

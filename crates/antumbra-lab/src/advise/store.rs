@@ -77,7 +77,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
 pub(super) struct Store(store::Store<Measured>);
 
 impl Store {
-    /// That of a folder, with what stands there from before; without one, of memory alone. `about` is what measurements hang on.
+    /// That of a folder, with what stands there from before; without one, of memory alone. `about` is what measurements depend on.
     ///
     /// # Errors
     /// Where the folder's file is of something else, or cannot be read or written.

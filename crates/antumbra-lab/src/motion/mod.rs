@@ -372,7 +372,7 @@ impl<'a> MovingScene<'a> {
     }
 }
 
-/// How finely progress is told, for each traced frame.
+/// Number of steps in which progress is reported, for each traced frame.
 const STEPS: u64 = 100;
 
 /// A tracer whose scene moves.

@@ -70,6 +70,7 @@ fn page(advice: &Advice) -> String {
             ("facts", &facts(advice)),
             ("notices", &notices),
             ("images", &images()),
+            ("usage", &copyable("antumbra render SCENE --technique advice.toml -o image.png")),
             ("preset", &copyable(&preset_toml(&best.config.choice()))),
             ("program", &copyable(&program(advice))),
             ("reasons", &list("", &advice.reasons.iter().map(ToString::to_string).collect::<Vec<_>>())),
@@ -177,8 +178,8 @@ fn points(advice: &Advice) -> Vec<Point> {
 }
 
 fn table(advice: &Advice) -> String {
-    let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"candidates\"><table class=\"numbers candidates\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>roughness</th><th>ms</th>\
-                    <th>median of</th><th>of the budget</th><th>memory</th>"
+    let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"candidates\"><table class=\"numbers candidates\"><thead><tr><th>Technique and settings</th><th>rmse</th><th>ms</th>\
+                    <th>of the budget</th><th>roughness</th><th>memory</th><th>median of</th>"
         .to_owned();
     if advice.prefer == Prefer::Motion {
         html += "<th>flicker</th>";
@@ -189,14 +190,14 @@ fn table(advice: &Advice) -> String {
         let name = if i == 0 { format!("<b class=\"best\">{name}</b>") } else { name };
         let _ = write!(
             html,
-            "<tr id=\"{}\"><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.0} %</td><td>{}</td>",
+            "<tr id=\"{}\"><th scope=\"row\">{name}</th><td>{}</td><td>{}</td><td>{:.0} %</td><td>{}</td><td>{}</td><td>{}</td>",
             anchor(i),
             metric_text(one.rmse),
-            metric_text(one.roughness),
             three_figures(one.worst_ms()),
-            one.counted_briefly(),
             100.0 * one.load,
-            bytes(one.memory_bytes)
+            metric_text(one.roughness),
+            bytes(one.memory_bytes),
+            one.counted_briefly()
         );
         if advice.prefer == Prefer::Motion {
             let _ = write!(html, "<td>{}</td>", one.flicker.map_or_else(|| "–".to_owned(), metric_text));

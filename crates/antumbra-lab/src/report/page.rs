@@ -249,7 +249,7 @@ fn table(report: &Report, rows: &[Measured]) -> String {
         html,
         "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\"><a \
          href=\"#row-{REFERENCE_STEM}\">Reference</a><small>ray-traced truth</small></th><td colspan=\"{}\" \
-         style=\"text-align:left\">{}; every other row is held against it</td></tr>",
+         style=\"text-align:left\">{}; every other row is compared with it</td></tr>",
         METRICS.len() + 2,
         tracing_text(report.reference.info)
     );
@@ -595,7 +595,7 @@ fn passes(measured: &Measurement, colors: &BTreeMap<String, String>) -> String {
     }
     let ms = |v: Option<f64>| v.map_or_else(|| "–".into(), three_figures);
     let mut html = format!(
-        "<table><caption class=\"note\">Milliseconds, {}</caption><thead><tr><th scope=\"col\">Pass</th><th \
+        "<div class=\"wide\"><table><caption class=\"note\">Milliseconds, {}</caption><thead><tr><th scope=\"col\">Pass</th><th \
          scope=\"col\">median ms</th><th scope=\"col\">p10 – p90</th><th scope=\"col\">bytes</th></tr></thead><tbody>",
         measured.count
     );
@@ -612,7 +612,7 @@ fn passes(measured: &Measurement, colors: &BTreeMap<String, String>) -> String {
             pass.bytes.map_or_else(|| "–".into(), bytes)
         );
     }
-    html + "</tbody></table>"
+    html + "</tbody></table></div>"
 }
 
 /// Text in a box with a button that copies it.
@@ -631,7 +631,7 @@ pub(super) fn glossary() -> String {
             "Visibility: the fraction of the light's area that a surface point sees. 1 lit, 0 umbra, between them \
              penumbra.",
         ),
-        ("V_ref", "Visibility traced ray by ray: the truth that techniques are held against."),
+        ("V_ref", "Visibility traced ray by ray: the ground truth that techniques are compared with."),
     ];
     for (term, meaning) in terms {
         let _ = write!(html, "<div><dt>{term}</dt><dd>{}</dd></div>", escape(meaning));

@@ -69,7 +69,7 @@ fn foot(info: &ReproductionInfo) -> String {
 }
 
 fn index_page(results: &Results<'_>, info: &ReproductionInfo) -> String {
-    let mut html = head("The papers, held against this library", info);
+    let mut html = head("The papers, compared with this library", info);
     let _ = write!(
         html,
         "<p class=\"note\">Each paper's tables and figures beside ours, and for each of its claims a verdict by the rule that \
@@ -126,7 +126,7 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
     let _ = write!(
         html,
         "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p><p class=\"note\">The paper's \
-         pictures are in the paper and not copied here; ours stand beside what they are held against.</p>",
+         pictures are in the paper and not copied here; ours are shown beside what they are compared with.</p>",
         escape(paper.citation),
         counts(exhibits),
         escape(&bandwidths(paper, info))
@@ -285,7 +285,7 @@ fn pictures(rows: &[RowResult]) -> String {
     for RowResult { row, form, pictures, .. } in rows {
         let Some(files) = pictures else { continue };
         let shown = [
-            files.reference.as_deref().map(|file| (file, "what it is held against")),
+            files.reference.as_deref().map(|file| (file, "what it is compared with")),
             Some((files.picture.as_str(), "this")),
             files.error.as_deref().map(|file| (file, "error: blue too dark, red too bright")),
         ];

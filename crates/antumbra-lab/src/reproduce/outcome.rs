@@ -29,7 +29,7 @@ pub enum Outcome {
     Failed(String),
 }
 
-/// The figures of a row; which there are hangs on what it measures.
+/// The figures of a row; which there are depends on what it measures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Milliseconds, of the passes that the row names. None where it is about errors.

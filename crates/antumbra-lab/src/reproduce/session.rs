@@ -318,7 +318,7 @@ fn key(name: &str, row: &Row, form: Form) -> String {
     format!("{name}: {}, {form}", row.what)
 }
 
-/// All that a row's result hangs on.
+/// All that a row's result depends on.
 fn described(row: &Row, form: Form, options: &RunOptions) -> Value {
     let Row { scene, view, technique, light_scale, frames, measure, is_timed_too, .. } = row;
     let settings: Vec<String> = row.settings_of(form).map(|(key, value)| format!("{key}={value}")).collect();

@@ -92,7 +92,7 @@ pub struct Spread {
     pub p90: f64,
 }
 
-/// Texels along a side of most techniques' maps as they come.
+/// Texels along a side of most techniques' maps at their defaults.
 pub const DEFAULT_MAP_TEXELS: f32 = 1024.0;
 
 /// Light that comes in at less than this over a surface grazes it.

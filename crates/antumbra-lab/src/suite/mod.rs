@@ -122,6 +122,11 @@ impl Results {
         self.0.get("rows").and_then(Value::as_object).into_iter().flat_map(Map::values)
     }
 
+    /// Names of all results.
+    fn ids(&self) -> impl Iterator<Item = &str> {
+        self.0.get("rows").and_then(Value::as_object).into_iter().flat_map(Map::keys).map(String::as_str)
+    }
+
     /// What the file says of itself: `adapter`, `commit`, `begun`.
     pub fn about(&self, key: &str) -> &str {
         self.0.get(key).and_then(Value::as_str).unwrap_or_default()
@@ -347,7 +352,8 @@ mod tests {
         for (page, file) in [
             ("BENCHMARKS.md", "bench/results/nvidia-h200-2026-11-27.json"),
             ("bench/nvidia-h200-2026-11-26.md", "bench/results/nvidia-h200-2026-11-26.json"),
-            ("bench/llvmpipe.md", "bench/results/llvmpipe-2026-11-25.json"),
+            ("bench/llvmpipe.md", "bench/results/llvmpipe-2026-11-29.json"),
+            ("bench/llvmpipe-2026-11-25.md", "bench/results/llvmpipe-2026-11-25.json"),
         ] {
             let text = std::fs::read_to_string(root.join(page)).unwrap();
             let of_file = markdown(&Results::read(&root.join(file)).unwrap());

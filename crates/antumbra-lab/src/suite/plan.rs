@@ -151,7 +151,7 @@ pub const MANY_VIEW_SCENES: [&str; 20] = [
 /// The scene of the table of motion.
 pub const MOTION_SCENE: &str = "lantern-wall";
 
-/// One of what grows in the table of growth, all else being as it comes.
+/// One of what grows in the table of growth, all else being at its defaults.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
     /// In words, and in its jobs' names.

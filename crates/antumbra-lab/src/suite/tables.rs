@@ -5,16 +5,21 @@ use std::fmt::Write;
 use antumbra::TechniqueKind;
 use serde_json::Value;
 
-use super::plan::{CLAIMS, ERROR_SCENES, GROWTH, MANY_VIEW_SCENES, MOTION_SCENE, Plan, Step, TIME_SCENES, claim_job};
+use super::plan::{
+    CLAIMS, ERROR_SCENES, GROWTH, MANY_VIEW_SCENES, MOTION_SCENE, Part, Plan, Step, TIME_SCENES, claim_job,
+};
 use super::{Done, MOTION_FRAMES, MOTION_STEP_M, Results, TIMING, TRUTH_SAMPLES};
 use crate::motion::Motion;
 
 /// BENCHMARKS.md: every table of which there is a result, with what it is of and how it is made again. What is not measured yet
-/// is an empty cell, what the adapter cannot run a dash.
+/// is an empty cell, what the adapter cannot run a dash. Techniques without any result have no rows and are named once.
 pub fn markdown(results: &Results) -> String {
     let plan = Plan::whole();
     let Done { jobs, of } = results.done(&plan);
-    let clock = if results.is_of_software() {
+    let has_times = results.ids().any(|id| !id.starts_with(&format!("{}/", Part::Errors.name())));
+    let clock = if !has_times {
+        ""
+    } else if results.is_of_software() {
         " This adapter is a software renderer: its times say little about a GPU, which rasterises and filters textures in hardware and \
          has more bandwidth for its arithmetic. Frames are timed by the CPU's clock, passes by the driver's. The driver reports \
          some passes late or with no time, so their sum is less than the frame."
@@ -26,13 +31,18 @@ pub fn markdown(results: &Results) -> String {
          {adapter} ({driver}), commit {commit}, begun {begun}; {jobs} of {of} measurements.{clock}\n\n\
          `antumbra bench --suite FILE` measures every figure, and `antumbra bench --tables FILE` prints this page. Techniques have their \
          default settings unless a table says otherwise. Errors are root mean squares over pixels that face the light's centre, against \
-         {TRUTH_SAMPLES} stratified rays a pixel. Times are milliseconds, medians of {counts}; compare them within one table. An empty \
-         cell was not measured; a dash is what the adapter cannot run. `bench/measurements.md` has other measurements, `bench/cards.md` times by graphics card.\n",
+         {TRUTH_SAMPLES} stratified rays a pixel. {times}An empty \
+         cell was not measured; a dash is what the adapter cannot run.{absent} `bench/measurements.md` has other measurements, `bench/cards.md` times by graphics card.\n",
         adapter = results.about("adapter"),
         driver = results.about("driver"),
         commit = results.about("commit"),
         begun = results.about("begun"),
-        counts = counts(results),
+        times = if has_times {
+            format!("Times are milliseconds, medians of {}; compare them within one table. ", counts(results))
+        } else {
+            String::new()
+        },
+        absent = absent(results),
     );
     text += &errors(results);
     text += &times(results);
@@ -42,6 +52,21 @@ pub fn markdown(results: &Results) -> String {
     text += &views(results);
     text += &papers(results, &plan);
     text
+}
+
+/// Which techniques have no row, and why.
+fn absent(results: &Results) -> String {
+    let names = TechniqueKind::ALL.iter().filter(|kind| !is_measured(results, kind.name()));
+    let names = names.map(|kind| format!("`{kind}`")).collect::<Vec<_>>();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(" Without a row, since the commit is older or the run ended before: {}.", names.join(", "))
+}
+
+/// Whether there is any result of a technique at its defaults.
+fn is_measured(results: &Results, name: &str) -> bool {
+    results.ids().any(|id| id.rsplit('/').next() == Some(name))
 }
 
 /// `5 frames (2 for long ones) after 3 to 6 warm-up frames`: number of frames of which times are medians, and of frames before them.
@@ -84,8 +109,9 @@ fn head(title: &str, columns: &[String]) -> String {
 }
 
 /// A table of techniques, if one of its cells holds something.
-fn of_techniques(title: &str, columns: &[String], cells: impl Fn(&str) -> Vec<String>) -> String {
-    let rows: Vec<_> = TechniqueKind::ALL.iter().map(|kind| (kind.name(), cells(kind.name()))).collect();
+fn of_techniques(results: &Results, title: &str, columns: &[String], cells: impl Fn(&str) -> Vec<String>) -> String {
+    let measured = TechniqueKind::ALL.iter().map(|kind| kind.name()).filter(|name| is_measured(results, name));
+    let rows: Vec<_> = measured.map(|name| (name, cells(name))).collect();
     if rows.iter().all(|(_, cells)| cells.iter().all(String::is_empty)) {
         return String::new();
     }
@@ -103,7 +129,7 @@ fn named(first: &str, scenes: &[&str], last: &[&str]) -> Vec<String> {
 
 fn errors(results: &Results) -> String {
     let columns = named("rmse, 320 × 180", &ERROR_SCENES, &["MiB, `tree`"]);
-    of_techniques("Error against the ray tracer", &columns, |name| {
+    of_techniques(results, "Error against the ray tracer", &columns, |name| {
         let row = |scene: &str| results.row(&format!("errors/{scene}/{name}"));
         let mut cells: Vec<_> = ERROR_SCENES.iter().map(|scene| cell(row(scene), 4, rmse)).collect();
         cells.push(cell(row("tree"), 1, mib));
@@ -113,7 +139,7 @@ fn errors(results: &Results) -> String {
 
 fn times(results: &Results) -> String {
     let columns = named("ms, 640 × 360", &TIME_SCENES, &["passes on `knot`"]);
-    of_techniques("Time", &columns, |name| {
+    of_techniques(results, "Time", &columns, |name| {
         let row = |scene: &str| results.row(&format!("times/{scene}/{name}"));
         let mut cells: Vec<_> = TIME_SCENES.iter().map(|scene| cell(row(scene), 2, total_ms)).collect();
         cells.push(row("knot").map_or_else(String::new, passes));
@@ -127,7 +153,7 @@ fn growth(results: &Results) -> String {
     };
     let columns: Vec<_> =
         std::iter::once("ms, `columns`, 320 × 180".to_owned()).chain(GROWTH.iter().flat_map(of_step)).collect();
-    let table = of_techniques("Growth", &columns, |name| {
+    let table = of_techniques(results, "Growth", &columns, |name| {
         let cells = GROWTH.iter().flat_map(|(_, steps)| {
             let row = |step: &Step| results.row(&step.id(name));
             let times = steps.each_ref().map(|step| cell(row(step), 1, total_ms));
@@ -192,7 +218,7 @@ fn motion(results: &Results) -> String {
                     .flat_map(|motion| [format!("{} flicker", motion.name()), "ratio".into(), "lag".into()]),
             )
             .collect();
-    of_techniques("Motion", &columns, |name| {
+    of_techniques(results, "Motion", &columns, |name| {
         let cells = Motion::ALL.iter().flat_map(|motion| {
             let row = results.row(&format!("motion/{MOTION_SCENE}/{}/{name}", motion.name()));
             [("flicker", 4), ("ratio", 2), ("lag_frames", 0)]
@@ -282,6 +308,7 @@ mod tests {
         }
         assert!(!text.contains("Many views"), "nothing is known of these");
         assert!(text.contains("; 12 of "), "{text}");
+        assert!(text.contains("ended before: `pcf`, `smrt`") && !text.contains("\n| `pcf` |"), "{text}");
         let frames = "medians of 5 frames (2 for long ones) after 3 to 4 warm-up frames";
         assert!(text.contains(frames), "{text}");
     }

@@ -29,7 +29,7 @@ fn plan_in(dir: &Path, samples: u32) -> Plan {
     plan
 }
 
-/// The errors of all rows: all that does not hang on the clock.
+/// The errors of all rows: all that does not depend on the clock.
 fn errors(merged: &Merged) -> Vec<(Value, Value, Value)> {
     let rows = merged.json["rows"].as_array().unwrap();
     rows.iter().map(|row| (row["scene"].clone(), row["technique"].clone(), row["metrics"].clone())).collect()

@@ -53,7 +53,7 @@ fn papers_keep_their_figures() {
     }
 }
 
-/// μ = 20 and R = 80 as printed turn lit ground dark; c = μ ln 2 is what 20 bits hold. What is left is at contacts, of which
+/// μ = 20 and R = 80 as published turn lit ground dark; c = μ ln 2 is what 20 bits hold. What is left is at contacts, of which
 /// comparisons of narrow kernels, ours, take most away.
 #[test]
 fn the_consistent_exponent_of_essm_holds() {

@@ -141,7 +141,7 @@ pub(crate) fn case(name: &str, size_px: UVec2) -> Option<Judged> {
     Some(Judged::set_up(size_px, &scene, &VisibilityOptions::default(), |own| *own = setup))
 }
 
-/// A setup for a file that has no camera or no lights: its own, so that figures do not hang on which view is the default. A
+/// A setup for a file that has no camera or no lights: its own, so that figures do not depend on which view is the default. A
 /// three-quarter view of the sphere about the scene, and a square light above it.
 pub(crate) fn seen_from_outside(scene: &Scene) -> Setup {
     let bounds = scene.bounds();

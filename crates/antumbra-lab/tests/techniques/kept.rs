@@ -451,11 +451,11 @@ fn one_mask_of_each_technique() {
 }
 
 /// So much more or less may be tested than was, on the adapter of before and on others, whose depths are others by a rounding. (Which
-/// triangles of a cell lie in one box may be chance.)
+/// triangles of a cell lie in one box may be random.)
 const SAME_WORK: f64 = 0.001;
 const OTHER_WORK: f64 = 0.03;
 const LEAST_WORK: f64 = 4.0;
-/// Which receivers of a cell make a group is chance, and with it a fiftieth of what is tested; walked or drawn is another half of it.
+/// Which receivers of a cell make a group is random, and with it a fiftieth of what is tested; walked or drawn is another half of it.
 const CELLS: &str = "columns, cells";
 const CHANCE: f64 = 0.1;
 
@@ -477,7 +477,7 @@ fn work() {
     ];
     for scene in ["overlap", "columns", "knot?triangles=6000", "fence-alpha"] {
         for (name, traversal, region, map_size) in traversals {
-            // Which of its receivers make a group is chance, and with it a fifteenth of what is tested.
+            // Which of its receivers make a group is random, and with it a fifteenth of what is tested.
             if scene == "fence-alpha" && map_size == 16 {
                 continue;
             }

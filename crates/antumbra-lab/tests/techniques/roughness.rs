@@ -1,4 +1,4 @@
-//! Visible artefacts of techniques as they come: high-frequency error where the truth is smooth, as an eye sees it.
+//! Visible artefacts of techniques at their defaults: high-frequency error where the truth is smooth, as an eye sees it.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;

@@ -1,4 +1,4 @@
-//! The pre-filtered soft family against the ray tracer, and `essm` against its brute-force twin, `pcss` with many taps.
+//! The pre-filtered soft family against the ray tracer, and `essm` against its brute-force reference, `pcss` with many taps.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::picture::Visibility;
@@ -9,13 +9,13 @@ use glam::{UVec2, Vec3};
 
 use crate::common::{Judged, SIZE, lab, mean_at};
 
-/// The brute-force twin: enough taps that more change nothing, and one mean depth for all blockers, as the tables know it.
+/// The brute-force reference: enough taps that more change nothing, and one mean depth for all blockers, as the tables know it.
 const MANY: [(&str, &str); 3] = [("samples", "1024"), ("search_samples", "1024"), ("attach_contacts", "false")];
 
 #[test]
 fn essm_stays_with_its_brute_force_twin() {
     let Some(lab) = lab() else { return };
-    // How far from the twin, and from the truth.
+    // How far from the reference, and from the truth.
     for (spec, from_twin, bound) in [
         ("builtin:leaning-plank", 0.0044, 0.0094),
         ("builtin:tree", 0.0278, 0.0812),
@@ -25,7 +25,7 @@ fn essm_stays_with_its_brute_force_twin() {
     ] {
         let judged = Judged::new(spec, |_| {});
         let twin = judged.run(lab, TechniqueKind::Pcss, &MANY);
-        // The twin knows no footprint and looks once; and what parts stand for shows where there are more of them.
+        // The reference knows no footprint and looks once; and what parts stand for shows where there are more of them.
         let settings = [("kernel", "isotropic"), ("second_look", "false"), ("subdivisions", "8")];
         let essm = judged.run(lab, TechniqueKind::Essm, &settings);
         let apart = rmse_between(&judged, &twin, &essm);
@@ -42,7 +42,7 @@ fn essm_stays_with_its_brute_force_twin() {
     }
 }
 
-/// With its default kernel, which has the footprint that the twin does not know.
+/// With its default kernel, which has the footprint that the reference does not know.
 #[test]
 fn essm_with_its_footprint_stays_with_its_twin() {
     let Some(lab) = lab() else { return };
@@ -112,7 +112,7 @@ fn mips_stand_in_for_tables() {
 }
 
 /// What constant time buys: with the taps that a small light needs, `pcss` loses quality as the light grows, and the taps
-/// that would keep it grow with the light; `essm` at one setting keeps its distance from the brute-force twin.
+/// that would keep it grow with the light; `essm` at one setting keeps its distance from the brute-force reference.
 #[test]
 fn equal_error_costs_pcss_more_taps_as_the_light_grows() {
     let Some(lab) = lab() else { return };

@@ -162,7 +162,7 @@ fn every_switch_saves_tests() {
             assert!(tests(without) >= 0.99 * tests(all), "{scene}: {name} costs tests");
         }
         let drawn = SampleBasedParams { traversal: Traversal::Raster, ..on };
-        // How much a fragment finds closed already hangs on the order of fragments: all others are compared without.
+        // How much a fragment finds closed already depends on the order of fragments: all others are compared without.
         let unstopped = SampleBasedParams { stop_when_occluded: false, ..drawn };
         for (name, on, off) in [
             ("stop_when_occluded", drawn, unstopped),

@@ -71,7 +71,7 @@ fn a_rectangle_lights_a_hall_up_to_its_horizon() {
     }
     let judged = Judged::of_size(SIZE, "builtin:hall", |_| {});
     hold(&judged, HALL);
-    // At the feet of walls texels show the floor, in front of a wall's plane; where they lie is chance.
+    // At the feet of walls texels show the floor, in front of a wall's plane; where they lie is random.
     for map_size in ["400", "440", "480", "560", "600", "700"] {
         let mask = judged.run(lab().expect("asked for before"), TechniqueKind::Hard, &[("map_size", map_size)]);
         let loss = judged.metrics(&mask).lit_loss.expect("lit pixels");

@@ -121,7 +121,7 @@ struct LoadedScene {
     is_exposed: bool,
 }
 
-/// What hangs on the picture's size.
+/// What depends on the picture's size.
 #[derive(Debug)]
 struct View {
     images: ReceiverImages,

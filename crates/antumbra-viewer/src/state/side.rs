@@ -14,7 +14,7 @@ pub struct Side {
 }
 
 impl Side {
-    /// A technique as it comes.
+    /// A technique at its defaults.
     pub fn new(kind: TechniqueKind) -> Self {
         Self { kind, quality: Quality::default(), values: values_of(kind, Quality::default()), refused: None }
     }
@@ -87,7 +87,7 @@ impl Side {
         self.refused.as_ref().filter(|(refused, _)| *refused == key).map(|(_, why)| why.as_str())
     }
 
-    /// `pcss`, or `pcss:fast` where it is not as it comes.
+    /// `pcss`, or `pcss:fast` where it is not at its defaults.
     pub fn name(&self) -> String {
         match self.quality {
             Quality::Balanced => self.kind.name().into(),

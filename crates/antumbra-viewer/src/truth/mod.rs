@@ -176,7 +176,7 @@ mod tests {
         let mut truth = LiveTruth::new(Arc::new(|| {}));
         truth.want(Some(job.clone()));
         let late = wait_for(&mut truth, ROUNDS * ROUND_POINTS);
-        // How far the thread is when it is first asked hangs on the machine, so the first round is traced here.
+        // How far the thread is when it is first asked depends on the machine, so the first round is traced here.
         let (early_rmse, late_rmse) = (judged_rmse(&late, &exact, &first_round), late.rmse(&exact).unwrap());
         // 4.3e-3 when this was written: sixty-four sets of sixteen points are noisier than one of 1024.
         assert!(late_rmse < 6e-3, "{late_rmse}");

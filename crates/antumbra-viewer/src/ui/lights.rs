@@ -97,7 +97,7 @@ fn shape(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
 
 fn pose(ui: &mut egui::Ui, light: &mut Light, anchor: Vec3, speed_m: f32) {
     if !light.is_distant() {
-        ui.label("Place").on_hover_text("The light's centre in the world; or drag it in the picture");
+        ui.label("Position").on_hover_text("The light's centre in the world; or drag it in the picture");
         ui.horizontal(|ui| {
             let mut in_world = light.center.as_dvec3() + anchor.as_dvec3();
             let before = in_world;
@@ -184,7 +184,7 @@ fn emission(ui: &mut egui::Ui, light: &mut Light) {
         LightShape::Sun { .. } => (" lx", "Illuminance of what faces the sun; without, as much as other suns"),
         _ => (" cd", "Luminous intensity along the axis; without, as much as other lights of its kind"),
     };
-    ui.label("Gives").on_hover_text(format!("{tip}. It sets ratios between lights; exposure goes by all of them"));
+    ui.label("Emits").on_hover_text(format!("{tip}. It sets ratios between lights; exposure goes by all of them"));
     ui.horizontal(|ui| {
         let mut is_given = light.candela_or_lux.is_some();
         ui.checkbox(&mut is_given, "");

@@ -60,7 +60,7 @@ pub struct Panels {
     pub picture_path: String,
     /// Whether the panel at the side is shown.
     pub is_side_shown: bool,
-    /// Whether what is under the pointer is told in numbers.
+    /// Whether the values under the pointer are shown.
     pub is_inspecting: bool,
 }
 

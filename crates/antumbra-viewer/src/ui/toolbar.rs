@@ -134,7 +134,7 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
         state.camera_turn_rad_s = if turns { TURN_RAD_S } else { 0.0 };
     }
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Keep this view").on_hover_text("To come back to, by its button or its digit (B)").clicked() {
+        if ui.button("Store this view").on_hover_text("To come back to, by its button or its digit (B)").clicked() {
             state.add_bookmark();
         }
         for index in 0..state.bookmarks.len() {

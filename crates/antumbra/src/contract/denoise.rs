@@ -2,8 +2,8 @@
 
 /// Denoiser settings: means of a mask over frames and neighbouring pixels, for any technique.
 ///
-/// Techniques that take few samples a pixel, turned by chance, are noisy: `pcss`, `pcss_anisotropic`, `smrt`, `bitmask`, `ray_traced`, `pcf` with `rotate`,
-/// `sample_based`. Denoised, each pixel's chance differs from frame to frame as well, and its visibility is the mean over
+/// Techniques that take few samples a pixel, with random offsets, are noisy: `pcss`, `pcss_anisotropic`, `smrt`, `bitmask`, `ray_traced`, `pcf` with `rotate`,
+/// `sample_based`. Denoised, each pixel's random number differs from frame to frame as well, and its visibility is the mean over
 /// the frames that saw the same point: found where the camera of the frame before had it, dropped where that saw something
 /// else, or where light or casters have moved so far that it is no longer among what its neighbours see. What noise is left
 /// is taken out by a plane fitted to the neighbours on the same surface, no wider than the penumbra allows.

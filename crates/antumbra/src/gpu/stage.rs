@@ -30,7 +30,7 @@ pub struct Stage<'a> {
     casters: Option<CastersKey>,
     /// Where the frame counts places from.
     anchor: Vec3,
-    /// Counts frames whose chances differ.
+    /// Index of frames whose random numbers differ.
     noise_frame: u32,
     stable_box: Option<[Vec3; 8]>,
     auto_texels_before: Option<u32>,
@@ -218,7 +218,7 @@ impl<'a> Stage<'a> {
         Self { anchor, ..self }
     }
 
-    /// The same for a frame whose chances are those of this number; 0 is every frame's that is not denoised.
+    /// The same for a frame whose random numbers are those of this index; 0 is every frame's that is not denoised.
     pub(crate) fn of_noise_frame(self, noise_frame: u32) -> Self {
         Self { noise_frame, ..self }
     }
@@ -251,7 +251,7 @@ impl<'a> Stage<'a> {
         self.gpu.device.budget().bytes() / LIGHTS / u64::from(self.sharers)
     }
 
-    /// What tells a frame's chances from others'.
+    /// Random number index of a frame.
     pub(crate) fn noise_frame(&self) -> u32 {
         self.noise_frame
     }

@@ -39,7 +39,7 @@ gpu_structs! {
         padding_3: u32,
     }
 
-    /// The light, for visibility: shape, pose, reach. Its colour is the host's affair.
+    /// The light, for visibility: shape, pose, reach. The host applies its colour.
     pub(crate) struct LightSource {
         center_in_world: Vec3,
         kind: u32,

@@ -78,7 +78,7 @@ macro_rules! over_exponents {
 }
 
 /// One size of map: the paper's one table and its tile grids, by its recursive doubling, then by our passes. In our form tile grids are
-/// the tiles that hold at any depth. Milliseconds of table and shadow as printed.
+/// the tiles that hold at any depth. Milliseconds of table and shadow as published.
 macro_rules! table2 {
     ($( $size:literal: $sat:literal, $sat_shadow:literal, $stg:literal, $stg_shadow:literal; )+) => {
         &[$(

@@ -1,4 +1,4 @@
-//! The twin on the CPU.
+//! CPU reference.
 
 use glam::UVec2;
 

@@ -1,4 +1,4 @@
-//! The twin against the definition, then the GPU against the twin.
+//! The CPU reference against the definition, then the GPU against the CPU reference.
 
 use antumbra_light::{Light, LightShape, hash_u32, unit_f32};
 use glam::{UVec2, Vec2, Vec3};

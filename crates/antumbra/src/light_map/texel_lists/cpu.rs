@@ -1,11 +1,11 @@
-//! The twin on the CPU: a rasteriser as WebGPU's, exact in its fixed point, and lists sorted as the GPU's.
+//! CPU reference: a rasteriser as WebGPU's, exact in its fixed point, and lists sorted as the GPU's.
 
 use glam::{DVec3, UVec2, Vec3};
 
 use super::options::DepthTolerance;
 use crate::light_map::light_view::LightView;
 
-/// Triangles of one surface, for the twin.
+/// Triangles of one surface, for the CPU reference.
 pub(crate) struct TwinMesh<'a> {
     pub(crate) positions: &'a [Vec3],
     pub(crate) indices: &'a [u32],

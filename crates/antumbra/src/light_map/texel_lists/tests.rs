@@ -1,4 +1,4 @@
-//! The twin against what can be said by hand, then the GPU against the twin, fragment for fragment.
+//! The CPU reference against what can be said by hand, then the GPU against the CPU reference, fragment for fragment.
 
 use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
 use glam::{UVec2, Vec2, Vec3};

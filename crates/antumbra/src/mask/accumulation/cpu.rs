@@ -1,4 +1,4 @@
-//! The twin of `fingerprint.wesl`.
+//! CPU reference of `fingerprint.wesl`.
 
 use antumbra_light::hash_u32;
 

@@ -1,6 +1,6 @@
 //! The mean of a mask over the frames in which nothing moved.
 //!
-//! For any technique whose frames differ by chance alone: it writes the mask as ever, and this block replaces each pixel
+//! For any technique whose frames differ by random numbers alone: it writes the mask as ever, and this block replaces each pixel
 //! by the mean of all its frames since something last changed. Sintorn, Eisemann, Assarsson 2008 (section 4.2, figure 7)
 //! accumulate so "if the scene is static and the camera does not move".
 //!

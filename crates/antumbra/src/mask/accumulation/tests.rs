@@ -1,4 +1,4 @@
-//! The twin's properties, then the GPU against the twin. Means are tested through `sample_based`.
+//! The CPU reference's properties, then the GPU against the CPU reference. Means are tested through `sample_based`.
 
 use antumbra_light::hash_u32;
 

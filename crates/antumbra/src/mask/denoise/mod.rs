@@ -149,7 +149,7 @@ impl Denoiser {
         }
     }
 
-    /// What tells the next frame's chances from others'.
+    /// Random number index of the next frame.
     pub(crate) fn noise_frame(&self) -> u32 {
         self.frames % NOISE_FRAMES
     }

@@ -1,4 +1,4 @@
-//! The twins on the CPU, in double precision. Distributions are lists of (depth, weight).
+//! CPU references in double precision. Distributions are lists of (depth, weight).
 
 use std::f64::consts::PI;
 
@@ -103,7 +103,7 @@ pub(crate) fn layered_of_step(
     Decoded { visibility, blocker_depth: blocker_depth(mean_depth, visibility * t, t, visibility) }
 }
 
-/// The visibility of the receiver's layer as printed: eq. 3 with the least variance of eq. 7.
+/// The visibility of the receiver's layer as published: eq. 3 with the least variance of eq. 7.
 pub(crate) fn layered_as_printed(depths: Depths<'_>, t: f64, splits: &[f64], least_variance: f64, quantum: f64) -> f64 {
     let own = splits.windows(2).rfind(|s| t >= s[0]).unwrap_or(&splits[..2]);
     let width = own[1] - own[0];

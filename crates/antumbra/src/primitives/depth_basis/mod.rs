@@ -1,7 +1,7 @@
 //! Depth bases: what a light map's depth is encoded to, so that it can be filtered before it is compared; and how a
 //! filtered texel is turned back into visibility, and into the mean depth of what blocks.
 //!
-//! The functions are shaders' own, beside this; here are their twins and their tests. Depths are `t`: 0 at the
+//! The functions are shaders' own, beside this; here are their CPU references and their tests. Depths are `t`: 0 at the
 //! map's near plane, 1 at its far plane, linear along the axis. Each basis is
 //! - `encode_…`: one depth to what a texel stores. Storing is where precision is lost; filtering is linear.
 //! - `…_visibility`: a filtered texel and a receiver's `t` to the lit fraction, 0 to 1. Bounds from above, most of them.

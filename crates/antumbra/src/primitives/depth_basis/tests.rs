@@ -1,4 +1,4 @@
-//! The twins against closed forms and exact comparison, then the shaders against the twins.
+//! The CPU references against closed forms and exact comparison, then the shaders against the CPU references.
 
 use antumbra_light::{hash_u32, unit_f32};
 use glam::{Vec2, Vec4};
@@ -225,7 +225,7 @@ gpu_structs! {
     }
 }
 
-/// What the twins say of a case, in the shader's order.
+/// What the CPU references say of a case, in the shader's order.
 fn twins(input: &ProbeInput) -> [Decoded; 8] {
     let depths: Vec<(f64, f64)> = (0..4).map(|i| (f64::from(input.z[i]), f64::from(input.weights[i]))).collect();
     let t = f64::from(input.t);

@@ -1,4 +1,4 @@
-//! The twin on the CPU, in double precision.
+//! CPU reference in double precision.
 
 use super::{BIN_COUNT, Relaxation, Teleport};
 

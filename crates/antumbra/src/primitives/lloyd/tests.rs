@@ -1,4 +1,4 @@
-//! The twin on clusters that are known, then the GPU against the twin.
+//! The CPU reference on clusters that are known, then the GPU against the CPU reference.
 
 use antumbra_light::{hash_u32, unit_f32};
 

@@ -1,4 +1,4 @@
-//! The twins on the CPU; filters are of one channel.
+//! CPU references; filters are of one channel.
 
 use glam::UVec2;
 

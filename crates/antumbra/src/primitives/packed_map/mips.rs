@@ -1,5 +1,5 @@
 //! Levels of a packed map after its first, and what makes them. They lie side by side in one texture, so that a shader can gather
-//! texels of any of them: a gather has no level. The twin of `levels.wesl`.
+//! texels of any of them: a gather has no level. The CPU reference of `levels.wesl`.
 
 use glam::UVec2;
 

@@ -1,4 +1,4 @@
-//! The twins against closed forms, then the GPU against the twins.
+//! The CPU references against closed forms, then the GPU against the CPU references.
 
 use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;

@@ -1,4 +1,4 @@
-//! The twin.
+//! CPU reference.
 
 /// Exclusive prefix sums, and the total; both wrap as `u32` does.
 pub(super) fn scan(items: &[u32]) -> (Vec<u32>, u32) {

@@ -1,4 +1,4 @@
-//! The twin against the definition, then the GPU against the twin.
+//! The CPU reference against the definition, then the GPU against the CPU reference.
 
 use antumbra_light::hash_u32;
 

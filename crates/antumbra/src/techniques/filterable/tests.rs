@@ -77,7 +77,7 @@ fn one_planar_occluder_over_a_planar_receiver_is_exact() {
     }
 }
 
-/// Depth as distance to the light, as printed: a floor that it curves by less than bleeds under the kernel is filtered as well,
+/// Depth as distance to the light, as published: a floor that it curves by less than bleeds under the kernel is filtered as well,
 /// and not alike.
 #[test]
 fn distances_to_the_light_are_filtered_as_exactly() {
@@ -155,7 +155,7 @@ fn says_which_sample_counts(error: &Error, samples: &str) {
     assert!(text.contains(&format!("{samples} samples a texel")) && !text.contains('\n'), "{text}");
 }
 
-/// A basis with its twin: what a texel's samples, given as t, are stored as.
+/// A basis with its CPU reference: what a texel's samples, given as t, are stored as.
 struct BasisCase<'a, P> {
     kind: TechniqueKind,
     shaders: BasisShaders,
@@ -168,7 +168,7 @@ struct BasisCase<'a, P> {
     tolerance: f64,
 }
 
-/// Depth of one sample, which the fragment shader and its twin make alike: a seventh of them background.
+/// Depth of one sample, which the fragment shader and its CPU reference make alike: a seventh of them background.
 fn sample_depth(x: u32, y: u32, sample: u32) -> f32 {
     let h = (x * 7919 + y * 104_729 + sample * 1_299_721 + 12345).wrapping_mul(2_654_435_761);
     let h = h ^ (h >> 15);
@@ -251,7 +251,7 @@ fn t_of_depth(map: &FrameMap, texel: UVec2, depth: f32) -> f64 {
     ((along_m - near_m) / (far_m - near_m)).clamp(0.0, 1.0)
 }
 
-/// Encodes and resolves a light map of every sample count and size, and holds each channel of each texel to the twin.
+/// Encodes and resolves a light map of every sample count and size, and holds each channel of each texel to the CPU reference.
 fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
     let case = Case::half_plane(gpu, RECTANGLE);
     let mut passes: Filterable<P> = Filterable::new(gpu, basis.kind.name(), basis.shaders);

@@ -1,4 +1,4 @@
-//! The filter's twin on the CPU, for one channel.
+//! The filter's CPU reference, for one channel.
 
 use super::levels::Level;
 use crate::light_map::texel_lists::cpu::TwinFragment;

@@ -1,4 +1,4 @@
-//! The filter against its twin, and what the technique promises.
+//! The filter against its CPU reference, and what the technique promises.
 
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};

@@ -1,4 +1,4 @@
-//! The twin of a mesh's tree.
+//! CPU reference of a mesh's tree.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! Trees against their twin, then masks against closed forms and brute force.
+//! Trees against their CPU reference, then masks against closed forms and brute force.
 
 mod irradiance;
 mod measure;

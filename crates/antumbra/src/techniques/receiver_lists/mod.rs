@@ -147,7 +147,7 @@ pub(crate) struct Options {
     pub(crate) rotations: u32,
     /// Added to every pixel's turn, as a part of a whole one.
     pub(crate) turn: f32,
-    /// Scale of the hair at open meshes.
+    /// Scale of the ray offset at open meshes.
     pub(crate) hair_scale: f32,
     /// Keeps every pixel's bits.
     pub(crate) keep_bits: bool,

@@ -41,7 +41,7 @@ pub(super) struct FramePlan {
     /// Of a batch.
     pub(super) most_triangles: u32,
     pub(super) most_stride: u32,
-    /// Those of the options that have a say.
+    /// The options that have an effect.
     pub(super) switches: u32,
     /// Of the listed receivers, where triangles are drawn.
     pub(super) stores_positions: bool,

@@ -16,7 +16,7 @@ pub(crate) struct Taps<'a> {
     pub(crate) light: &'a Light,
     pub(crate) set: SampleSet,
     pub(crate) seed: u32,
-    /// Which of the set's runs of so many points, one behind the other: 0 but where frames differ by chance.
+    /// Which of the set's runs of so many points, one behind the other: 0 but where frames differ by random numbers.
     pub(crate) run: u32,
 }
 

@@ -1,4 +1,4 @@
-//! What a pixel reads, counted, and the blocker search against a twin on the CPU that looks at every texel.
+//! What a pixel reads, counted, and the blocker search against a CPU reference that looks at every texel.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::path::Path;
@@ -284,7 +284,7 @@ fn rows_of_an_ellipse_come_to_an_end() {
     }
 }
 
-/// The twin of the walk: where the next row begins, and how many there are to come.
+/// CPU reference of the walk: where the next row begins, and how many there are to come.
 struct EllipseWalk {
     at: f32,
     left: f32,

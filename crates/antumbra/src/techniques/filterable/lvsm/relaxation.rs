@@ -24,7 +24,7 @@ const MAX_NEIGHBOURHOODS: u32 = 512;
 /// The most receivers along a side that it takes of the view.
 const MAX_RECEIVERS: u32 = 128;
 
-/// Layers as printed may be as thin as two bins of the histogram: one without any depth would have no moments.
+/// Layers as published may be as thin as two bins of the histogram: one without any depth would have no moments.
 const LEAST_LAYER: f32 = 2.0 / 4096.0;
 
 /// Threads along each side of a workgroup of the histogram.

@@ -1,4 +1,4 @@
-//! The CPU twin of `splat.wesl` and of `hides_nothing` in `surfels.wesl`: the same operations on 32-bit floats in the same order.
+//! CPU reference of `splat.wesl` and of `hides_nothing` in `surfels.wesl`: the same operations on 32-bit floats in the same order.
 
 use glam::{Mat4, Vec2, Vec3Swizzles, Vec4, Vec4Swizzles};
 

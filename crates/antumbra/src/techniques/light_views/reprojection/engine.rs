@@ -62,7 +62,7 @@ pub struct PreparedEngine {
     resolve: PreparedResolve,
 }
 
-/// What a test holds against the twin.
+/// What a test holds against the CPU reference.
 #[cfg(test)]
 #[derive(Debug)]
 pub(crate) struct Parts<'a> {
@@ -256,7 +256,7 @@ impl Engine {
             + self.sample_views.memory_bytes()
     }
 
-    /// What a test holds against the twin.
+    /// What a test holds against the CPU reference.
     #[cfg(test)]
     pub(crate) fn parts(&self) -> Parts<'_> {
         Parts {

@@ -11,7 +11,7 @@
 //! - **Four fragments, eight views.** A thread takes 2 × 2 texels of the central map into eight views, whose matrices are
 //!   uniform. At a central scale of 2 most of the four meet in one texel of a view; what meets is brought together
 //!   first, so that 2¼ atomics are left of four. The maps are the same to the bit.
-//!   `bring_together = false` stores them one by one, as printed; unsynchronised, the last of the four then stays.
+//!   `bring_together = false` stores them one by one, as published; unsynchronised, the last of the four then stays.
 //! - **Synchronised** by an atomic maximum on the bits of reversed depth, which is the paper's atomic minimum: every
 //!   frame is the same to the bit. Unsynchronised the last store stays, by relaxed atomics, since WGSL leaves a race of
 //!   plain stores undefined.

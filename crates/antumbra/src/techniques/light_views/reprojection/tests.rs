@@ -1,4 +1,4 @@
-//! The scatter against its twin, the twin against closed forms, and what the parameters promise.
+//! The scatter against its CPU reference, the CPU reference against closed forms, and what the parameters promise.
 
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
@@ -351,7 +351,7 @@ fn all_filters_and_splats_give_the_half_plane() {
         (TechniqueKind::Reprojection, &[("filter", "copy")][..], 0.0165),
         (TechniqueKind::Reprojection, &[("filter", "draw")][..], 0.0165),
         (TechniqueKind::Reprojection, &[("path", "fragment_two_pass")][..], 0.0165),
-        // Which of several fragments a texel keeps is chance: .040 on llvmpipe, .0513 on an NVIDIA H200.
+        // Which of several fragments a texel keeps is random: .040 on llvmpipe, .0513 on an NVIDIA H200.
         (TechniqueKind::Reprojection, &[("synchronized", "false")][..], if is_software(gpu) { 0.05 } else { 0.055 }),
         (TechniqueKind::Reprojection, &[("projection", "cube")][..], 0.0165),
         (TechniqueKind::ReprojectionLayered, &[][..], 0.0165),

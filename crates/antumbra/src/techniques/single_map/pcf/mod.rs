@@ -7,14 +7,14 @@
 //! Three kernels: the exact box of n × n texels; a Poisson disc (Mitchell 1991's best candidates); Vogel's spiral
 //! (Vogel 1979). The two discs are optionally turned by a random angle at each pixel, which trades banding for noise.
 //!
-//! Contacts stay sharp (`attach_contacts`; false is as printed): the kernel is narrowed until it holds no blocker that is
+//! Contacts stay sharp (`attach_contacts`; false is as published): the kernel is narrowed until it holds no blocker that is
 //! too near the receiver to blur so much. A blocker nearer by a gap `d` blurs by d · tan β to either side under a light of
 //! half angle β, which is held at that of a light 11° wide, and at the light's elevation above the receiver, so that no
 //! kernel reaches past the line where blocker and receiver meet. With the light 5 to 90° above `tilted-planes` umbrae at
-//! contacts let through .043–.068 as printed and .015–.027 so.
+//! contacts let through .043–.068 as published and .015–.027 so.
 //!
 //! # Limits
-//! The width is in texels, the same for every occluder that is not at a contact, and the light's size has no say. The
+//! The width is in texels, the same for every occluder that is not at a contact, and does not depend on the light's size. The
 //! discs' taps compare bilinearly where the kernel is wider than a texel.
 
 use std::f32::consts::PI;

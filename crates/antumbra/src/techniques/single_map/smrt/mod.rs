@@ -26,7 +26,7 @@
 //!    Behind the last layer rays are blocked in marked bins alone. A bin that the last layer hides is marked, too, where taps find
 //!    surfaces beside the light's shape and none sees through the bin: else an occluder that shows in the map by a sliver is missed by
 //!    single tiles (1280 × 720, `window`: tiles of .05 to .08 in the umbra beside the table, now 0).
-//! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a place by chance between the depths of the
+//! 2. **Rays** (`resolve.wesl`). A ray reads one texel in each marked bin, at a random place between the depths of the
 //!    blockers found there. A surface of that texel in the bin blocks it, if the ray is within a texel where it crosses the
 //!    surface's depth; else the texel that it crosses there decides: a wall that rises through a whole bin would darken receivers
 //!    that face it. A surface that is steep in the map, as a riser beside the light is, shows near the ray in no read at all: where a ray

@@ -1,4 +1,4 @@
-//! The twin on the CPU: the definition, row by row.
+//! CPU reference: the definition, row by row.
 
 use std::ops::Add;
 

@@ -1,0 +1,63 @@
+//! `cargo xtask semver`: the public API against that of the last release, by cargo-semver-checks.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::shell::{self, cargo, find};
+
+/// The release of cargo-semver-checks that is installed where none is found: one that reads what rustdoc 1.95 writes.
+const TOOL: &str = "0.51.0";
+
+/// The crates whose API a program sees: the library, and the lights in its interface.
+const CRATES: [&str; 2] = ["antumbra", "antumbra-light"];
+
+/// Compares the public API with the newest tag `v*` before this commit, or with a revision that is named. Before the first release there
+/// is nothing to compare with, and it says so.
+///
+/// # Errors
+/// A change that the version does not announce, a revision that is unknown, or a tool that cannot be installed.
+pub fn run(arguments: &[String]) -> Result<(), String> {
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let baseline = match words[..] {
+        [] => last_release(),
+        ["--baseline", revision] => Some(revision.to_owned()),
+        _ => return Err("`cargo xtask semver` takes `--baseline REVISION` or nothing".into()),
+    };
+    let Some(baseline) = baseline else {
+        eprintln!("xtask: no tag v* here, so there is no release whose API could be compared");
+        return Ok(());
+    };
+    let tool = tool()?;
+    let packages = CRATES.iter().flat_map(|name| ["--package", name]);
+    shell::run(Command::new(tool).arg("semver-checks").args(packages).args(["--baseline-rev", &baseline]))
+}
+
+/// The newest tag of a release that this commit descends from.
+fn last_release() -> Option<String> {
+    let mut git = Command::new("git");
+    git.current_dir(crate::root()).args(["describe", "--tags", "--abbrev=0", "--match", "v[0-9]*"]);
+    let printed = git.output().ok().filter(|printed| printed.status.success())?;
+    Some(String::from_utf8_lossy(&printed.stdout).trim().to_owned()).filter(|tag| !tag.is_empty())
+}
+
+/// The program that compares: the installed one, or our own in target/tools.
+fn tool() -> Result<PathBuf, String> {
+    if let Some(installed) = find("cargo-semver-checks") {
+        return Ok(installed);
+    }
+    let tools = crate::root().join("target/tools");
+    let own = tools.join(format!("bin/cargo-semver-checks{}", std::env::consts::EXE_SUFFIX));
+    if !own.is_file() {
+        install(&tools)?;
+    }
+    Ok(own)
+}
+
+fn install(tools: &Path) -> Result<(), String> {
+    eprintln!(
+        "xtask: installing cargo-semver-checks {TOOL} in {}, by cargo: ten minutes on two cores",
+        tools.display()
+    );
+    let install = ["install", "--quiet", "--locked", "cargo-semver-checks", "--version", TOOL, "--root"];
+    shell::run(cargo().args(install).arg(tools))
+}
