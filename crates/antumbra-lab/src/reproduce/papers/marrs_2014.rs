@@ -437,8 +437,8 @@ pub const PAPER: Paper = Paper {
                 under_sky("reprojected from layers", "reprojection_layered"),
             ],
             claims: &[],
-            note: "The paper has no result to hold this against. One view from above sees no side of what stands below it, and low parts of \
-                   the sky shine below what it sees: reprojection errs ten times as much as rasterised maps.",
+            note: "a result of the paper's, which has none. Reprojection errs twelve times as much as rasterised maps (.134 and .011 at \
+                   128 × 72): one view from above sees no side of what stands below it, and low parts of the sky shine below what it sees.",
         },
     ],
 };
