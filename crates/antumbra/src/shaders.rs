@@ -201,9 +201,9 @@ shaders! {
     /// View-samples: how much is drawn.
     VIEW_SAMPLES_RASTER_ARGUMENTS = "techniques/receiver_lists/raster/arguments";
     /// View-samples: bits before triangles are drawn.
-    VIEW_SAMPLES_RASTER_BEFORE = "techniques/receiver_lists/raster/before";
+    VIEW_SAMPLES_RASTER_BEFORE = "techniques/receiver_lists/raster/open_points";
     /// View-samples: what bits weigh after that.
-    VIEW_SAMPLES_RASTER_AFTER = "techniques/receiver_lists/raster/after";
+    VIEW_SAMPLES_RASTER_AFTER = "techniques/receiver_lists/raster/sum_visible";
     /// View-samples: triangles over the receivers that they may shade.
     VIEW_SAMPLES_RASTER = "techniques/receiver_lists/raster/draw";
     /// View-samples: the same for a light of one point, by planes of each triangle.

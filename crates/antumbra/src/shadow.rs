@@ -19,10 +19,10 @@ use crate::techniques::Technique;
 
 mod anchored;
 mod any;
-mod ends;
+mod conversions;
 mod frame;
 mod frame_key;
-mod parted;
+mod partitioned;
 mod shader_function;
 #[cfg(test)]
 mod tests;
@@ -30,10 +30,10 @@ mod validate;
 mod warm_up;
 
 use anchored::{Anchored, anchor_of};
-use ends::{Ends, KeptEnds};
+use conversions::{Ends, KeptEnds};
 use frame::{Asked, FrameCasters, prepared};
 use frame_key::FrameKey;
-use parted::{Parted, PartedPasses};
+use partitioned::{Parted, PartedPasses};
 use shader_function::ShaderFunctions;
 use validate::Validator;
 

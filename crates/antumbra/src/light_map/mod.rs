@@ -16,6 +16,6 @@ pub(crate) mod occluding_bounds;
 #[cfg(any(feature = "light_views", feature = "ray_traced", feature = "receiver_lists"))]
 pub(crate) mod readable_meshes;
 pub(crate) mod stable_fit;
-pub(crate) mod sweep;
+pub(crate) mod swept_volume;
 #[cfg(feature = "multi_layer")]
 pub(crate) mod texel_lists;

@@ -4,7 +4,7 @@
 use antumbra_light::{Aabb, Light};
 use glam::Vec3;
 
-use super::sweep::Sweep;
+use super::swept_volume::Sweep;
 
 /// A box with a side farther from where the frame counts places from, metres, is taken for unknown: where somebody knew it, the
 /// part of it that matters is no smaller.

@@ -41,7 +41,7 @@ use crate::contract::{MeshCaster, PreparedCasters, PreparedFrame, PreparedReceiv
 use crate::gpu::SharedValues;
 use crate::light_map::central_view::central_reach;
 use crate::light_map::light_view::{HORIZON_TANGENT, MIDDLE_TANGENT};
-use crate::light_map::sweep::Sweep;
+use crate::light_map::swept_volume::Sweep;
 
 mod cascades;
 pub(crate) mod part_images;

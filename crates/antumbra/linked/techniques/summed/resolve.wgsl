@@ -950,88 +950,88 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
 }
 
 @group(3) @binding(1)
-var answer_tiles: texture_2d<f32>;
+var basis_visibility_tiles: texture_2d<f32>;
 
-override answer_IS_MIPS: bool = false;
+override basis_visibility_IS_MIPS: bool = false;
 
-const answer_TILE_TOLERANCE = 0.002;
+const basis_visibility_TILE_TOLERANCE = 0.002;
 
-const answer_MAX_TILT = 0.7;
+const basis_visibility_MAX_TILT = 0.7;
 
-const answer_MOST_BEHIND = 1.0;
+const basis_visibility_MOST_BEHIND = 1.0;
 
-const answer_TERM_COUNT = 4u;
+const basis_visibility_TERM_COUNT = 4u;
 
-const answer_MOMENT_BIAS = 6e-5;
+const basis_visibility_MOMENT_BIAS = 6e-5;
 
-const answer_WHOLE = 0u;
+const basis_visibility_WHOLE = 0u;
 
-const answer_CUT_ONCE = 1u;
+const basis_visibility_CUT_ONCE = 1u;
 
-const answer_CUT_ALL_ROUND = 2u;
+const basis_visibility_CUT_ALL_ROUND = 2u;
 
-const answer_FARTHEST_ROUNDING = 0.05;
+const basis_visibility_FARTHEST_ROUNDING = 0.05;
 
-struct answer_Answer {
+struct basis_visibility_Answer {
     lit: f32,
     blocker_g: f32,
     is_good: bool
 }
 
-fn answer_summed_piece(texels: sums_Texels, cuts: u32) -> sums_Piece {
-    let with_cuts = select(1.0, 0.0, cuts == answer_WHOLE);
+fn basis_visibility_summed_piece(texels: sums_Texels, cuts: u32) -> sums_Piece {
+    let with_cuts = select(1.0, 0.0, cuts == basis_visibility_WHOLE);
     return sums_Piece(vec2f(texels.low) - with_cuts * texels.cut_low, vec2f(texels.high) + with_cuts * texels.cut_high);
 }
 
-fn answer_summed_count(texels: sums_Texels, cuts: u32) -> f32 {
+fn basis_visibility_summed_count(texels: sums_Texels, cuts: u32) -> f32 {
     switch cuts {
-        case answer_WHOLE {
-            return sums_area(answer_summed_piece(texels, answer_WHOLE));
+        case basis_visibility_WHOLE {
+            return sums_area(basis_visibility_summed_piece(texels, basis_visibility_WHOLE));
         }
-        case answer_CUT_ONCE {
+        case basis_visibility_CUT_ONCE {
             return sums_count_of(texels);
         }
         case default {
-            return sums_area(answer_summed_piece(texels, answer_CUT_ALL_ROUND));
+            return sums_area(basis_visibility_summed_piece(texels, basis_visibility_CUT_ALL_ROUND));
         }
     }
 }
 
-fn answer_sum_of(which: u32, texels: sums_Texels, cuts: u32) -> vec4f {
-    if cuts == answer_CUT_ALL_ROUND {
+fn basis_visibility_sum_of(which: u32, texels: sums_Texels, cuts: u32) -> vec4f {
+    if cuts == basis_visibility_CUT_ALL_ROUND {
         return sums_all_cut_sum(which, texels);
     }
-    return sums_row_sum(which, texels, cuts == answer_CUT_ONCE);
+    return sums_row_sum(which, texels, cuts == basis_visibility_CUT_ONCE);
 }
 
-fn answer_mean_of_exponential(a: f32) -> f32 {
+fn basis_visibility_mean_of_exponential(a: f32) -> f32 {
     let s = a * a;
     return 1.0 + s * (1.0 / 6.0 + s * (1.0 / 120.0));
 }
 
-fn answer_is_too_tilted(tilt: vec2f) -> bool {
-    return !(abs(tilt.x) + abs(tilt.y) <= answer_MAX_TILT);
+fn basis_visibility_is_too_tilted(tilt: vec2f) -> bool {
+    return !(abs(tilt.x) + abs(tilt.y) <= basis_visibility_MAX_TILT);
 }
 
-struct answer_Exponentials {
+struct basis_visibility_Exponentials {
     lit: f32,
     offset: f32,
     is_planar: bool
 }
 
-fn answer_exponentials_of(sums: vec4f, count: f32) -> answer_Exponentials {
+fn basis_visibility_exponentials_of(sums: vec4f, count: f32) -> basis_visibility_Exponentials {
     let blocked = sums.w - sums.x;
     let is_planar = blocked >= -uniform_soft.non_planar * sums.w - 0.001 * count;
-    let is_lit = blocked <= 2.0 * answer_TILE_TOLERANCE * count;
+    let is_lit = blocked <= 2.0 * basis_visibility_TILE_TOLERANCE * count;
     let offset = min((sums.z - sums.y) / max(blocked, 1e-20), 0.0);
-    return answer_Exponentials(select(saturate(1.0 - blocked / max(count, 1e-6)), 1.0, is_lit), select(offset, 0.0, is_lit), is_planar);
+    return basis_visibility_Exponentials(select(saturate(1.0 - blocked / max(count, 1e-6)), 1.0, is_lit), select(offset, 0.0, is_lit), is_planar);
 }
 
-fn answer_tile_answer(compared: compared_Compared, texels: sums_Texels, cuts: u32, part: vec4f) -> answer_Answer {
+fn basis_visibility_tile_answer(compared: compared_Compared, texels: sums_Texels, cuts: u32, part: vec4f) -> basis_visibility_Answer {
     let place = texels.low >> vec2u(sums_tile_shift);
     sums_note_reads(1u);
-    let tile = textureLoad(answer_tiles, place, 0);
-    let summed = answer_summed_piece(texels, cuts);
+    let tile = textureLoad(basis_visibility_tiles, place, 0);
+    let summed = basis_visibility_summed_piece(texels, cuts);
     let center = sums_middle(summed);
     let bare = compared_bare_plane_at(compared, center);
     let own = tile_basis_nearness(bare.depth);
@@ -1040,30 +1040,30 @@ fn answer_tile_answer(compared: compared_Compared, texels: sums_Texels, cuts: u3
     let own_step = bare.step / map_light_view.depth_scale * select(-1.0, 1.0, map_light_view.perspective == 1u);
     let is_perspective = map_light_view.perspective == 1u;
     let tilt = 0.5 * uniform_soft.exponent * (own_step / select(1.0, own, is_perspective) - tile.yz / select(1.0, plane, is_perspective)) * (summed.high - summed.low);
-    let gain = exp(clamp(ahead, -80.0, 80.0)) / (answer_mean_of_exponential(tilt.x) * answer_mean_of_exponential(tilt.y));
-    let is_even = !answer_is_too_tilted(tilt) || gain * part.x <= answer_TILE_TOLERANCE * part.w;
+    let gain = exp(clamp(ahead, -80.0, 80.0)) / (basis_visibility_mean_of_exponential(tilt.x) * basis_visibility_mean_of_exponential(tilt.y));
+    let is_even = !basis_visibility_is_too_tilted(tilt) || gain * part.x <= basis_visibility_TILE_TOLERANCE * part.w;
     let has_casters = tile.w >= 0.0;
-    let is_precise = !has_casters || (gain < 2.0 * answer_TILE_TOLERANCE * uniform_soft.value_scale && is_even);
+    let is_precise = !has_casters || (gain < 2.0 * basis_visibility_TILE_TOLERANCE * uniform_soft.value_scale && is_even);
     let sums = vec4f(gain * part.x, gain * (ahead * part.x - part.y), ahead * part.w - tile.w * part.z, part.w);
-    let found = answer_exponentials_of(select(vec4f(), sums, has_casters), answer_summed_count(texels, cuts));
-    let is_one_sided = !has_casters || ahead <= answer_MOST_BEHIND || found.lit <= 2.0 * answer_TILE_TOLERANCE;
+    let found = basis_visibility_exponentials_of(select(vec4f(), sums, has_casters), basis_visibility_summed_count(texels, cuts));
+    let is_one_sided = !has_casters || ahead <= basis_visibility_MOST_BEHIND || found.lit <= 2.0 * basis_visibility_TILE_TOLERANCE;
     let blocker = select(own - found.offset / uniform_soft.exponent, own * exp(-found.offset / uniform_soft.exponent), is_perspective);
     let own_nearness = select(-compared.z_m, 1.0 / compared.z_m, is_perspective);
-    return answer_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise && is_one_sided);
+    return basis_visibility_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise && is_one_sided);
 }
 
-fn answer_exponential_answer(compared: compared_Compared, summed: sums_Piece, count: f32, s: vec4f, z: f32, t_step: vec2f) -> answer_Answer {
+fn basis_visibility_exponential_answer(compared: compared_Compared, summed: sums_Piece, count: f32, s: vec4f, z: f32, t_step: vec2f) -> basis_visibility_Answer {
     let c = uniform_soft.exponent;
     let t = depth_range_t_of_z(compared.range, z);
     let tilt = 0.5 * c * t_step * (summed.high - summed.low);
-    let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (answer_mean_of_exponential(tilt.x) * answer_mean_of_exponential(tilt.y));
+    let gain = exp(clamp(c * (1.0 - t), -80.0, 80.0)) / (basis_visibility_mean_of_exponential(tilt.x) * basis_visibility_mean_of_exponential(tilt.y));
     let sums = vec4f(gain * s.x, gain * c * (s.y - t * s.x), c * (s.z - t * s.w), s.w);
-    let found = answer_exponentials_of(sums, count);
+    let found = basis_visibility_exponentials_of(sums, count);
     let blocker_z = z + found.offset / c * (compared.range.far_m - compared.range.near_m);
-    return answer_Answer(found.lit, compared_g_of_z(compared, blocker_z), found.is_planar && !answer_is_too_tilted(tilt));
+    return basis_visibility_Answer(found.lit, compared_g_of_z(compared, blocker_z), found.is_planar && !basis_visibility_is_too_tilted(tilt));
 }
 
-fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32) -> answer_Answer {
+fn basis_visibility_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32) -> basis_visibility_Answer {
     let inside = sums_Piece(clamp(piece.low, vec2f(0.0), map_light_view.map_size), clamp(piece.high, vec2f(0.0), map_light_view.map_size));
     var asked = inside;
     if uniform_BASIS == uniform_BASIS_TILES {
@@ -1071,14 +1071,14 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
     }
     let texels = sums_texels_of(asked);
     var sum: vec4f;
-    if !answer_IS_MIPS {
-        sum = answer_sum_of(0u, texels, cuts);
+    if !basis_visibility_IS_MIPS {
+        sum = basis_visibility_sum_of(0u, texels, cuts);
     }
     if uniform_BASIS == uniform_BASIS_TILES {
-        return answer_tile_answer(compared, texels, cuts, sum);
+        return basis_visibility_tile_answer(compared, texels, cuts, sum);
     }
-    let summed = answer_summed_piece(texels, cuts);
-    let count = answer_summed_count(texels, cuts);
+    let summed = basis_visibility_summed_piece(texels, cuts);
+    let count = basis_visibility_summed_count(texels, cuts);
     let bare = compared_bare_plane_at(compared, sums_middle(summed));
     let z = space_z_of_depth(map_light_view, bare.depth);
     let slope = select(1.0, -z * z, map_light_view.perspective == 1u) / map_light_view.depth_scale;
@@ -1086,13 +1086,13 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
     let t = depth_range_t_of_z(compared.range, z);
     let t_step = slope / range_m * bare.step;
     if uniform_BASIS == uniform_BASIS_EXPONENTIAL {
-        return answer_exponential_answer(compared, summed, count, sum, z, t_step);
+        return basis_visibility_exponential_answer(compared, summed, count, sum, z, t_step);
     }
     var mean = sum / max(count, 1e-6);
     let spread = t_step * (summed.high - summed.low);
     let quantum = 1.0 / uniform_soft.value_scale;
     let least_variance = dot(spread, spread) / 12.0 + variance_minimum_variance(t_step, quantum);
-    let most_lit = select(1.0, 0.0, depth_range_t_of_z(compared.range, compared.z_m) > 1.0 + answer_FARTHEST_ROUNDING);
+    let most_lit = select(1.0, 0.0, depth_range_t_of_z(compared.range, compared.z_m) > 1.0 + basis_visibility_FARTHEST_ROUNDING);
     var lit = 1.0;
     var blocker_t = t;
     var is_good = true;
@@ -1112,28 +1112,28 @@ fn answer_basis_answer(compared: compared_Compared, piece: sums_Piece, cuts: u32
             blocker_t = exponential_variance_exponential_variance_blocker_depth(moments, held, c, lit);
         }
         case uniform_BASIS_MOMENT {
-            let moments = moment_bias_moments(moment_dequantize_moments(mean), answer_MOMENT_BIAS);
+            let moments = moment_bias_moments(moment_dequantize_moments(mean), basis_visibility_MOMENT_BIAS);
             let held = saturate(t - 1.5 * sqrt(least_variance));
             let blocked = moment_hamburger(moments, 2.0 * held - 1.0);
             lit = min(1.0 - blocked.share, most_lit);
             blocker_t = moment_moment_blocker_depth(blocked, held);
         }
         case default {
-            let held = saturate(t - convolution_convolution_offset(answer_TERM_COUNT));
-            let further = array<vec4f, 4>(answer_sum_of(1u, texels, cuts) / max(count, 1e-6), answer_sum_of(2u, texels, cuts) / max(count, 1e-6), answer_sum_of(3u, texels, cuts) / max(count, 1e-6), answer_sum_of(4u, texels, cuts) / max(count, 1e-6));
-            let terms = answer_convolution_sum(2.0 * mean - 1.0, 2.0 * further[0] - 1.0, held);
+            let held = saturate(t - convolution_convolution_offset(basis_visibility_TERM_COUNT));
+            let further = array<vec4f, 4>(basis_visibility_sum_of(1u, texels, cuts) / max(count, 1e-6), basis_visibility_sum_of(2u, texels, cuts) / max(count, 1e-6), basis_visibility_sum_of(3u, texels, cuts) / max(count, 1e-6), basis_visibility_sum_of(4u, texels, cuts) / max(count, 1e-6));
+            let terms = basis_visibility_convolution_sum(2.0 * mean - 1.0, 2.0 * further[0] - 1.0, held);
             lit = min(convolution_convolution_visibility(terms), most_lit);
-            let terms_t = answer_convolution_sum(2.0 * further[1] - 1.0, 2.0 * further[2] - 1.0, held);
+            let terms_t = basis_visibility_convolution_sum(2.0 * further[1] - 1.0, 2.0 * further[2] - 1.0, held);
             blocker_t = convolution_convolution_blocker_depth(further[3].x, terms_t, held, lit);
         }
     }
     lit = variance_reduce_bleeding(lit, uniform_soft.bleeding_reduction);
     let share = count / max(sums_area(piece), 1e-6);
     let blocker_g = compared_g_of_z(compared, compared.range.near_m + blocker_t * range_m);
-    return answer_Answer(mix(1.0, lit, saturate(share)), blocker_g, is_good);
+    return basis_visibility_Answer(mix(1.0, lit, saturate(share)), blocker_g, is_good);
 }
 
-fn answer_convolution_sum(a: vec4f, b: vec4f, t: f32) -> f32 {
+fn basis_visibility_convolution_sum(a: vec4f, b: vec4f, t: f32) -> f32 {
     return convolution_convolution_term(a.xy, t, 1u) + convolution_convolution_term(a.zw, t, 2u) + convolution_convolution_term(b.xy, t, 3u) + convolution_convolution_term(b.zw, t, 4u);
 }
 
@@ -1258,7 +1258,7 @@ fn kernel_narrow_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel
     let asked = select(2.0 * kernel.half_size, 2.6667 * kernel.half_size - 1.0, uniform_soft.with_footprint == 1u);
     let taps = vec2u(clamp(ceil(asked), vec2f(1.0), vec2f(kernel_MOST_NARROW_TAPS)));
     let count = taps.x * taps.y;
-    let plane = map_answer_plane_about(compared, kernel.center);
+    let plane = map_visibility_plane_about(compared, kernel.center);
     var sum = vec2f();
     var i = 0u;
     loop {
@@ -1433,20 +1433,20 @@ fn kernel_piece_holds_to_depth() -> bool {
     return (uniform_BASIS == uniform_BASIS_TILES || uniform_BASIS == uniform_BASIS_EXPONENTIAL) && uniform_HAS_SECOND_LOOK && !uniform_IS_ONE_WINDOW;
 }
 
-fn kernel_piece_kernel_answer(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
+fn kernel_piece_kernel_answer(compared: compared_Compared, asked: sums_Piece) -> basis_visibility_Answer {
     let piece = compared_piece_in_map(compared, asked);
-    var answer = answer_Answer(1.0, 0.0, false);
-    if map_answer_is_summed(piece) {
-        answer = answer_basis_answer(compared, piece, select(answer_CUT_ONCE, answer_CUT_ALL_ROUND, uniform_IS_ONE_PIECE || uniform_CUTS_SQUARES));
+    var answer = basis_visibility_Answer(1.0, 0.0, false);
+    if map_visibility_is_summed(piece) {
+        answer = basis_visibility_basis_answer(compared, piece, select(basis_visibility_CUT_ONCE, basis_visibility_CUT_ALL_ROUND, uniform_IS_ONE_PIECE || uniform_CUTS_SQUARES));
     }
-    if !answer.is_good && (uniform_soft.may_read_map != 0u || !map_answer_is_summed(piece)) {
-        answer = answer_Answer(map_answer_map_lit(compared, piece), 0.0, true);
-        if answer.lit < 1.0 && (kernel_piece_holds_to_depth() || map_answer_is_beyond(asked, piece)) {
-            answer.blocker_g = map_answer_map_answer(compared, piece).blocker_g;
+    if !answer.is_good && (uniform_soft.may_read_map != 0u || !map_visibility_is_summed(piece)) {
+        answer = basis_visibility_Answer(map_visibility_map_lit(compared, piece), 0.0, true);
+        if answer.lit < 1.0 && (kernel_piece_holds_to_depth() || map_visibility_is_beyond(asked, piece)) {
+            answer.blocker_g = map_visibility_map_answer(compared, piece).blocker_g;
         }
     }
-    if !map_answer_is_of_asked(compared, asked, piece, answer.blocker_g) {
-        return answer_Answer(1.0, 0.0, true);
+    if !map_visibility_is_of_asked(compared, asked, piece, answer.blocker_g) {
+        return basis_visibility_Answer(1.0, 0.0, true);
     }
     return answer;
 }
@@ -1462,9 +1462,9 @@ fn kernel_piece_piece_lit(compared: compared_Compared, asked: sums_Piece) -> f32
     let scale = first.blocker_g / compared.kernel_g;
     let own = sums_Piece(mix(compared.place, asked.low, scale), mix(compared.place, asked.high, scale));
     let piece = compared_piece_in_map(compared, own);
-    let blocker_g = map_answer_map_answer(compared, piece).blocker_g;
-    if blocker_g > 0.0 && compared_hides(compared, own, blocker_g) && map_answer_is_of_asked(compared, own, piece, blocker_g) {
-        return map_answer_map_lit(compared, piece);
+    let blocker_g = map_visibility_map_answer(compared, piece).blocker_g;
+    if blocker_g > 0.0 && compared_hides(compared, own, blocker_g) && map_visibility_is_of_asked(compared, own, piece, blocker_g) {
+        return map_visibility_map_lit(compared, piece);
     }
     if blocker_g <= 0.0 || abs(blocker_g - first.blocker_g) <= kernel_piece_ONE_DEPTH * first.blocker_g {
         return 1.0;
@@ -1480,12 +1480,12 @@ fn kernel_piece_lit_by_texels(compared: compared_Compared, piece: sums_Piece) ->
 }
 
 fn kernel_piece_texel_hides(compared: compared_Compared, place: vec2f) -> bool {
-    let at_place = map_answer_texel_blocks(compared, map_answer_about(compared, place), place);
+    let at_place = map_visibility_texel_blocks(compared, map_visibility_about(compared, place), place);
     if at_place.x == 0.0 || compared_hides_at(compared, place, at_place.y) {
         return at_place.x > 0.0;
     }
     let nearer = mix(compared.place, place, at_place.y / compared.kernel_g);
-    let at_nearer = map_answer_texel_blocks(compared, map_answer_about(compared, nearer), nearer);
+    let at_nearer = map_visibility_texel_blocks(compared, map_visibility_about(compared, nearer), nearer);
     return at_nearer.x > 0.0 && compared_hides_at(compared, nearer, at_nearer.y);
 }
 
@@ -1550,25 +1550,25 @@ fn kernel_rows_has_ends(kernel: soft_kernel_SoftKernel, low: f32, high: f32) -> 
     return kernel.is_ellipse && min(soft_kernel_row_half_width(kernel, low), soft_kernel_row_half_width(kernel, high)) > 1.0 && low * high > 0.0;
 }
 
-fn map_answer_plane_about(compared: compared_Compared, place: vec2f) -> space_ReceiverPlane {
+fn map_visibility_plane_about(compared: compared_Compared, place: vec2f) -> space_ReceiverPlane {
     var about = compared.plane;
     about.farthest_depth = compared.own_depth * compared_inverse_divisor_at(compared, place);
     return about;
 }
 
-struct map_answer_About {
+struct map_visibility_About {
     inverse_divisor: f32,
     farthest: f32,
     is_in_map: bool
 }
 
-fn map_answer_about(compared: compared_Compared, place: vec2f) -> map_answer_About {
+fn map_visibility_about(compared: compared_Compared, place: vec2f) -> map_visibility_About {
     let inverse_divisor = compared_inverse_divisor_at(compared, place);
     let is_in_map = all(place >= vec2f(0.0)) && all(place <= map_light_view.map_size);
-    return map_answer_About(inverse_divisor, compared.own_depth * inverse_divisor, is_in_map);
+    return map_visibility_About(inverse_divisor, compared.own_depth * inverse_divisor, is_in_map);
 }
 
-fn map_answer_texel_blocks(compared: compared_Compared, about: map_answer_About, place: vec2f) -> vec2f {
+fn map_visibility_texel_blocks(compared: compared_Compared, about: map_visibility_About, place: vec2f) -> vec2f {
     let texel = clamp(floor(place), vec2f(0.0), map_light_view.map_size - 1.0);
     sums_note_reads(1u);
     let stored = textureLoad(map_light_map, vec2i(texel), 0);
@@ -1579,34 +1579,34 @@ fn map_answer_texel_blocks(compared: compared_Compared, about: map_answer_About,
     return select(vec2f(), vec2f(1.0, g), sign * (stored - held) > 0.0 && about.is_in_map);
 }
 
-fn map_answer_map_answer(compared: compared_Compared, piece: sums_Piece) -> answer_Answer {
+fn map_visibility_map_answer(compared: compared_Compared, piece: sums_Piece) -> basis_visibility_Answer {
     let center = sums_middle(piece);
     let quarter = 0.25 * (piece.high - piece.low);
-    let about = map_answer_about(compared, center);
-    let blocks = map_answer_texel_blocks(compared, about, center - quarter) + map_answer_texel_blocks(compared, about, center + quarter) + map_answer_texel_blocks(compared, about, center + vec2f(quarter.x, -quarter.y)) + map_answer_texel_blocks(compared, about, center + vec2f(-quarter.x, quarter.y));
-    return answer_Answer(1.0 - 0.25 * blocks.x, blocks.y / max(blocks.x, 1.0), true);
+    let about = map_visibility_about(compared, center);
+    let blocks = map_visibility_texel_blocks(compared, about, center - quarter) + map_visibility_texel_blocks(compared, about, center + quarter) + map_visibility_texel_blocks(compared, about, center + vec2f(quarter.x, -quarter.y)) + map_visibility_texel_blocks(compared, about, center + vec2f(-quarter.x, quarter.y));
+    return basis_visibility_Answer(1.0 - 0.25 * blocks.x, blocks.y / max(blocks.x, 1.0), true);
 }
 
-fn map_answer_map_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
+fn map_visibility_map_lit(compared: compared_Compared, piece: sums_Piece) -> f32 {
     let center = sums_middle(piece);
-    let plane = map_answer_plane_about(compared, center);
+    let plane = map_visibility_plane_about(compared, center);
     let uv = center / map_light_view.map_size;
     let quarter = 0.25 * (piece.high - piece.low) / map_light_view.map_size;
     sums_note_reads(4u);
     return 0.25 * (map_lit_bilinear(plane, uv - quarter) + map_lit_bilinear(plane, uv + quarter) + map_lit_bilinear(plane, uv + vec2f(quarter.x, -quarter.y)) + map_lit_bilinear(plane, uv + vec2f(-quarter.x, quarter.y)));
 }
 
-fn map_answer_is_summed(piece: sums_Piece) -> bool {
+fn map_visibility_is_summed(piece: sums_Piece) -> bool {
     let size = piece.high - piece.low;
     return max(size.x, size.y) > uniform_soft.direct_texels && sums_area(piece) <= uniform_soft.max_part_texels;
 }
 
-fn map_answer_is_beyond(asked: sums_Piece, piece: sums_Piece) -> bool {
+fn map_visibility_is_beyond(asked: sums_Piece, piece: sums_Piece) -> bool {
     return any(asked.low != piece.low) || any(asked.high != piece.high);
 }
 
-fn map_answer_is_of_asked(compared: compared_Compared, asked: sums_Piece, piece: sums_Piece, blocker_g: f32) -> bool {
-    return !map_answer_is_beyond(asked, piece) || blocker_g > compared.edge_g;
+fn map_visibility_is_of_asked(compared: compared_Compared, asked: sums_Piece, piece: sums_Piece, blocker_g: f32) -> bool {
+    return !map_visibility_is_beyond(asked, piece) || blocker_g > compared.edge_g;
 }
 
 const pieces_MOST_PIECES = 1024u;
@@ -1667,17 +1667,17 @@ fn search_g_of_mean(compared: compared_Compared, sum: f32, count: f32) -> f32 {
     return mean;
 }
 
-fn search_piece_blockers(compared: compared_Compared, asked: sums_Piece) -> answer_Answer {
+fn search_piece_blockers(compared: compared_Compared, asked: sums_Piece) -> basis_visibility_Answer {
     let piece = compared_piece_in_map(compared, asked);
-    var answer = answer_Answer(1.0, 0.0, false);
-    if map_answer_is_summed(piece) {
-        answer = answer_basis_answer(compared, piece, answer_WHOLE);
+    var answer = basis_visibility_Answer(1.0, 0.0, false);
+    if map_visibility_is_summed(piece) {
+        answer = basis_visibility_basis_answer(compared, piece, basis_visibility_WHOLE);
     }
-    if !answer.is_good && (uniform_soft.may_read_map != 0u || !map_answer_is_summed(piece)) {
-        answer = map_answer_map_answer(compared, piece);
+    if !answer.is_good && (uniform_soft.may_read_map != 0u || !map_visibility_is_summed(piece)) {
+        answer = map_visibility_map_answer(compared, piece);
     }
-    if !map_answer_is_of_asked(compared, asked, piece, answer.blocker_g) {
-        return answer_Answer(1.0, 0.0, true);
+    if !map_visibility_is_of_asked(compared, asked, piece, answer.blocker_g) {
+        return basis_visibility_Answer(1.0, 0.0, true);
     }
     return answer;
 }
@@ -1714,7 +1714,7 @@ fn search_window_half(search: search_Search, k: u32) -> vec2f {
     return max(search.half_at_1 * search_window_g(search, k), vec2f(1.0));
 }
 
-fn search_counted(search: search_Search, compared: compared_Compared, piece: sums_Piece, answer: answer_Answer) -> vec2f {
+fn search_counted(search: search_Search, compared: compared_Compared, piece: sums_Piece, answer: basis_visibility_Answer) -> vec2f {
     let g = clamp(answer.blocker_g, 0.0, search.g);
     if uniform_IS_ONE_WINDOW {
         return (1.0 - answer.lit) * sums_area(piece) * vec2f(1.0, search_averaged(compared, g));
@@ -1784,10 +1784,10 @@ fn search_search_taps(search: search_Search, compared: compared_Compared) -> vec
         let low = search.center - half + size * vec2f(vec2u(i % side, i / side % side));
         let piece = sums_Piece(low, low + size);
         let place = compared_place_in_map(compared_asking_for(compared, search_window_g(search, k)), sums_middle(piece));
-        let found = map_answer_texel_blocks(compared, map_answer_about(compared, place), place);
+        let found = map_visibility_texel_blocks(compared, map_visibility_about(compared, place), place);
         let is_of_asked = all(place == sums_middle(piece)) || found.y > compared.edge_g;
         let blocks = select(vec2f(), found, is_of_asked);
-        sum += search_counted(search, compared, piece, answer_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
+        sum += search_counted(search, compared, piece, basis_visibility_Answer(1.0 - blocks.x, blocks.y, true)) / (4.0 * half.x * half.y);
     }
     return sum;
 }

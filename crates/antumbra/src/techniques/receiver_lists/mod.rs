@@ -52,7 +52,7 @@
 //! - Lists may hold positions, and a depth test in place of the paper's stencil may drop fragments over empty lists
 //!   (`raster/stencil.wesl`).
 //! - A pass before the first batch opens the light points in front of each receiver's own surface, and one after the last weighs
-//!   those that are still open (`raster/before.wesl`, `raster/after.wesl`).
+//!   those that are still open (`raster/open_points.wesl`, `raster/sum_visible.wesl`).
 //!
 //! The bits are those of the groups, except where planes are made once a triangle (`light_bits/planes.wesl`), which round otherwise.
 //!

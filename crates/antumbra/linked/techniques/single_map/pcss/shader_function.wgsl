@@ -743,7 +743,7 @@ fn comparison_hiding_g_in_front(window: search_Window, texels: vec2f, layer: u32
     return map_receiver_blocking_g_about(window.at, texel, layer);
 }
 
-fn comparison_lit_at_scale(plane: space_ReceiverPlane, window: search_Window, texels: vec2f, scale: scales_Scale) -> f32 {
+fn comparison_lit_at_scale(plane: space_ReceiverPlane, window: search_Window, texels: vec2f, scale: penumbra_width_Scale) -> f32 {
     if map_receiver_faces_away(window.at) {
         for (var layer = scale.layers.x; layer < min(scale.layers.y, behind_LAYER_COUNT); layer++) {
             let g = comparison_hiding_g_in_front(window, texels, layer, scale.g);
@@ -839,18 +839,60 @@ fn filter_filter_layers(plane: space_ReceiverPlane, window: search_Window, light
     return sums;
 }
 
-fn filter_filter_scales(plane: space_ReceiverPlane, window: search_Window, light: light_taps_LightPlane, scales: scales_Scales, count: u32) -> vec2f {
+fn filter_filter_scales(plane: space_ReceiverPlane, window: search_Window, light: light_taps_LightPlane, scales: penumbra_width_Scales, count: u32) -> vec2f {
     var sums = vec2f();
     for (var i = 0u; i < min(count, settings_pcss.filter_count); i++) {
         let place = light_taps_place_of(light, light_taps_taps[settings_pcss.search_count + i].xyz);
         let texels = light_taps_texels_of(light, place);
         var lit = select(0.0, 1.0, light_taps_is_above_horizon(light, place));
         for (var rest = scales.some; rest > 0u && lit > 0.0; rest &= rest - 1u) {
-            lit = min(lit, comparison_lit_at_scale(plane, window, texels, scales_scale_of(scales, countTrailingZeros(rest))));
+            lit = min(lit, comparison_lit_at_scale(plane, window, texels, penumbra_width_scale_of(scales, countTrailingZeros(rest))));
         }
         sums += light_taps_weight_of(place) * vec2f(1.0, lit);
     }
     return sums;
+}
+
+const penumbra_width_NEAR_SHARE = 0.7;
+
+const penumbra_width_CONTACT_TEXELS = 1.5;
+
+const penumbra_width_ANY_G = vec2f(-map_receiver_NO_G, map_receiver_NO_G);
+
+struct penumbra_width_Scale {
+    g: f32,
+    g_range: vec2f,
+    layers: vec2u
+}
+
+const penumbra_width_NEAREST = 4u;
+
+struct penumbra_width_Scales {
+    blockers: search_Blockers,
+    near: penumbra_width_Scale,
+    some: u32
+}
+
+fn penumbra_width_scales_of(blockers: search_Blockers, extent: vec2f) -> penumbra_width_Scales {
+    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
+    let is_contact = max(near_extent.x, near_extent.y) < penumbra_width_CONTACT_TEXELS;
+    let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
+    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
+    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < penumbra_width_NEAR_SHARE * least_mean;
+    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
+    let near = penumbra_width_Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
+    return penumbra_width_Scales(blockers, near, blockers.groups | select(0u, 1u << penumbra_width_NEAREST, is_near && settings_pcss.attach_contacts == 1u));
+}
+
+fn penumbra_width_scale_of(scales: penumbra_width_Scales, index: u32) -> penumbra_width_Scale {
+    if index == penumbra_width_NEAREST {
+        return scales.near;
+    }
+    let g = scales.blockers.g[index];
+    if settings_MEANS_OF_RANGES {
+        return penumbra_width_Scale(g, search_range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
+    }
+    return penumbra_width_Scale(g, penumbra_width_ANY_G, vec2u(index, index + 1u));
 }
 
 const resolve_PROBES = 40u;
@@ -892,59 +934,17 @@ fn resolve_visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
         return 0.0;
     }
     let blockers = search_blockers_of(search_search_behind(window, light, found), window);
-    let scales = scales_scales_of(blockers, extent);
+    let scales = penumbra_width_scales_of(blockers, extent);
     if !settings_MEANS_OF_RANGES && scales.some <= 1u {
         let is_lit = probes > 0u && probed.x == probed.y;
         let count = select(settings_pcss.filter_count, 0u, is_lit);
         return resolve_fraction(probed + filter_filter_once(window, light, nearest.g.x, sharpness, probes, count));
     }
-    if !settings_MEANS_OF_RANGES && scales.some < (1u << scales_NEAREST) {
+    if !settings_MEANS_OF_RANGES && scales.some < (1u << penumbra_width_NEAREST) {
         return resolve_fraction(filter_filter_layers(plane, window, light, blockers, settings_part_of(settings_pcss.filter_count, resolve_LAYER_TAPS)));
     }
     let count = select(settings_part_of(settings_pcss.filter_count, resolve_CONTACT_TAPS), settings_pcss.filter_count, settings_MEANS_OF_RANGES);
     return resolve_fraction(filter_filter_scales(plane, window, light, scales, count));
-}
-
-const scales_NEAR_SHARE = 0.7;
-
-const scales_CONTACT_TEXELS = 1.5;
-
-const scales_ANY_G = vec2f(-map_receiver_NO_G, map_receiver_NO_G);
-
-struct scales_Scale {
-    g: f32,
-    g_range: vec2f,
-    layers: vec2u
-}
-
-const scales_NEAREST = 4u;
-
-struct scales_Scales {
-    blockers: search_Blockers,
-    near: scales_Scale,
-    some: u32
-}
-
-fn scales_scales_of(blockers: search_Blockers, extent: vec2f) -> scales_Scales {
-    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
-    let is_contact = max(near_extent.x, near_extent.y) < scales_CONTACT_TEXELS;
-    let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
-    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
-    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < scales_NEAR_SHARE * least_mean;
-    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
-    let near = scales_Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
-    return scales_Scales(blockers, near, blockers.groups | select(0u, 1u << scales_NEAREST, is_near && settings_pcss.attach_contacts == 1u));
-}
-
-fn scales_scale_of(scales: scales_Scales, index: u32) -> scales_Scale {
-    if index == scales_NEAREST {
-        return scales.near;
-    }
-    let g = scales.blockers.g[index];
-    if settings_MEANS_OF_RANGES {
-        return scales_Scale(g, search_range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
-    }
-    return scales_Scale(g, scales_ANY_G, vec2u(index, index + 1u));
 }
 
 const search_ENOUGH_BLOCKERS = 4u;

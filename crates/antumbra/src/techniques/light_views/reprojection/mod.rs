@@ -41,11 +41,11 @@ use crate::techniques::light_views::PointChoice;
 use crate::techniques::{Coverage, Technique};
 use glam::Vec2;
 
+pub(crate) mod batches;
 mod behind;
 mod central;
 #[cfg(test)]
 mod cpu;
-pub(crate) mod engine;
 pub(crate) mod gpu_types;
 mod params;
 mod program;
@@ -56,7 +56,7 @@ mod surfel_list;
 #[cfg(test)]
 mod tests;
 
-use engine::{Engine, PreparedEngine};
+use batches::{Engine, PreparedEngine};
 pub use params::{ReprojectionBias, ReprojectionParams};
 pub use settings::{ReprojectionFilter, ReprojectionPath, ReprojectionProjection};
 use settings::{Settings, Source, Splat};

@@ -3,9 +3,9 @@
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
 
+use super::batches::{BATCH_BUDGET_BYTES, Engine, Parts};
 use super::central::{Views, texels_from_world};
 use super::cpu::{Surfel, Targets, hides_nothing, surfels_of};
-use super::engine::{BATCH_BUDGET_BYTES, Engine, Parts};
 use super::gpu_types::SplatBatch;
 use super::scatter::SURFEL_REACH;
 use super::settings::{ReprojectionFilter, ReprojectionProjection, Settings, Source, Splat};

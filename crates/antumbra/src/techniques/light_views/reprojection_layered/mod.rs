@@ -68,7 +68,7 @@ use glam::Vec2;
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::light_views::PointChoice;
-use crate::techniques::light_views::reprojection::engine::{Engine, PreparedEngine};
+use crate::techniques::light_views::reprojection::batches::{Engine, PreparedEngine};
 use crate::techniques::light_views::reprojection::settings::{Settings, Source, Splat};
 use crate::techniques::{Coverage, Technique};
 

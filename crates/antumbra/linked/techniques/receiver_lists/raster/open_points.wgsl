@@ -1,4 +1,4 @@
-// Linked from src/techniques/receiver_lists/raster/before.wesl by `cargo xtask shaders`: edit that, not this.
+// Linked from src/techniques/receiver_lists/raster/open_points.wesl by `cargo xtask shaders`: edit that, not this.
 
 @group(1) @binding(1)
 var<storage, read> list: array<u32>;
