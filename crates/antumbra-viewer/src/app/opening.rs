@@ -10,7 +10,9 @@ use crate::file_dialog::{Chosen, Purpose};
 use crate::loader::{Loaded, Opened};
 use crate::poser::Poser;
 use crate::state::Play;
-use crate::ui::{self, Action};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::ui;
+use crate::ui::Action;
 
 impl App {
     /// Takes in what has loaded, or why it has not.
