@@ -20,18 +20,19 @@
 //! - **Roughness** has a module of its own, `metrics/roughness.rs`.
 //! - **Empty sets** have no mean: `None`, which JSON writes as null.
 
+mod flip;
 mod gaussian;
 mod roughness;
+mod ssim;
 
 use glam::UVec2;
-use image::RgbImage;
-use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8};
 use serde::{Deserialize, Serialize};
 
 use crate::picture::{Visibility, pixel_count};
-use gaussian::Gaussian;
+pub use flip::FlipMap;
 use roughness::Roughness;
 pub use roughness::TILE_PX;
+use ssim::add_ssim;
 
 /// At or below this a reference value is umbra, at or above one minus this it is lit; between them lies penumbra.
 pub(crate) const UMBRA_BELOW: f32 = 0.01;
@@ -206,63 +207,6 @@ fn sample(reference: &Visibility, tested: &Visibility, i: usize, channel: usize)
     Ok((v_ref, if v.is_finite() { v } else { wrong }))
 }
 
-/// FLIP of two 8-bit sRGB pictures by pixel, background included, at 67 pixels per degree (Andersson et al., *FLIP: A
-/// Difference Evaluator for Alternating Images*, HPG 2020).
-#[derive(Clone, Debug)]
-pub struct FlipMap {
-    size_px: UVec2,
-    /// Row by row from the top, 0 to 1.
-    values: Vec<f32>,
-}
-
-impl FlipMap {
-    /// Holds a picture against another one of its size.
-    pub fn new(reference: &RgbImage, tested: &RgbImage) -> Result<Self, MetricsError> {
-        if reference.dimensions() != tested.dimensions() {
-            return Err(MetricsError::Sizes {
-                reference: reference.dimensions().into(),
-                tested: tested.dimensions().into(),
-            });
-        }
-        let (width, height) = reference.dimensions();
-        let size_px = UVec2::new(width, height);
-        if width == 0 || height == 0 {
-            return Ok(Self { size_px, values: Vec::new() });
-        }
-        let flip_image = |image: &RgbImage| FlipImageRgb8::with_data(width, height, image.as_raw());
-        let error = nv_flip::flip(flip_image(reference), flip_image(tested), DEFAULT_PIXELS_PER_DEGREE);
-        Ok(Self { size_px, values: error.to_vec() })
-    }
-
-    /// The mean over the picture; `None` where it has no pixels.
-    pub fn mean(&self) -> Option<f64> {
-        self.mean_within(UVec2::ZERO, self.size_px)
-    }
-
-    /// The mean over the tile of [`TILE_PX`] whose upper left pixel this is, as far as the picture has it.
-    pub fn tile_mean(&self, at_px: [u32; 2]) -> Option<f64> {
-        let at_px = UVec2::from(at_px).min(self.size_px);
-        self.mean_within(at_px, (at_px + TILE_PX).min(self.size_px))
-    }
-
-    fn mean_within(&self, from_px: UVec2, to_px: UVec2) -> Option<f64> {
-        let mut mean = Mean::default();
-        for row in from_px.y..to_px.y {
-            let line = &self.values[(row * self.size_px.x) as usize..][..self.size_px.x as usize];
-            line[from_px.x as usize..to_px.x as usize].iter().for_each(|e| mean.add(f64::from(*e)));
-        }
-        mean.mean()
-    }
-}
-
-impl Metrics {
-    /// Adds what FLIP tells of the shaded pictures: over the whole, and over the worst tile.
-    pub fn add_flip(&mut self, map: &FlipMap) {
-        self.flip = map.mean();
-        self.worst_tile_flip = self.worst_tile_at.and_then(|at_px| map.tile_mean(at_px));
-    }
-}
-
 /// A mean that knows when it is empty.
 #[derive(Default)]
 struct Mean {
@@ -325,47 +269,16 @@ fn percentile(values: &mut [f64], fraction: f64) -> Option<f64> {
     Some(lower + (upper - lower) * (rank - below as f64))
 }
 
-/// Half the side of the window of Wang et al., without its centre: 11 = 2 · 5 + 1.
-const SSIM_RADIUS: usize = 5;
-const SSIM_SIGMA_PX: f64 = 1.5;
-/// (K₁ L)² and (K₂ L)² with L = 1.
-const SSIM_C1: f64 = 0.01 * 0.01;
-const SSIM_C2: f64 = 0.03 * 0.03;
-
-/// Adds the structural similarity at every judged pixel. `x` and `y` must be 0 where not judged.
-///
-/// With m the mask and G the Gaussian, the masked window mean of f is (G ∗ m f) / (G ∗ m).
-fn add_ssim(mean: &mut Mean, size_px: UVec2, x: &[f64], y: &[f64], judged: &[bool]) {
-    let zip = |f: fn(f64, f64) -> f64| -> Vec<f64> { x.iter().zip(y).map(|(&x, &y)| f(x, y)).collect() };
-    let mask: Vec<f64> = judged.iter().map(|&judged| if judged { 1.0 } else { 0.0 }).collect();
-    let gaussian = Gaussian::new(SSIM_SIGMA_PX, SSIM_RADIUS);
-    let [weight, sum_x, sum_y, sum_xx, sum_yy, sum_xy] =
-        [mask, x.to_vec(), y.to_vec(), zip(|x, _| x * x), zip(|_, y| y * y), zip(|x, y| x * y)]
-            .map(|plane| gaussian.window_sums(size_px, &plane));
-    for i in (0..x.len()).filter(|&i| judged[i]) {
-        let [mean_x, mean_y, mean_xx, mean_yy, mean_xy] =
-            [&sum_x, &sum_y, &sum_xx, &sum_yy, &sum_xy].map(|sum| sum[i] / weight[i]);
-        // Differences of moments can fall a rounding error below zero.
-        let variance_x = (mean_xx - mean_x * mean_x).max(0.0);
-        let variance_y = (mean_yy - mean_y * mean_y).max(0.0);
-        let covariance = mean_xy - mean_x * mean_y;
-        let luminance = (2.0 * mean_x * mean_y + SSIM_C1) / (mean_x * mean_x + mean_y * mean_y + SSIM_C1);
-        let structure = (2.0 * covariance + SSIM_C2) / (variance_x + variance_y + SSIM_C2);
-        mean.add(luminance * structure);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use glam::Vec3;
-    use image::Rgb;
 
     fn image(values: &[f32]) -> Visibility {
         Visibility::one(UVec2::new(values.len() as u32, 1), values.to_vec())
     }
 
-    fn assert_close(name: &str, got: Option<f64>, want: f64) {
+    pub(super) fn assert_close(name: &str, got: Option<f64>, want: f64) {
         let got = got.unwrap_or_else(|| panic!("{name} is missing"));
         assert!((got - want).abs() < 1e-7, "{name}: {got}, by hand {want}");
     }
@@ -452,76 +365,5 @@ mod tests {
         assert_eq!(percentile(&mut ramp, 0.99), Some(99.0));
         assert_eq!(percentile(&mut [3.0], 0.99), Some(3.0));
         assert_eq!(percentile(&mut [], 0.99), None);
-    }
-
-    /// Flat images have no structure: SSIM is its luminance term alone.
-    #[test]
-    fn ssim_of_flat_images_is_the_luminance_term() {
-        let size = UVec2::new(17, 13);
-        let flat = |v: f32| Visibility::one(size, vec![v; 17 * 13]);
-        let judged = vec![true; 17 * 13];
-        let m = compare_visibility(&flat(0.25), &flat(0.75), &judged).unwrap();
-        assert_close("ssim", m.ssim, (2.0 * 0.1875 + 1e-4) / (0.0625 + 0.5625 + 1e-4));
-        assert_close("ssim", compare_visibility(&flat(0.3), &flat(0.3), &judged).unwrap().ssim, 1.0);
-    }
-
-    /// Against the definition, window by window, with a ragged mask and junk outside it.
-    #[test]
-    fn ssim_matches_its_definition_window_by_window() {
-        let (width, height) = (19_usize, 14_usize);
-        let size = UVec2::new(width as u32, height as u32);
-        let judged: Vec<bool> = (0..width * height).map(|i| (i * 7919) % 11 > 2).collect();
-        let wave = |i: usize, f: f32| 0.5 + 0.5 * (i as f32 * f).sin();
-        let x: Vec<f32> = (0..width * height).map(|i| if judged[i] { wave(i, 0.37) } else { f32::INFINITY }).collect();
-        let y: Vec<f32> = (0..width * height).map(|i| if judged[i] { wave(i, 0.41) } else { f32::NAN }).collect();
-
-        let mut by_hand = Mean::default();
-        for centre in (0..width * height).filter(|&i| judged[i]) {
-            let (cx, cy) = ((centre % width) as f64, (centre / width) as f64);
-            let window: Vec<(f64, f64, f64)> = (0..width * height)
-                .filter(|&i| judged[i])
-                .map(|i| ((i % width) as f64 - cx, (i / width) as f64 - cy, f64::from(x[i]), f64::from(y[i])))
-                .filter(|(dx, dy, ..)| dx.abs() <= 5.0 && dy.abs() <= 5.0)
-                .map(|(dx, dy, x, y)| ((-(dx * dx + dy * dy) / (2.0 * 1.5 * 1.5)).exp(), x, y))
-                .collect();
-            let total: f64 = window.iter().map(|w| w.0).sum();
-            let mean = |f: &dyn Fn(f64, f64) -> f64| window.iter().map(|&(w, x, y)| w * f(x, y)).sum::<f64>() / total;
-            let (mx, my) = (mean(&|x, _| x), mean(&|_, y| y));
-            let (vx, vy) = (mean(&|x, _| (x - mx).powi(2)), mean(&|_, y| (y - my).powi(2)));
-            let cov = mean(&|x, y| (x - mx) * (y - my));
-            by_hand.add((2.0 * mx * my + 1e-4) * (2.0 * cov + 9e-4) / ((mx * mx + my * my + 1e-4) * (vx + vy + 9e-4)));
-        }
-        let m = compare_visibility(&Visibility::one(size, x), &Visibility::one(size, y), &judged).unwrap();
-        assert_close("ssim", m.ssim, by_hand.mean().unwrap());
-    }
-
-    #[test]
-    fn flip_is_zero_for_equal_and_one_for_opposite_pictures() {
-        let flat = |v: u8| RgbImage::from_pixel(40, 30, Rgb([v; 3]));
-        let mean = |a: &RgbImage, b: &RgbImage| FlipMap::new(a, b).unwrap().mean();
-        assert_eq!(mean(&flat(90), &flat(90)), Some(0.0));
-        // Black against white is the largest difference that FLIP's colour metric knows (its section 4.1.2 maps it to 1).
-        let opposite = mean(&flat(0), &flat(255)).unwrap();
-        assert!(opposite > 0.9 && opposite <= 1.0, "{opposite}");
-        assert_eq!(mean(&RgbImage::new(0, 0), &RgbImage::new(0, 0)), None);
-        assert!(FlipMap::new(&flat(0), &RgbImage::new(1, 1)).is_err());
-        assert!(mean(&RgbImage::new(1, 1), &RgbImage::new(1, 1)).is_some());
-    }
-
-    /// Over the worst tile alone, as far as the picture has it.
-    #[test]
-    fn flip_of_a_tile_is_of_that_tile() {
-        let flat = RgbImage::from_pixel(100, 60, Rgb([90; 3]));
-        let mut marked = flat.clone();
-        (70..80).flat_map(|x| (40..50).map(move |y| (x, y))).for_each(|(x, y)| marked.put_pixel(x, y, Rgb([255; 3])));
-        let map = FlipMap::new(&flat, &marked).unwrap();
-        let [all, there, elsewhere] = [map.mean(), map.tile_mean([60, 28]), map.tile_mean([0, 0])].map(Option::unwrap);
-        assert!(there > 3.0 * all && elsewhere < 0.01 * there, "{all} {there} {elsewhere}");
-        assert_eq!(map.tile_mean([100, 60]), None);
-        assert!(map.tile_mean([99, 0]).is_some());
-
-        let mut metrics = Metrics { worst_tile_at: Some([60, 28]), ..Metrics::default() };
-        metrics.add_flip(&map);
-        assert_eq!((metrics.flip, metrics.worst_tile_flip), (Some(all), Some(there)));
     }
 }

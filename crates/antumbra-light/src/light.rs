@@ -1,6 +1,4 @@
-//! Shapes, poses and the map from the unit cube to points of a light.
-
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+//! Shapes and poses of a light.
 
 use glam::{Vec2, Vec3};
 
@@ -112,53 +110,6 @@ pub struct LightFrame {
     pub axis: Vec3,
 }
 
-/// Sample point of a light in homogeneous form.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightPoint {
-    /// A world position (`w = 1`), or a direction towards the light, not normalised (`w = 0`).
-    pub xyz: Vec3,
-    /// 1 for a position, 0 for a direction.
-    pub w: f32,
-    /// Relative emission ≥ 0 of this point; 1 where the light is uniform.
-    pub weight: f32,
-}
-
-impl LightPoint {
-    /// The vector from `x` to this point: the whole segment for a position, a direction for a distant light.
-    pub fn vector_from(&self, x: Vec3) -> Vec3 {
-        self.xyz - self.w * x
-    }
-}
-
-/// Fault of a light.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum LightError {
-    /// The axis has no direction.
-    #[error("light `{light}`: its axis has zero length: `center` and `target` must differ")]
-    ZeroAxis {
-        /// The light's name.
-        light: String,
-    },
-    /// The up hint is parallel to the axis, or zero.
-    #[error("light `{light}`: `up` is zero or parallel to the axis; choose an `up` that leans away from it")]
-    ParallelUp {
-        /// The light's name.
-        light: String,
-    },
-    /// A number is outside the range in which it means something.
-    #[error("light `{light}`: `{key}` is {value}, and must be {range}")]
-    OutOfRange {
-        /// The light's name.
-        light: String,
-        /// Which quantity.
-        key: &'static str,
-        /// What it was.
-        value: String,
-        /// What would be right.
-        range: &'static str,
-    },
-}
-
 impl Light {
     /// A light of `shape` at `center` looking at `target`, white, with the default up hint.
     pub fn new(shape: LightShape, center: Vec3, target: Vec3) -> Self {
@@ -194,74 +145,6 @@ impl Light {
     pub fn up_beside(axis: Vec3, up: Vec3) -> Vec3 {
         let is_beside = |hint: &Vec3| axis.cross(*hint).length() > 8f32.to_radians().sin() * hint.length();
         if up == Vec3::ZERO { up } else { [up, Vec3::Z].into_iter().find(is_beside).unwrap_or(Vec3::Y) }
-    }
-
-    /// Checks every number of the light.
-    ///
-    /// # Errors
-    /// Names the first quantity that is not finite, out of its range, or leaves the frame undefined.
-    pub fn validate(&self) -> Result<(), LightError> {
-        let light = || self.name.clone();
-        let out = |key, value: String, range| Err(LightError::OutOfRange { light: light(), key, value, range });
-        if !self.axis.is_finite() || (self.axis.length() - 1.0).abs() > 1e-3 {
-            return Err(LightError::ZeroAxis { light: light() });
-        }
-        if !self.up.is_finite() || self.axis.cross(self.up).length() <= 1e-6 * self.up.length() || self.up == Vec3::ZERO
-        {
-            return Err(LightError::ParallelUp { light: light() });
-        }
-        if !self.center.is_finite() {
-            return out("center", format!("{}", self.center), "finite");
-        }
-        if !self.color.is_finite() || self.color.min_element() < 0.0 {
-            return out("color", format!("{}", self.color), "finite and not negative");
-        }
-        if !self.intensity.is_finite() || self.intensity < 0.0 {
-            return out("intensity", self.intensity.to_string(), "finite and not negative");
-        }
-        if let Some(given) = self.candela_or_lux
-            && (!given.is_finite() || given < 0.0)
-        {
-            return out(self.shape.photometric_unit(), given.to_string(), "finite and not negative");
-        }
-        if let Some(fov) = self.fov_rad
-            && !(fov > 0.0 && fov < std::f32::consts::PI)
-        {
-            return out("fov", format!("{} degrees", fov.to_degrees()), "above 0 and below 180 degrees");
-        }
-        if let Some(Cone { inner_rad, outer_rad }) = self.cone
-            && !(0.0 <= inner_rad && inner_rad < outer_rad && outer_rad < FRAC_PI_2)
-        {
-            let had = format!("{} to {} degrees off the axis", inner_rad.to_degrees(), outer_rad.to_degrees());
-            return out("cone", had, "an inner angle from 0 up, and an outer one above it and below 90 degrees");
-        }
-        let size_ok = |v: f32| v.is_finite() && v >= 0.0;
-        match &self.shape {
-            LightShape::Rectangle { size_m } if !(size_ok(size_m.x) && size_ok(size_m.y)) => {
-                out("size", format!("{size_m}"), "two finite lengths in metres, not negative")
-            }
-            LightShape::Disk { radius_m } | LightShape::Sphere { radius_m } if !size_ok(*radius_m) => {
-                out("radius", radius_m.to_string(), "a finite length in metres, not negative")
-            }
-            LightShape::Ellipsoid { radii_m } if !radii_m.to_array().into_iter().all(size_ok) => {
-                out("radii", format!("{radii_m}"), "three finite lengths in metres, not negative")
-            }
-            LightShape::Sun { angular_diameter_rad: angle } if !(*angle >= 0.0 && *angle < FRAC_PI_2) => {
-                out("angular_diameter", format!("{} degrees", angle.to_degrees()), "from 0 to below 90 degrees")
-            }
-            LightShape::Points { positions_m } if positions_m.is_empty() => {
-                out("positions", "an empty list".into(), "at least one position")
-            }
-            LightShape::Points { positions_m } if !positions_m.iter().all(|p| p.is_finite()) => {
-                out("positions", "a list with a number that is not finite".into(), "finite positions in metres")
-            }
-            _ => match &self.emission {
-                Some(texture) if !texture.is_usable() => {
-                    out("texture", "unusable".into(), "an image with finite luminances, not all zero")
-                }
-                _ => Ok(()),
-            },
-        }
     }
 
     /// The light's axes in world space.
@@ -315,45 +198,6 @@ impl Light {
         Self { shape, ..self.clone() }
     }
 
-    /// The light's point for a point `u` of the unit cube, as seen from the world position `seen_from`.
-    ///
-    /// The map keeps area (volume for an ellipsoid), so uniform `u` give uniform light points. Only an ellipsoid
-    /// uses `u.z`; only a sphere uses `seen_from`. [`LightShape::Points`] picks by `u.x`.
-    pub fn point(&self, frame: &LightFrame, u: Vec3, seen_from: Vec3) -> LightPoint {
-        let at =
-            |right: f32, up: f32, axis: f32| frame.center + frame.right * right + frame.up * up + frame.axis * axis;
-        let position = |xyz| LightPoint { xyz, w: 1.0, weight: 1.0 };
-        match &self.shape {
-            LightShape::Rectangle { size_m } => {
-                let offset = (u.truncate() - 0.5) * *size_m;
-                let weight = self.emission.as_ref().map_or(1.0, |texture| texture.luminance_at(u.truncate()));
-                LightPoint { xyz: at(offset.x, offset.y, 0.0), w: 1.0, weight }
-            }
-            LightShape::Disk { radius_m } => {
-                let offset = disk_from_square(u.truncate()) * *radius_m;
-                position(at(offset.x, offset.y, 0.0))
-            }
-            LightShape::Sphere { radius_m } => {
-                let offset = disk_from_square(u.truncate()) * *radius_m;
-                let (right, up) = facing_axes(frame, seen_from);
-                position(frame.center + right * offset.x + up * offset.y)
-            }
-            LightShape::Ellipsoid { radii_m } => {
-                let p = ball_from_cube(u) * *radii_m;
-                position(at(p.x, p.y, p.z))
-            }
-            LightShape::Sun { angular_diameter_rad } => {
-                let offset = disk_from_square(u.truncate()) * (0.5 * angular_diameter_rad).tan();
-                let xyz = frame.right * offset.x + frame.up * offset.y - frame.axis;
-                LightPoint { xyz, w: 0.0, weight: 1.0 }
-            }
-            LightShape::Points { positions_m } => {
-                let index = ((u.x * positions_m.len() as f32) as usize).min(positions_m.len() - 1);
-                position(positions_m[index])
-            }
-        }
-    }
-
     /// Whether the light shines in all directions: a shape with no front, held to no frustum.
     pub fn shines_all_around(&self) -> bool {
         self.fov_rad.is_none()
@@ -394,48 +238,11 @@ impl Light {
     }
 }
 
-/// Two unit vectors across the line from `seen_from` to the light's centre, continuous in the receiver's position
-/// wherever it is in front of the light.
-fn facing_axes(frame: &LightFrame, seen_from: Vec3) -> (Vec3, Vec3) {
-    let towards = (frame.center - seen_from).try_normalize().unwrap_or(-frame.axis);
-    let right = frame.up.cross(towards).try_normalize().unwrap_or(frame.right);
-    (right, towards.cross(right))
-}
-
-/// Shirley and Chiu 1997: the concentric map from the unit square to the unit disk. It keeps area and adjacency, so
-/// that strata stay compact.
-pub fn disk_from_square(u: Vec2) -> Vec2 {
-    let p = 2.0 * u - 1.0;
-    if p == Vec2::ZERO {
-        return Vec2::ZERO;
-    }
-    let (radius, angle) =
-        if p.x.abs() > p.y.abs() { (p.x, FRAC_PI_4 * (p.y / p.x)) } else { (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y)) };
-    radius * Vec2::new(angle.cos(), angle.sin())
-}
-
-/// The volume-keeping map from the unit cube to the unit ball: cos θ and φ uniform, radius by the cube root.
-pub fn ball_from_cube(u: Vec3) -> Vec3 {
-    let cos_theta = 1.0 - 2.0 * u.x;
-    let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
-    let phi = TAU * u.y;
-    u.z.cbrt() * Vec3::new(sin_theta * phi.cos(), sin_theta * phi.sin(), cos_theta)
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+
     use super::*;
-    use crate::SampleSet;
-
-    fn points(light: &Light, n: u32) -> Vec<Vec3> {
-        let frame = light.frame();
-        SampleSet::Stratified.points(n, 1).into_iter().map(|u| light.point(&frame, u, Vec3::ZERO).xyz).collect()
-    }
-
-    /// The second moment along a direction through the centre, for which each shape has a closed form.
-    fn second_moment(points: &[Vec3], center: Vec3, direction: Vec3) -> f32 {
-        points.iter().map(|p| (*p - center).dot(direction).powi(2)).sum::<f32>() / points.len() as f32
-    }
 
     #[test]
     fn frame_is_right_handed_like_a_camera() {
@@ -443,37 +250,6 @@ mod tests {
         let f = light.frame();
         assert!(f.right.cross(f.up).abs_diff_eq(-f.axis, 1e-6));
         assert!(f.right.abs_diff_eq(f.axis.cross(light.up).normalize(), 1e-6));
-    }
-
-    #[test]
-    fn shapes_have_the_second_moments_of_their_closed_forms() {
-        let center = Vec3::new(0.0, 5.0, 0.0);
-        let near = |got: f32, want: f32| assert!((got - want).abs() < 0.01 * want, "{got} against {want}");
-
-        let rectangle = Light::new(LightShape::Rectangle { size_m: Vec2::new(2.0, 0.5) }, center, Vec3::ZERO);
-        let (p, f) = (points(&rectangle, 4096), rectangle.frame());
-        near(second_moment(&p, center, f.right), 2.0 * 2.0 / 12.0);
-        near(second_moment(&p, center, f.up), 0.5 * 0.5 / 12.0);
-
-        let disk = Light::new(LightShape::Disk { radius_m: 0.7 }, center, Vec3::ZERO);
-        near(second_moment(&points(&disk, 4096), center, disk.frame().right), 0.7 * 0.7 / 4.0);
-
-        let ellipsoid = Light::new(LightShape::Ellipsoid { radii_m: Vec3::new(0.4, 0.2, 0.1) }, center, Vec3::ZERO);
-        let (p, f) = (points(&ellipsoid, 16384), ellipsoid.frame());
-        near(second_moment(&p, center, f.right), 0.4 * 0.4 / 5.0);
-        near(second_moment(&p, center, f.up), 0.2 * 0.2 / 5.0);
-        near(second_moment(&p, center, f.axis), 0.1 * 0.1 / 5.0);
-    }
-
-    #[test]
-    fn sphere_faces_the_receiver() {
-        let light = Light::new(LightShape::Sphere { radius_m: 0.5 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
-        let frame = light.frame();
-        let x = Vec3::new(4.0, 0.0, 1.0);
-        let towards = (light.center - x).normalize();
-        for u in SampleSet::R2.points(64, 0) {
-            assert!((light.point(&frame, u, x).xyz - light.center).dot(towards).abs() < 1e-5);
-        }
     }
 
     #[test]
@@ -516,13 +292,5 @@ mod tests {
         assert_eq!(Light::up_beside(Vec3::NEG_Y, Vec3::X), Vec3::X);
         let nine_degrees_off = Vec3::new(9f32.to_radians().sin(), -9f32.to_radians().cos(), 0.0);
         assert_eq!(Light::up_beside(nine_degrees_off, Vec3::Y), Vec3::Y);
-    }
-
-    #[test]
-    fn errors_name_the_key() {
-        let bad = Light::new(LightShape::Disk { radius_m: -1.0 }, Vec3::Y, Vec3::ZERO);
-        assert!(bad.validate().unwrap_err().to_string().contains("`radius`"));
-        let bad = Light::new(LightShape::Disk { radius_m: 1.0 }, Vec3::Y, Vec3::Y);
-        assert!(matches!(bad.validate(), Err(LightError::ZeroAxis { .. })));
     }
 }

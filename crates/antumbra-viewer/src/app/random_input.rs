@@ -13,9 +13,8 @@ use antumbra::{Quality, TechniqueKind};
 pub use super::headless::HeadlessError;
 
 use super::headless::{Window, options};
-use super::{Action, Panels};
 use crate::state::{SPEEDS, ShapeKind, Show, Side, State};
-use crate::ui;
+use crate::ui::{self, Action, Panels};
 
 /// What is open at first, and whenever what is held is counted.
 const HOME: &str = "builtin:overlap";

@@ -5,6 +5,8 @@ use antumbra::TechniqueKind;
 use super::headless::{HeadlessError, Window, options};
 use super::random_input::{RandomInput, things_to_open};
 use super::*;
+use crate::file_dialog::Purpose;
+use crate::ui::Action;
 
 /// What is there, or `None` and a word where this machine has no adapter and none is required.
 fn or_skip<T>(made: Result<T, HeadlessError>) -> Option<T> {

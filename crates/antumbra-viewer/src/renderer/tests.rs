@@ -1,11 +1,13 @@
 //! The renderer on whatever adapter there is, without a window.
 
-use antumbra::contract::{ParamSpec, ParamValue};
+use antumbra::contract::{MaskChannels, ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
 use antumbra_host_tests::device::Device;
 use antumbra_light::LightShape;
-use antumbra_scene::{Instance, LoadOptions, Material, Mesh, Setup, load};
+use antumbra_scene::{Instance, LoadOptions, Material, Mesh, Scene, Setup, load};
+use glam::Vec3;
 
+use super::drawing::SETTLING_FRAMES;
 use super::*;
 use crate::device::device_descriptor;
 use crate::state::{ShapeKind, Show};

@@ -3,17 +3,19 @@
 //! Layouts, shader modules, pipelines and samplers are looked up by what they are made of, so that a second light, or a
 //! second technique with the same pass, finds them. Buffers, textures, views and bind groups are made as asked.
 
-use std::collections::HashMap;
-use std::hash::Hash;
-use std::num::NonZeroU32;
+mod caches;
+mod keys;
+
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+use std::sync::{Arc, OnceLock, PoisonError};
 
 use super::budget::Budget;
 use super::scratch::{Scratch, ScratchTextureKey};
 use super::shared_values::SharedValues;
 use super::uniforms::{self, UniformAccess};
 use super::{programs, quirks};
+use caches::{DescriptorCache, SharedPool};
+use keys::{ComputeKey, EntryKey, LayoutKey, RenderKey};
 
 /// The host's device, and the objects on it that all lights share.
 #[derive(Clone, Debug)]
@@ -53,9 +55,6 @@ pub(crate) struct TableKey {
     pub(crate) numbers: Vec<u32>,
 }
 
-/// A layout's entries as declared, and as the device has them.
-type LayoutKey = [Vec<wgpu::BindGroupLayoutEntry>; 2];
-
 #[derive(Debug, Default)]
 struct Programs {
     /// The device that this one plans for.
@@ -94,135 +93,6 @@ struct Counts {
     textures: AtomicU64,
     views: AtomicU64,
     bind_groups: AtomicU64,
-}
-
-/// Cache of objects by their descriptors.
-#[derive(Debug)]
-struct DescriptorCache<K, V>(Mutex<HashMap<K, V>>);
-
-impl<K, V> Default for DescriptorCache<K, V> {
-    fn default() -> Self {
-        Self(Mutex::new(HashMap::new()))
-    }
-}
-
-impl<K: Eq + Hash, V: Clone> DescriptorCache<K, V> {
-    /// The one there is, or a new one. Two threads that miss at once both make one, and the first stays.
-    fn get_or_make(&self, key: K, made: &AtomicU64, make: impl FnOnce() -> V) -> V {
-        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(found) = lock().get(&key) {
-            return found.clone();
-        }
-        // Not under the lock: a pipeline takes the driver's compiler.
-        made.fetch_add(1, Ordering::Relaxed);
-        let value = make();
-        lock().entry(key).or_insert(value).clone()
-    }
-}
-
-/// Resources that all holders of a key share, each freed with its last holder.
-#[derive(Debug)]
-struct SharedPool<K, V>(Mutex<Vec<(K, Weak<V>)>>);
-
-impl<K, V> Default for SharedPool<K, V> {
-    fn default() -> Self {
-        Self(Mutex::new(Vec::new()))
-    }
-}
-
-impl<K: PartialEq, V> SharedPool<K, V> {
-    /// The one that somebody holds, or a new one.
-    fn get_or_make(&self, key: K, make: impl FnOnce() -> V) -> Arc<V> {
-        let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        held.retain(|(_, value)| value.strong_count() > 0);
-        if let Some(found) = held.iter().find(|(of, _)| *of == key).and_then(|(_, value)| value.upgrade()) {
-            return found;
-        }
-        let made = Arc::new(make());
-        held.push((key, Arc::downgrade(&made)));
-        made
-    }
-
-    /// Bytes of all that somebody holds.
-    fn bytes(&self, of: impl Fn(&V) -> u64) -> u64 {
-        let held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        held.iter().filter_map(|(_, value)| value.upgrade()).map(|value| of(&value)).sum()
-    }
-}
-
-/// An entry point with values for its overridable constants.
-#[derive(Debug, PartialEq, Eq, Hash)]
-struct EntryKey {
-    module: wgpu::ShaderModule,
-    entry_point: Option<String>,
-    constants: Vec<(String, u64)>,
-    zeroed: bool,
-}
-
-impl EntryKey {
-    fn new(
-        module: &wgpu::ShaderModule,
-        entry_point: Option<&str>,
-        options: &wgpu::PipelineCompilationOptions<'_>,
-    ) -> Self {
-        Self {
-            module: module.clone(),
-            entry_point: entry_point.map(Into::into),
-            constants: options.constants.iter().map(|(name, value)| ((*name).into(), value.to_bits())).collect(),
-            zeroed: options.zero_initialize_workgroup_memory,
-        }
-    }
-}
-
-#[derive(Debug, PartialEq, Eq, Hash)]
-struct ComputeKey {
-    layout: Option<wgpu::PipelineLayout>,
-    entry: EntryKey,
-}
-
-#[derive(Debug, PartialEq, Eq, Hash)]
-struct RenderKey {
-    layout: Option<wgpu::PipelineLayout>,
-    vertex: EntryKey,
-    vertex_buffers: Vec<Option<VertexBufferKey>>,
-    primitive: wgpu::PrimitiveState,
-    depth_stencil: Option<wgpu::DepthStencilState>,
-    multisample: wgpu::MultisampleState,
-    fragment: Option<(EntryKey, Vec<Option<wgpu::ColorTargetState>>)>,
-    multiview_mask: Option<NonZeroU32>,
-}
-
-#[derive(Debug, PartialEq, Eq, Hash)]
-struct VertexBufferKey {
-    stride: u64,
-    step_mode: wgpu::VertexStepMode,
-    attributes: Vec<wgpu::VertexAttribute>,
-}
-
-impl RenderKey {
-    fn new(descriptor: &wgpu::RenderPipelineDescriptor<'_>) -> Self {
-        let wgpu::RenderPipelineDescriptor { vertex, fragment, .. } = descriptor;
-        let vertex_buffer = |buffer: &Option<wgpu::VertexBufferLayout<'_>>| {
-            buffer.as_ref().map(|buffer| VertexBufferKey {
-                stride: buffer.array_stride,
-                step_mode: buffer.step_mode,
-                attributes: buffer.attributes.to_vec(),
-            })
-        };
-        Self {
-            layout: descriptor.layout.cloned(),
-            vertex: EntryKey::new(vertex.module, vertex.entry_point, &vertex.compilation_options),
-            vertex_buffers: vertex.buffers.iter().map(vertex_buffer).collect(),
-            primitive: descriptor.primitive,
-            depth_stencil: descriptor.depth_stencil.clone(),
-            multisample: descriptor.multisample,
-            fragment: fragment.as_ref().map(|fragment| {
-                let entry = EntryKey::new(fragment.module, fragment.entry_point, &fragment.compilation_options);
-                (entry, fragment.targets.to_vec())
-            }),
-            multiview_mask: descriptor.multiview_mask,
-        }
-    }
 }
 
 impl Device {

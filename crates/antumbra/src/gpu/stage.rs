@@ -8,18 +8,22 @@
 //! same light included. They are put into a staging buffer of their own, and the frame's commands begin by copying them
 //! to where they belong. Frames may so be prepared and recorded one after the other and submitted together.
 
+mod bind_groups;
+mod uploads;
+
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::hash::{BuildHasher, Hash, Hasher};
-use std::num::NonZeroU64;
 use std::ops::Deref;
-use std::sync::Arc;
 
 use glam::Vec3;
 use hashbrown::{DefaultHashBuilder, HashTable};
 
-use super::{CommandsEnd, Gpu};
+use super::Gpu;
 use crate::contract::CastersKey;
+pub(crate) use bind_groups::Resource;
+use bind_groups::{KeptGroup, KeptView};
+pub(crate) use uploads::StagedUploads;
+use uploads::{Copy, Staging, Uploads};
 
 /// What a technique prepares with: the device, and what is kept from frame to frame.
 #[derive(Debug)]
@@ -83,95 +87,11 @@ struct BufferRow {
 /// What no frame has used for so long is dropped: hosts may take turns with as many depth buffers and masks.
 const KEPT_FRAMES: u64 = 8;
 
-/// A bind group and what it was made of. Looked for in every frame, by reference: nothing is cloned for what is found.
-#[derive(Debug)]
-struct KeptGroup {
-    hash: u64,
-    layout: wgpu::BindGroupLayout,
-    resources: Vec<(u32, Resource)>,
-    group: Used<wgpu::BindGroup>,
-}
-
-/// What a bind group holds at a binding.
-#[derive(Debug)]
-pub(crate) enum Resource {
-    Buffer(wgpu::Buffer, u64, Option<NonZeroU64>),
-    View(wgpu::TextureView),
-    Sampler(wgpu::Sampler),
-}
-
-/// A view and what it is of.
-#[derive(Debug)]
-struct KeptView {
-    texture: wgpu::Texture,
-    part: TexturePart,
-    view: Used<wgpu::TextureView>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-struct TexturePart {
-    format: Option<wgpu::TextureFormat>,
-    dimension: Option<wgpu::TextureViewDimension>,
-    usage: Option<wgpu::TextureUsages>,
-    aspect: wgpu::TextureAspect,
-    mips: (u32, Option<u32>),
-    layers: (u32, Option<u32>),
-}
-
-/// Bytes on their way to buffers.
-#[derive(Debug, Default)]
-struct Uploads {
-    bytes: Vec<u8>,
-    copies: Vec<Copy>,
-}
-
-#[derive(Clone, Debug)]
-struct Copy {
-    to: wgpu::Buffer,
-    to_offset: u64,
-    from: u64,
-    bytes: u64,
-}
-
-/// A buffer that uploads pass through. It is free where nobody but the list holds its ticket: a frame holds it until it
-/// is recorded, and its commands until the queue is done with them or they are dropped.
-#[derive(Debug)]
-struct Staging {
-    buffer: wgpu::Buffer,
-    ticket: Arc<()>,
-}
-
-/// A frame's uploads, ready to be recorded before its passes.
-#[derive(Debug, Default)]
-pub(crate) struct StagedUploads {
-    from: Option<(wgpu::Buffer, Arc<()>)>,
-    copies: Vec<Copy>,
-}
-
-impl StagedUploads {
-    /// Copies every upload to where it belongs. What is said to be `then` is told when the commands are done or dropped.
-    pub(crate) fn record(self, encoder: &mut wgpu::CommandEncoder, then: CommandsEnd) {
-        let ticket = self.from.map(|(buffer, ticket)| {
-            for Copy { to, to_offset, from, bytes } in &self.copies {
-                encoder.copy_buffer_to_buffer(&buffer, *from, to, *to_offset, *bytes);
-            }
-            ticket
-        });
-        encoder.on_submitted_work_done(move || {
-            drop(ticket);
-            then.done();
-        });
-    }
-}
-
 /// What [`Stage::uniform`] makes.
 const UNIFORM: wgpu::BufferUsages = wgpu::BufferUsages::UNIFORM.union(wgpu::BufferUsages::COPY_DST);
 
 /// What [`Stage::storage`] makes.
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE.union(wgpu::BufferUsages::COPY_DST);
-
-/// The least size of a staging buffer: most frames' uploads.
-const LEAST_STAGING_BYTES: u64 = 16 << 10;
 
 impl<'a> Stage<'a> {
     /// A stage for the next frame.
@@ -293,51 +213,6 @@ impl<'a> Stage<'a> {
         keep
     }
 
-    /// A bind group of these parts.
-    pub(crate) fn create_bind_group(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> wgpu::BindGroup {
-        let Keep { frame, hashes, groups, .. } = &mut *self.keep.borrow_mut();
-        let hash = hash_of_group(hashes, descriptor);
-        if let Some(kept) = groups.find_mut(hash, |kept| kept.is_of(descriptor)) {
-            kept.group.frame = *frame;
-            return kept.group.value.clone();
-        }
-        let value = self.gpu.device.create_bind_group(descriptor);
-        let kept = KeptGroup {
-            hash,
-            layout: descriptor.layout.clone(),
-            resources: descriptor.entries.iter().map(|entry| (entry.binding, Resource::of(&entry.resource))).collect(),
-            group: Used { value: value.clone(), frame: *frame },
-        };
-        groups.insert_unique(hash, kept, |kept| kept.hash);
-        value
-    }
-
-    /// A view of a texture.
-    pub(crate) fn create_view(
-        &self,
-        texture: &wgpu::Texture,
-        descriptor: &wgpu::TextureViewDescriptor<'_>,
-    ) -> wgpu::TextureView {
-        let part = TexturePart {
-            format: descriptor.format,
-            dimension: descriptor.dimension,
-            usage: descriptor.usage,
-            aspect: descriptor.aspect,
-            mips: (descriptor.base_mip_level, descriptor.mip_level_count),
-            layers: (descriptor.base_array_layer, descriptor.array_layer_count),
-        };
-        let Keep { frame, hashes, views, .. } = &mut *self.keep.borrow_mut();
-        let hash = hashes.hash_one((texture, &part));
-        if let Some(kept) = views.find_mut(hash, |kept| (&kept.texture, &kept.part) == (texture, &part)) {
-            kept.view.frame = *frame;
-            return kept.view.value.clone();
-        }
-        let value = self.gpu.device.create_view(texture, descriptor);
-        let kept = KeptView { texture: texture.clone(), part, view: Used { value: value.clone(), frame: *frame } };
-        views.insert_unique(hash, kept, |kept| hashes.hash_one((&kept.texture, &kept.part)));
-        value
-    }
-
     /// A uniform buffer of the frame's own that holds `value`: the frame before had it for the same, by label and order.
     pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: &T) -> wgpu::Buffer {
         self.uniform_array(label, std::slice::from_ref(value))
@@ -404,15 +279,6 @@ impl<'a> Stage<'a> {
     }
 }
 
-impl Uploads {
-    /// Takes over another's.
-    fn append(&mut self, other: &mut Self) {
-        let first = self.bytes.len() as u64;
-        self.bytes.append(&mut other.bytes);
-        self.copies.extend(other.copies.drain(..).map(|copy| Copy { from: first + copy.from, ..copy }));
-    }
-}
-
 impl Keep {
     /// Bytes of the frame's own buffers and of those that uploads pass through.
     pub(crate) fn memory_bytes(&self) -> u64 {
@@ -424,90 +290,4 @@ impl Keep {
     pub(crate) fn auto_texels(&self) -> Option<u32> {
         self.auto_texels
     }
-
-    fn stage_uploads(&mut self, gpu: &Gpu) -> StagedUploads {
-        let bytes = self.uploads.bytes.len() as u64;
-        if bytes == 0 {
-            return StagedUploads::default();
-        }
-        let is_free = |staging: &Staging| Arc::strong_count(&staging.ticket) == 1;
-        // What has become too small is made anew, not kept beside it.
-        self.staging.retain(|staging| !is_free(staging) || staging.buffer.size() >= bytes);
-        let place = self.staging.iter().position(is_free).unwrap_or_else(|| {
-            let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("antumbra staging"),
-                size: bytes.max(LEAST_STAGING_BYTES).next_power_of_two(),
-                usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            self.staging.push(Staging { buffer, ticket: Arc::new(()) });
-            self.staging.len() - 1
-        });
-        let Staging { buffer, ticket } = &self.staging[place];
-        gpu.queue.write_buffer(buffer, 0, &self.uploads.bytes);
-        StagedUploads {
-            from: Some((buffer.clone(), Arc::clone(ticket))),
-            copies: std::mem::take(&mut self.uploads.copies),
-        }
-    }
-}
-
-impl KeptGroup {
-    fn is_of(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> bool {
-        self.layout == *descriptor.layout
-            && self.resources.len() == descriptor.entries.len()
-            && self
-                .resources
-                .iter()
-                .zip(descriptor.entries)
-                .all(|((binding, resource), entry)| *binding == entry.binding && resource.is(&entry.resource))
-    }
-}
-
-impl Resource {
-    /// What is bound.
-    pub(crate) fn binding(&self) -> wgpu::BindingResource<'_> {
-        match self {
-            Self::Buffer(buffer, offset, size) => {
-                wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: *offset, size: *size })
-            }
-            Self::View(view) => wgpu::BindingResource::TextureView(view),
-            Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
-        }
-    }
-
-    pub(crate) fn of(bound: &wgpu::BindingResource<'_>) -> Self {
-        match bound {
-            wgpu::BindingResource::Buffer(part) => Self::Buffer(part.buffer.clone(), part.offset, part.size),
-            wgpu::BindingResource::TextureView(view) => Self::View((*view).clone()),
-            wgpu::BindingResource::Sampler(sampler) => Self::Sampler((*sampler).clone()),
-            other => unreachable!("the library binds no {other:?}"),
-        }
-    }
-
-    fn is(&self, bound: &wgpu::BindingResource<'_>) -> bool {
-        match (self, bound) {
-            (Self::Buffer(buffer, offset, size), wgpu::BindingResource::Buffer(part)) => {
-                (buffer, *offset, *size) == (part.buffer, part.offset, part.size)
-            }
-            (Self::View(view), wgpu::BindingResource::TextureView(bound)) => view == *bound,
-            (Self::Sampler(sampler), wgpu::BindingResource::Sampler(bound)) => sampler == *bound,
-            _ => false,
-        }
-    }
-}
-
-/// Of the layout and what is bound, in order.
-fn hash_of_group(hashes: &DefaultHashBuilder, descriptor: &wgpu::BindGroupDescriptor<'_>) -> u64 {
-    let mut hasher = hashes.build_hasher();
-    descriptor.layout.hash(&mut hasher);
-    for entry in descriptor.entries {
-        match &entry.resource {
-            wgpu::BindingResource::Buffer(part) => (part.buffer, part.offset).hash(&mut hasher),
-            wgpu::BindingResource::TextureView(view) => view.hash(&mut hasher),
-            wgpu::BindingResource::Sampler(sampler) => sampler.hash(&mut hasher),
-            other => unreachable!("the library binds no {other:?}"),
-        }
-    }
-    hasher.finish()
 }

@@ -1,0 +1,128 @@
+//! Combinations of moves: sets of steps on different parameters, by what they promise together.
+
+/// Combinations that are measured, by the part of the budget that they may take as predicted.
+const TARGETS: [f64; 3] = [0.97, 0.8, 0.6];
+/// A move gains something where error falls by so much, or time.
+const WORTH: f64 = 0.003;
+const WORTH_SAVING: f64 = 0.08;
+/// Sums of moves that are kept on the way.
+const MOST_SUMS: usize = 48;
+
+/// A step of one parameter, and what came of it.
+#[derive(Clone, Debug)]
+pub(super) struct Move {
+    pub(super) key: &'static str,
+    pub(super) value: String,
+    /// The natural logarithm of the errors' ratio.
+    pub(super) error: f64,
+    /// Parts of the budget.
+    pub(super) load: f64,
+}
+
+/// Moves that are made at once, with what they are predicted to sum up to.
+#[derive(Clone, Debug, Default)]
+struct Sum {
+    error: f64,
+    load: f64,
+    moves: Vec<usize>,
+}
+
+/// Sets of moves on different parameters that promise the least error within parts of the budget, from a configuration that takes
+/// `load` of it; where none keeps it, the one that saves most.
+pub(super) fn combinations(moves: &[Move], load: f64) -> Vec<Vec<Move>> {
+    let mut keys: Vec<&str> = moves.iter().map(|step| step.key).collect();
+    keys.dedup();
+    let mut sums = vec![Sum::default()];
+    for key in keys {
+        // What is lost in the noise of times is no gain.
+        let useful =
+            |(_, step): &(usize, &Move)| step.key == key && (step.error < -WORTH || step.load < -WORTH_SAVING * load);
+        let here: Vec<(usize, &Move)> = moves.iter().enumerate().filter(useful).collect();
+        let with = |sum: &Sum, (i, step): &(usize, &Move)| Sum {
+            error: sum.error + step.error,
+            load: sum.load + step.load,
+            moves: sum.moves.iter().copied().chain([*i]).collect(),
+        };
+        let longer: Vec<Sum> =
+            sums.iter().flat_map(|sum| here.iter().map(|step| with(sum, step)).collect::<Vec<_>>()).collect();
+        sums.extend(longer);
+        sums = front(sums);
+    }
+    let least_error = |within: f64| {
+        let fits = sums.iter().filter(|sum| load + sum.load <= within);
+        fits.min_by(|a, b| a.error.total_cmp(&b.error))
+    };
+    let cheapest = || sums.iter().min_by(|a, b| a.load.total_cmp(&b.load));
+    let mut chosen: Vec<&Sum> = TARGETS.iter().filter_map(|target| least_error(*target)).collect();
+    if chosen.is_empty() {
+        chosen.extend(cheapest());
+    }
+    let mut sets: Vec<Vec<usize>> = chosen.into_iter().map(|sum| sum.moves.clone()).collect();
+    // One move alone has been measured.
+    sets.retain(|set| set.len() > 1);
+    sets.dedup();
+    sets.into_iter().map(|set| set.into_iter().map(|i| moves[i].clone()).collect()).collect()
+}
+
+/// The sums that none beats in both error and load, thinned evenly where they are many.
+fn front(mut sums: Vec<Sum>) -> Vec<Sum> {
+    sums.sort_by(|a, b| a.load.total_cmp(&b.load).then(a.error.total_cmp(&b.error)));
+    let mut least = f64::INFINITY;
+    sums.retain(|sum| {
+        let is_front = sum.error < least;
+        least = least.min(sum.error);
+        is_front
+    });
+    let count = sums.len();
+    if count <= MOST_SUMS {
+        return sums;
+    }
+    (0..MOST_SUMS).map(|i| sums[i * (count - 1) / (MOST_SUMS - 1)].clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(key: &'static str, value: &str, error: f64, load: f64) -> Move {
+        Move { key, value: value.into(), error, load }
+    }
+
+    /// Time saved on what does not matter pays for what does.
+    #[test]
+    fn moves_are_joined_within_the_budget() {
+        let moves = [
+            step("map_size", "512", 0.01, -0.3),
+            step("map_size", "2048", -0.01, 0.6),
+            step("samples", "32", 0.2, -0.2),
+            step("samples", "128", -0.3, 0.25),
+            step("rotate", "false", 0.0, 0.0),
+        ];
+        let sets = combinations(&moves, 0.95);
+        let values = |set: &[Move]| set.iter().map(|step| step.value.clone()).collect::<Vec<_>>();
+        assert_eq!(values(&sets[0]), ["512", "128"]);
+        assert!(sets.iter().all(|set| set.len() > 1));
+        // Beyond what moves can mend, all that saves is taken.
+        assert_eq!(values(&combinations(&moves, 1.5)[0]), ["512", "32"]);
+        assert!(combinations(&[], 0.5).is_empty());
+    }
+
+    /// A saving of time that is noise is not joined to others; one of which the same error is left pays.
+    #[test]
+    fn moves_that_gain_nothing_are_not_joined() {
+        let saving = |part: f64| step("rotate", "false", 0.0, -part * 0.9);
+        let samples = step("samples", "128", -0.3, 0.05);
+        assert!(combinations(&[saving(0.5 * WORTH_SAVING), samples.clone()], 0.9).is_empty());
+        let sets = combinations(&[saving(2.0 * WORTH_SAVING), samples.clone()], 0.9);
+        assert!(sets.iter().any(|set| set.len() == 2), "{sets:?}");
+        let hardly = step("bias_scale", "1.5", -0.5 * WORTH, 0.0);
+        assert!(combinations(&[hardly, samples], 0.9).is_empty());
+    }
+
+    #[test]
+    fn fronts_are_thinned_but_keep_their_ends() {
+        let sum = |i: usize| Sum { error: -(i as f64), load: i as f64, moves: Vec::new() };
+        let thinned = front((0..1000).map(sum).chain([Sum { error: 0.5, load: 3.0, moves: Vec::new() }]).collect());
+        assert_eq!((thinned.len(), thinned[0].load, thinned[MOST_SUMS - 1].load), (MOST_SUMS, 0.0, 999.0));
+    }
+}
