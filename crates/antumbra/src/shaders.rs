@@ -44,9 +44,9 @@ shaders! {
     /// Receivers of a multisampled depth buffer.
     SPLIT_RECEIVERS_DRAW = "receivers/split_receivers/split";
     /// Parts of what a light reaches: the receivers of one.
-    COVER_PICK = "light_partition/pick";
+    LIGHT_PARTITION_PICK = "light_partition/pick";
     /// What a technique gave for one, into the light's mask.
-    COVER_JOIN = "light_partition/join";
+    LIGHT_PARTITION_JOIN = "light_partition/join";
     /// The rasteriser's grid: slanted triangles.
     RASTERISER_DRAW = "gpu/rasteriser/draw";
     /// The rasteriser's grid: how far their depths are off.

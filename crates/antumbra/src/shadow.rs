@@ -227,6 +227,10 @@ impl<T: Technique> Shadow<T> {
             .shadow_distance
             .map(|distance| self.fade.get_or_insert_with(|| Fade::new(stage)).prepare(stage, &of_mask, &distance));
         let is_noisy = are_neighbours && T::is_noisy(&self.params, of_mask.light);
+        if !is_noisy {
+            // It holds a texture of the receivers' size.
+            self.smoothing = None;
+        }
         let smoothing =
             is_noisy.then(|| self.smoothing.get_or_insert_with(|| Smoothing::new(stage)).prepare(stage, &of_mask));
         let of_technique = PreparedFrame { noisy: smoothing.as_ref().map(PreparedSmoothing::noisy), ..of_mask };

@@ -106,7 +106,7 @@ fn lack(spec: &ParamSpec, choice: &str, features: wgpu::Features) -> Option<&'st
     (is_other_count && !has_other_counts).then_some("this device has maps of 1 and 4 samples a texel")
 }
 
-/// One parameter: its control, a way back where it is not at its defaults, and why it was refused.
+/// One parameter: its control, a way back where it is not at its default, and why it was refused.
 fn parameter(
     ui: &mut egui::Ui,
     side: &mut Side,

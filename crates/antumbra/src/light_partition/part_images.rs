@@ -17,13 +17,13 @@ use crate::receivers::{DEPTH_FORMAT, NORMAL_FORMAT};
 use crate::shaders;
 
 bindings! {
-    struct Picked = "receivers of a part", COMPUTE, group 1 of [COVER_PICK] {
+    struct Picked = "receivers of a part", COMPUTE, group 1 of [LIGHT_PARTITION_PICK] {
         0 region: StoragePart,
         1 part_depth: WrittenTexture(DEPTH_FORMAT),
         2 part_normals: WrittenTexture(NORMAL_FORMAT),
     }
 
-    struct Joined = "mask of a part", COMPUTE, group 1 of [COVER_JOIN] {
+    struct Joined = "mask of a part", COMPUTE, group 1 of [LIGHT_PARTITION_JOIN] {
         0 region: StoragePart,
         1 part_mask: TextureArray(texels::FLOAT),
         2 joining: StoragePart,
@@ -91,8 +91,18 @@ impl PartImages {
             gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
         };
         Self {
-            pick: compute_pipeline(gpu, "receivers of a part", shaders::COVER_PICK, &[&inputs.layout, &layouts[0]]),
-            join: compute_pipeline(gpu, "mask of a part", shaders::COVER_JOIN, &[&inputs.layout, &layouts[1]]),
+            pick: compute_pipeline(
+                gpu,
+                "receivers of a part",
+                shaders::LIGHT_PARTITION_PICK,
+                &[&inputs.layout, &layouts[0]],
+            ),
+            join: compute_pipeline(
+                gpu,
+                "mask of a part",
+                shaders::LIGHT_PARTITION_JOIN,
+                &[&inputs.layout, &layouts[1]],
+            ),
             no_normals: one_texel(NORMAL_FORMAT),
             no_depth: one_texel(DEPTH_FORMAT),
             inputs,

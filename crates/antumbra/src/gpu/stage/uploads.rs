@@ -36,7 +36,7 @@ pub(crate) struct StagedUploads {
 }
 
 impl StagedUploads {
-    /// Copies every upload to where it belongs. What is said to be `then` is told when the commands are done or dropped.
+    /// Copies every upload to where it belongs; `then` learns when the commands are done or dropped.
     pub(crate) fn record(self, encoder: &mut wgpu::CommandEncoder, then: CommandsEnd) {
         let ticket = self.from.map(|(buffer, ticket)| {
             for Copy { to, to_offset, from, bytes } in &self.copies {
