@@ -277,8 +277,11 @@ fn count(pos_in_map: vec4f) {
 }
 
 fn collect(pos_in_map: vec4f, fragment: fragments_GatheredFragment) {
-    let place = atomicAdd(&cursors[texel_index(pos_in_map)], 1u);
-    if place < list_view.capacity {
+    let texel = texel_index(pos_in_map);
+    let place = atomicAdd(&cursors[texel], 1u);
+    let is_last = texel + 1u == list_view.map_size.x * list_view.map_size.y;
+    let end = select(links[texel + select(1u, 0u, is_last)], list_view.capacity, is_last);
+    if place < min(end, list_view.capacity) {
         fragments[place] = fragments_pack_gathered(fragment, list_view.colored);
     }
 }

@@ -176,10 +176,12 @@ fn sort_lists(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let texel = id.y * list_sort.map_size.x + id.x;
-    let first = min(select(cursors[max(texel, 1u) - 1u], 0u, texel == 0u), list_sort.capacity);
-    let end = max(min(cursors[texel], list_sort.capacity), first);
+    let is_last = all(id.xy == list_sort.map_size - 1u);
+    let first = min(links[texel], list_sort.capacity);
+    let room_end = select(links[texel + select(1u, 0u, is_last)], list_sort.capacity, is_last);
+    let end = max(min(cursors[texel], min(room_end, list_sort.capacity)), first);
     lists[texel] = vec2u(first, finish_list(first, end - first));
-    if all(id.xy == list_sort.map_size - 1u) {
+    if is_last {
         atomicStore(&counters.fragments, cursors[texel]);
         atomicStore(&counters.end, end);
     }

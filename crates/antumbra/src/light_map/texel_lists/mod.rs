@@ -98,18 +98,29 @@ impl TexelLists {
 
     /// Records the passes that fill the lists: `count`, `scan`, `collect`, `sort`, or `link`, `sort`.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, casters: &[MeshCaster<'_>], prepared: &PreparedLists) {
+        self.record_passes(recorder, [casters, casters], prepared);
+    }
+
+    /// The same, by the casters that are counted and those that are collected or linked.
+    fn record_passes(
+        &self,
+        recorder: &mut Recorder<'_>,
+        [counted, gathered]: [&[MeshCaster<'_>]; 2],
+        prepared: &PreparedLists,
+    ) {
         let Some(storage) = &self.storage else { return };
         recorder.clear_buffer(&storage.cursors);
         recorder.clear_buffer(&storage.counters);
-        let raster = |recorder: &mut Recorder<'_>, pass| {
+        let raster = |recorder: &mut Recorder<'_>, pass, casters: &[MeshCaster<'_>]| {
             self.raster.record(recorder, pass, storage, &prepared.raster_group, casters);
         };
         match storage.options.gather {
-            Gather::Linked => raster(recorder, ("link", Pass::Link)),
+            Gather::Linked => raster(recorder, ("link", Pass::Link), gathered),
             Gather::Arrays => {
-                raster(recorder, ("count", Pass::Count));
+                raster(recorder, ("count", Pass::Count), counted);
                 self.scan.record(recorder, "scan");
-                raster(recorder, ("collect", Pass::Collect));
+                storage.record_begins(recorder);
+                raster(recorder, ("collect", Pass::Collect), gathered);
             }
         }
         prepared.sort.record(recorder);

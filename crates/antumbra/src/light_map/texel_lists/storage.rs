@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
+use glam::UVec2;
+
 use super::FRAGMENT_BYTES;
 use super::options::{Gather, ListOptions};
-use crate::gpu::{Gpu, Lease, NoDepth, Scratch};
+use crate::gpu::{Gpu, Lease, NoDepth, Recorder, Scratch};
 
 /// The buffers, for their sizes.
 #[derive(Debug)]
@@ -15,8 +17,9 @@ pub(super) struct Storage {
     pub(super) fragments: Arc<wgpu::Buffer>,
     pub(super) lists: Arc<wgpu::Buffer>,
     pub(super) counters: Arc<wgpu::Buffer>,
-    /// Linked fragments and their links; of the least size for arrays.
+    /// Linked fragments; of the least size for arrays.
     pub(super) nodes: Arc<wgpu::Buffer>,
+    /// Their links; of arrays where each texel's list begins.
     pub(super) links: Arc<wgpu::Buffer>,
     /// Of one sample, and of four.
     pub(super) no_depth: NoDepth,
@@ -36,7 +39,7 @@ impl Storage {
             (u64::from(options.list_count) * FRAGMENT_BYTES * 5 / 4).next_multiple_of(FRAGMENT_BYTES).min(most_bytes),
             8,
             node_count * FRAGMENT_BYTES,
-            node_count * 4,
+            if options.gather == Gather::Linked { node_count * 4 } else { texels * 4 },
         ];
         let lease = Arc::new(Lease::new(&gpu.device, bytes.iter().sum::<u64>() + options.owners_bytes));
         // Lights share buffers of a few sizes.
@@ -65,6 +68,12 @@ impl Storage {
             no_covered_depth: (options.samples > 1).then(|| no_depth(options.samples)),
             lease,
         }
+    }
+
+    /// Records that lists begin where the scan of their counts says, before cursors move on from there.
+    pub(super) fn record_begins(&self, recorder: &mut Recorder<'_>) {
+        let UVec2 { x, y } = self.options.map_size;
+        recorder.encoder().copy_buffer_to_buffer(&self.cursors, 0, &self.links, 0, u64::from(x * y) * 4);
     }
 
     /// Whether other options can use these buffers.

@@ -211,6 +211,34 @@ fn gpu_equals_twin_fragment_for_fragment() {
     }
 }
 
+/// Where the two passes over the geometry see other fragments, as compilers may make them, each list keeps to its own place.
+#[test]
+fn what_was_not_counted_is_in_no_list() {
+    let Some(gpu) = gpu() else { return };
+    let (_, light, meshes) = scenes().swap_remove(0);
+    let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
+    let casters: Vec<_> = meshes.iter().zip(&on_gpu).map(|(mesh, on_gpu)| mesh.caster(on_gpu)).collect();
+    let options = options(Gather::Arrays, false);
+    let lists_of = |counted: &[MeshCaster<'_>], collected: &[MeshCaster<'_>]| {
+        let mut block = TexelLists::new(gpu);
+        let prepared = block.prepare(&Stage::at_once(gpu), &view_of(&light, &meshes), &casters, &options);
+        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        block.record_passes(&mut Recorder::new(&mut encoder, None), [counted, collected], &prepared);
+        gpu.queue().submit([encoder.finish()]);
+        let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.fragments);
+        let lists: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists);
+        lists.iter().map(|list| unpack(&fragments, *list, false)).collect::<Vec<_>>()
+    };
+    // The ground comes first, so that it is what there is room for.
+    let ground = lists_of(&casters[..1], &casters[..1]);
+    assert!(ground.iter().filter(|list| !list.is_empty()).count() > 1000);
+    for (counted, collected) in [(1, 3), (3, 1)] {
+        let got = lists_of(&casters[..counted], &casters[..collected]);
+        let differing = ground.iter().zip(&got).filter(|(want, got)| !agree(want, got, 0.0)).count();
+        assert_eq!(differing, 0, "{counted} of {} casters counted, {collected} collected", casters.len());
+    }
+}
+
 #[test]
 fn twin_s_coverage_is_the_area_s() {
     let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.05 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
