@@ -137,7 +137,7 @@ fn join(first: u32, count: u32) -> u32 {
     var n = 0u;
     for (var i = 0u; i < count; i++) {
         let next = fragments_unpack_fragment(fragments[first + i], COLORED);
-        if n > 0u && !(next.z_m > limit) {
+        if n > 0u && next.z_m <= limit {
             z_sum += next.z_m;
             n++;
             joined.opacity = fragments_accumulate(ACCUMULATION, joined.opacity, next.opacity, next.overlap);

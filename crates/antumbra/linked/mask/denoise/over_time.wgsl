@@ -129,7 +129,7 @@ fn before(pixel: vec2u, layer: u32, receiver: inputs_Receiver, surface: surface_
         return NOTHING;
     }
     let at = pixel_before(pixel, receiver.pos_in_world) - 0.5;
-    if !(all(at > vec2f(-1.0)) && all(at < vec2f(inputs_receiver_view.size_px))) {
+    if !finite_all_finite(vec3f(at, 0.0)) || any(at <= vec2f(-1.0)) || any(at >= vec2f(inputs_receiver_view.size_px)) {
         return NOTHING;
     }
     let low = floor(at);
@@ -265,6 +265,16 @@ fn tile_index_of(place: tile_Place, away: vec2i, reach: i32) -> i32 {
     return place.in_fetched + away.y * tile_side_of(reach) + away.x;
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
+fn finite_all_finite(v: vec3f) -> bool {
+    return finite_is_finite(v.x) && finite_is_finite(v.y) && finite_is_finite(v.z);
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -357,7 +367,7 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     }
     let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
+    if length_squared <= 0.0 || !finite_is_finite(length_squared) {
         return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);

@@ -15,16 +15,6 @@ var positions: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(5)
 var normals: texture_storage_2d<rgba32float, write>;
 
-const EXPONENT = 2139095040u;
-
-fn is_finite(word: u32) -> bool {
-    return (word & EXPONENT) != EXPONENT;
-}
-
-fn are_finite(words: vec3u) -> bool {
-    return is_finite(words.x) && is_finite(words.y) && is_finite(words.z);
-}
-
 const UNIT_ROUNDING = 4.76837158203125e-7;
 
 fn unit(v: vec3f) -> vec3f {
@@ -41,16 +31,16 @@ fn normal_of(point: u32) -> vec3f {
         return vec3f();
     }
     let at = points_points.first_normal + points_points.normal_stride * point;
-    let words = vec3u(normal_words[at], normal_words[at + 1u], normal_words[at + 2u]);
-    return select(vec3f(), unit(bitcast<vec3f>(words)), are_finite(words));
+    let normal = bitcast<vec3f>(vec3u(normal_words[at], normal_words[at + 1u], normal_words[at + 2u]));
+    return select(vec3f(), unit(normal), finite_all_finite(normal));
 }
 
 fn width_of(point: u32) -> f32 {
     if points_points.has_widths == 0u {
         return points_points.width_m;
     }
-    let word = width_words[points_points.first_width + points_points.width_stride * point];
-    return select(0.0, max(bitcast<f32>(word), 0.0), is_finite(word));
+    let width_m = bitcast<f32>(width_words[points_points.first_width + points_points.width_stride * point]);
+    return select(0.0, max(width_m, 0.0), finite_is_finite(width_m));
 }
 
 @compute @workgroup_size(8, 8)
@@ -60,14 +50,24 @@ fn read_points(@builtin(global_invocation_id) id: vec3u) {
     var normal = vec4f();
     if point < points_points.count {
         let at = points_points.first_position + points_points.position_stride * point;
-        let words = vec3u(position_words[at], position_words[at + 1u], position_words[at + 2u]);
-        if are_finite(words) {
-            place = vec4f(bitcast<vec3f>(words) - points_points.anchor, width_of(point));
+        let position = bitcast<vec3f>(vec3u(position_words[at], position_words[at + 1u], position_words[at + 2u]));
+        if finite_all_finite(position) {
+            place = vec4f(position - points_points.anchor, width_of(point));
             normal = vec4f(normal_of(point), 1.0);
         }
     }
     textureStore(positions, id.xy, place);
     textureStore(normals, id.xy, normal);
+}
+
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
+fn finite_all_finite(v: vec3f) -> bool {
+    return finite_is_finite(v.x) && finite_is_finite(v.y) && finite_is_finite(v.z);
 }
 
 struct points_PointLayout {

@@ -268,6 +268,12 @@ fn space_z_of_depth(view: space_LightViewGpu, depth: f32) -> f32 {
     return select(scaled / view.depth_scale, view.depth_scale / divisor, view.perspective == 1u);
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
 fn levels_level_size(map_size: vec2u, level: u32) -> vec2u {
     return map_size >> vec2u(level);
 }
@@ -380,7 +386,7 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     }
     let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
+    if length_squared <= 0.0 || !finite_is_finite(length_squared) {
         return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);

@@ -136,7 +136,7 @@ fn merge(texel: vec2u, local: u32, in_place: bool, first: u32) -> u32 {
     var count = 0u;
     for (; count < most; count++) {
         let nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
-        if !(nearest < min(filter_step.z_limit_m, NONE)) {
+        if nearest >= min(filter_step.z_limit_m, NONE) {
             break;
         }
         let limit = nearest + abs(filter_step.epsilon_slope * nearest) + filter_step.epsilon_m;

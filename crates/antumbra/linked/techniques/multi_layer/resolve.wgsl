@@ -421,6 +421,12 @@ fn missing_missing_pixel(i: u32) -> vec2u {
     return vec2u(packed & 65535u, packed >> 16u);
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
 fn hues_hue_of(number: u32) -> vec3f {
     let hue = fract(f32(number) * 0.381966);
     return 0.25 + 0.75 * saturate(abs(fract(hue + vec3f(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0);
@@ -551,7 +557,7 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     }
     let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
+    if length_squared <= 0.0 || !finite_is_finite(length_squared) {
         return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);
@@ -737,7 +743,7 @@ fn level_level_shares(lookup: filter_size_Lookup, plane: space_ReceiverPlane, ru
     let t = pos - base;
     let weight = vec4f((1.0 - t.x) * (1.0 - t.y), t.x * (1.0 - t.y), (1.0 - t.x) * t.y, t.x * t.y);
     var nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
-    if !(nearest < hat.z_far) {
+    if nearest >= hat.z_far {
         return shares;
     }
     let most = min(dot(quad.end - quad.first, vec4u(1u)), arrayLength(&lists_fragments));
@@ -760,7 +766,7 @@ fn level_level_shares(lookup: filter_size_Lookup, plane: space_ReceiverPlane, ru
         nearest = min(min(a.z_m, b.z_m), min(c.z_m, d.z_m));
         continuing {
             surfaces++;
-            break if !(nearest < hat.z_far) | (surfaces >= most);
+            break if (nearest >= hat.z_far) | (surfaces >= most);
         }
     }
     return shares;
@@ -785,7 +791,7 @@ fn level_level_shares_apart(lookup: filter_size_Lookup, plane: space_ReceiverPla
         for (var place = first[k]; place < end; place++) {
             let fragment = lists_fragments[place];
             let z_m = bitcast<f32>(fragment.x);
-            if !(z_m < z_end[k]) {
+            if z_m >= z_end[k] {
                 break;
             }
             let surface = occluders_Occluder(fragments_unpack_opacity(fragment.y, settings_COLORED), vec2f());
@@ -1137,7 +1143,7 @@ fn receiver_plane_plane_z_at(plane: space_ReceiverPlane, rung: settings_MultiLay
 }
 
 fn receiver_plane_own_opacity(lookup: filter_size_Lookup, plane: space_ReceiverPlane, rung: settings_MultiLayerRung, texel: vec2f, from_m: f32, to_m: f32) -> f32 {
-    if !(lookup.nearness_to_plane * rung.merged > 0.0) {
+    if lookup.nearness_to_plane * rung.merged <= 0.0 {
         return 0.0;
     }
     let place = (texel + rung.offset) * rung.spacing / map_light_view.map_size;

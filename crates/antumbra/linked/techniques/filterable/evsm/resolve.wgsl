@@ -213,6 +213,12 @@ fn variance_chebyshev(mean: f32, variance: f32, t: f32) -> f32 {
     return select(variance / (variance + beyond * beyond), 1.0, variance + beyond * beyond == 0.0);
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
 fn levels_level_size(map_size: vec2u, level: u32) -> vec2u {
     return map_size >> vec2u(level);
 }
@@ -361,7 +367,7 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     }
     let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
+    if length_squared <= 0.0 || !finite_is_finite(length_squared) {
         return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);

@@ -314,6 +314,12 @@ fn variance_bounded_visibility(filtered: vec2f, t: f32, least_variance: f32) -> 
     return saturate(mean + (mean - mean * mean - variance) / t);
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
 fn hues_hue_of(number: u32) -> vec3f {
     let hue = fract(f32(number) * 0.381966);
     return 0.25 + 0.75 * saturate(abs(fract(hue + vec3f(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0);
@@ -483,7 +489,7 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     }
     let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
+    if length_squared <= 0.0 || !finite_is_finite(length_squared) {
         return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);

@@ -215,6 +215,12 @@ fn variance_reduce_bleeding(visibility: f32, amount: f32) -> f32 {
     return saturate((visibility - amount) / (1.0 - amount));
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
 fn levels_level_size(map_size: vec2u, level: u32) -> vec2u {
     return map_size >> vec2u(level);
 }
@@ -363,7 +369,7 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     }
     let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
+    if length_squared <= 0.0 || !finite_is_finite(length_squared) {
         return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);

@@ -244,7 +244,7 @@ fn splat_scatter_point(m: mat4x4f, map: u32, pos: vec2f, depth: f32) {
     if !splat_IS_AFFINE {
         p = h.xyz / h.w;
     }
-    if h.w <= 0.0 || any(p.xy < vec2f(0.0)) || any(p.xy >= vec2f(size)) || !(p.z > 0.0) {
+    if h.w <= 0.0 || any(p.xy < vec2f(0.0)) || any(p.xy >= vec2f(size)) || p.z <= 0.0 {
         return;
     }
     let texel = floor(p.xy);

@@ -12,6 +12,12 @@ fn gather(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) wor
     source_items[2u * item + 1u] = vec4f(box.high, 0.0);
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
 @group(0) @binding(2)
 var<storage, read_write> source_items: array<vec4f>;
 
@@ -52,7 +58,8 @@ fn source_box_of(corners: source_Corners) -> nodes_Box {
     let low = min(corners.a, min(corners.b, corners.c));
     let high = max(corners.a, max(corners.b, corners.c));
     let sums = abs(corners.a) + abs(corners.b) + abs(corners.c);
-    if !(sums.x + sums.y + sums.z < nodes_NOTHING) {
+    let sum = sums.x + sums.y + sums.z;
+    if sum >= nodes_NOTHING || !finite_is_finite(sum) {
         return nodes_empty_box();
     }
     return nodes_Box(low, high);

@@ -62,7 +62,8 @@ fn world_box(box: nodes_Box, world_from_object: mat4x4f) -> nodes_Box {
     let half = 0.5 * (box.high - box.low);
     let across = abs(world_from_object[0].xyz) * half.x + abs(world_from_object[1].xyz) * half.y + abs(world_from_object[2].xyz) * half.z;
     let sums = abs(middle) + across;
-    if !(sums.x + sums.y + sums.z < nodes_NOTHING) {
+    let sum = sums.x + sums.y + sums.z;
+    if sum >= nodes_NOTHING || !finite_is_finite(sum) {
         return nodes_empty_box();
     }
     return nodes_Box(middle - across, middle + across);
@@ -105,6 +106,12 @@ fn list_instances(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
 fn anchored_anchored(world_from_object: mat4x4f, anchor_in_world: vec3f) -> mat4x4f {
     let place = world_from_object[3];
     return mat4x4f(world_from_object[0], world_from_object[1], world_from_object[2], vec4f(place.xyz - anchor_in_world, place.w));
+}
+
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
 }
 
 const instance_INSTANCE_VECTORS: u32 = 7;

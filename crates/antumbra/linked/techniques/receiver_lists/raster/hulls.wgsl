@@ -36,7 +36,7 @@ fn silhouette_corner(v: vec3f, corner: u32) -> vec4f {
         y[i] = dot(ellipsoid[1u + i].xyz, from_centre) / dot(ellipsoid[1u + i].xyz, ellipsoid[1u + i].xyz);
     }
     let squared = dot(y, y);
-    if !(squared > NEAREST_SQUARED) {
+    if squared <= NEAREST_SQUARED {
         return vec4f();
     }
     let least = select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(y.x) > abs(y.y));

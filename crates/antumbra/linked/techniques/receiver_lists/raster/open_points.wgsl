@@ -27,6 +27,12 @@ fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
 const depth_error_ROUNDING = 4.76837158203125e-7;
 
 fn depth_error_displacement_by_depth(clip_z_row: vec4f, clip_w_row: vec4f, pos_in_world: vec3f, along: vec3f) -> vec3f {
@@ -145,7 +151,7 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     }
     let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
+    if length_squared <= 0.0 || !finite_is_finite(length_squared) {
         return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);

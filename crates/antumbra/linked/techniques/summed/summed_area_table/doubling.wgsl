@@ -34,7 +34,7 @@ fn tile_side() -> u32 {
     }
     var log2 = 0u;
     for (; log2 + 1u < arrayLength(&largest); log2++) {
-        if !(bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
+        if overflow_overflows(atomicLoad(&largest[log2 + 1u])) {
             break;
         }
     }
@@ -64,4 +64,10 @@ fn count_late() {
     late_dispatch[0] = groups.x;
     late_dispatch[1] = groups.y;
     late_dispatch[2] = 1u;
+}
+
+const overflow_BITS_OF_TWO_TO_32 = 1333788672u;
+
+fn overflow_overflows(largest_sum: u32) -> bool {
+    return largest_sum >= overflow_BITS_OF_TWO_TO_32;
 }

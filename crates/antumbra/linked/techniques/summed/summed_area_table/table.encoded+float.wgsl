@@ -50,7 +50,7 @@ fn tile_side() -> u32 {
     }
     var log2 = 0u;
     for (; log2 + 1u < arrayLength(&largest); log2++) {
-        if !(bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
+        if overflow_overflows(atomicLoad(&largest[log2 + 1u])) {
             break;
         }
     }
@@ -715,6 +715,12 @@ fn source_begin_values(size: vec2u, origin: vec2u, region: u32, side: u32, t: u3
 
 fn source_value_at(texel: vec2u) -> vec4f {
     return encode_encode(source_values_range, map_unwarped_texel(vec2i(texel)));
+}
+
+const overflow_BITS_OF_TWO_TO_32 = 1333788672u;
+
+fn overflow_overflows(largest_sum: u32) -> bool {
+    return largest_sum >= overflow_BITS_OF_TWO_TO_32;
 }
 
 alias tile_basis_TilePlane = vec4f;

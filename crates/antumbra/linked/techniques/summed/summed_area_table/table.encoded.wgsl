@@ -50,7 +50,7 @@ fn tile_side() -> u32 {
     }
     var log2 = 0u;
     for (; log2 + 1u < arrayLength(&largest); log2++) {
-        if !(bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
+        if overflow_overflows(atomicLoad(&largest[log2 + 1u])) {
             break;
         }
     }
@@ -726,6 +726,12 @@ fn source_value_at(texel: vec2u) -> vec4u {
         value = encode_encode(source_values_range, stored);
     }
     return vec4u(round(saturate(value) * uniform_soft.value_scale));
+}
+
+const overflow_BITS_OF_TWO_TO_32 = 1333788672u;
+
+fn overflow_overflows(largest_sum: u32) -> bool {
+    return largest_sum >= overflow_BITS_OF_TWO_TO_32;
 }
 
 alias tile_basis_TilePlane = vec4f;

@@ -53,7 +53,7 @@ fn tile_side() -> u32 {
     }
     var log2 = 0u;
     for (; log2 + 1u < arrayLength(&largest); log2++) {
-        if !(bitcast<f32>(atomicLoad(&largest[log2 + 1u])) < 4294967296.0) {
+        if overflow_overflows(atomicLoad(&largest[log2 + 1u])) {
             break;
         }
     }
@@ -347,4 +347,10 @@ fn sum_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_inde
             }
         }
     }
+}
+
+const overflow_BITS_OF_TWO_TO_32 = 1333788672u;
+
+fn overflow_overflows(largest_sum: u32) -> bool {
+    return largest_sum >= overflow_BITS_OF_TWO_TO_32;
 }

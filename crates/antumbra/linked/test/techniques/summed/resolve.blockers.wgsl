@@ -735,6 +735,12 @@ fn variance_blocker_depth_of_sums(mean: f32, lit_sum: f32, t: f32, visibility: f
     return clamp((mean - lit_sum) / blocked, 0.0, t);
 }
 
+const finite_EXPONENT_BITS = 2139095040u;
+
+fn finite_is_finite(x: f32) -> bool {
+    return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
+}
+
 struct inputs_ReceiverView {
     view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
@@ -859,7 +865,7 @@ fn inputs_geometric_normal(pixel: vec2u, pos_in_world: vec3f, depth: f32) -> vec
     }
     let to_camera = -inputs_camera_ray(pos_in_world);
     let length_squared = dot(normal, normal);
-    if !(length_squared > 0.0) {
+    if length_squared <= 0.0 || !finite_is_finite(length_squared) {
         return normalize(to_camera);
     }
     normal *= inverseSqrt(length_squared);
@@ -1322,7 +1328,7 @@ fn kernel_wide_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -
         }
         continuing {
             j++;
-            break if j >= pieces_MOST_PIECES || !(rows.at < high);
+            break if j >= pieces_MOST_PIECES || rows.at >= high;
         }
     }
     return sum.x / max(sum.y, 1e-12);
@@ -1343,7 +1349,7 @@ fn kernel_row_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y
         columns = pieces_cuts_after(columns, end, high);
         continuing {
             i++;
-            break if i >= pieces_MOST_PIECES || !(columns.at < high);
+            break if i >= pieces_MOST_PIECES || columns.at >= high;
         }
     }
     return sum;
@@ -1775,13 +1781,13 @@ fn search_window_blockers(search: search_Search, receiver: compared_Compared, k:
             columns = pieces_cuts_after(columns, end, high.x);
             continuing {
                 i++;
-                break if i >= pieces_MOST_PIECES || !(columns.at < high.x);
+                break if i >= pieces_MOST_PIECES || columns.at >= high.x;
             }
         }
         rows = pieces_cuts_after(rows, row_high, high.y);
         continuing {
             j++;
-            break if j >= pieces_MOST_PIECES || !(rows.at < high.y);
+            break if j >= pieces_MOST_PIECES || rows.at >= high.y;
         }
     }
     return sum / (4.0 * half.x * half.y);
@@ -1822,13 +1828,19 @@ fn search_search_blockers(compared: compared_Compared) -> vec2f {
             sum = search_search_tables(search, compared);
         }
         mean_g = search_g_of_mean(compared, sum.y, sum.x);
-        if !uniform_HAS_SECOND_LOOK || !(sum.x > 0.0) || !(mean_g < search_MUCH_NEARER * search.g) {
+        if !uniform_HAS_SECOND_LOOK || sum.x <= 0.0 || mean_g >= search_MUCH_NEARER * search.g {
             break;
         }
         search.window_g = mean_g;
     }
     search_found_blockers = vec3f(mean_g, search.g, sum.x);
     return vec2f(mean_g, sum.x / f32(uniform_soft.search_scales));
+}
+
+const overflow_BITS_OF_TWO_TO_32 = 1333788672u;
+
+fn overflow_overflows(largest_sum: u32) -> bool {
+    return largest_sum >= overflow_BITS_OF_TWO_TO_32;
 }
 
 alias sums_Sum = vec4u;
@@ -1861,7 +1873,7 @@ fn sums_chosen_tile_log2() -> u32 {
     const BLOCK_LOG2 = 4u;
     var log2 = 0u;
     for (; log2 + 1u < arrayLength(&sums_largest); log2++) {
-        if !(bitcast<f32>(sums_largest[log2 + 1u]) < 4294967296.0) {
+        if overflow_overflows(sums_largest[log2 + 1u]) {
             break;
         }
     }
