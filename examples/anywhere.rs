@@ -10,7 +10,7 @@
 
 use antumbra::light::{Aabb, Light, LightShape};
 use antumbra::{
-    Casters, Gpu, MaskChannels, MeshCaster, Opacity, PointBuffer, PointFrame, PointReceivers, Recorder, TechniqueKind,
+    Casters, Gpu, MaskChannels, MeshCaster, PointBuffer, PointFrame, PointReceivers, Recorder, TechniqueKind,
 };
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
@@ -67,19 +67,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The light, what casts, the points, and a buffer for an `f32` of each.
     let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) }; // shadows
     let light = Light::new(shape, Vec3::new(0.5, 4.5, 0.5), Vec3::ZERO); // shadows
-    let casters = [MeshCaster {
-        positions: &position_buffer,
-        indices: &index_buffer,
-        first_triangle: 0,
-        index_count: indices.len() as u32,
-        instances: &instance_buffer,
-        first_instance: 0,
-        instance_count: 1,
-        closed: true,
-        opacity: Opacity::Opaque,
-        bounds: Aabb::of(positions.iter().copied()),
-        version: None,
-    }]; // shadows
+    let mesh = MeshCaster::new(&position_buffer, &index_buffer, indices.len() as u32, &instance_buffer)
+        .with_bounds(Aabb::of(positions.iter().copied()))
+        .with_closed(true); // shadows
+    let casters = [mesh]; // shadows
     let bytes = 4 * points.len();
     let visibilities = buffer("visibilities", bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC); // shadows
     let bounds = Aabb { min: least, max: most }; // shadows

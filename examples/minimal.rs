@@ -8,7 +8,7 @@
 //! ```
 
 use antumbra::light::{Aabb, Light, LightShape};
-use antumbra::{Casters, DepthConvention, Frame, Gpu, Mask, MeshCaster, Opacity, Receivers, Recorder, TechniqueKind};
+use antumbra::{Camera, Casters, DepthConvention, Frame, Gpu, Mask, MeshCaster, Receivers, Recorder, TechniqueKind};
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
@@ -108,34 +108,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The light, what casts, what receives: all that the library asks for.
     let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) }; // shadows
     let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO); // shadows
-    let casters = [MeshCaster {
-        positions: &position_buffer,
-        indices: &index_buffer,
-        first_triangle: 0,
-        index_count: indices.len() as u32,
-        instances: &instance_buffer,
-        first_instance: 0,
-        instance_count: 1,
-        closed: true,
-        opacity: Opacity::Opaque,
-        bounds: Aabb::of(positions.iter().copied()),
-        version: None,
-    }]; // shadows
+    let mesh = MeshCaster::new(&position_buffer, &index_buffer, indices.len() as u32, &instance_buffer)
+        .with_bounds(Aabb::of(positions.iter().copied()))
+        .with_closed(true); // shadows
+    let casters = [mesh]; // shadows
     let mask = Mask::new(&device, SIZE); // shadows
-    let receivers = Receivers {
-        size_px: SIZE,
-        origin_px: UVec2::ZERO,
-        depth: &depth_view,
-        depth_convention: DepthConvention::Reversed,
-        view_from_world,
-        clip_from_view,
-        normals: None,
-        bounds: None,
-        hull: &[],
-        seen: &[],
-        shadow_distance: None,
-        version: None,
-    }; // shadows
+    let camera = Camera { view_from_world, clip_from_view, depth_convention: DepthConvention::Reversed }; // shadows
+    let receivers = Receivers::new(&depth_view, SIZE, camera); // shadows
     let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
     let gpu = Gpu::new(&device, &queue); // shadows
     let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // shadows

@@ -86,20 +86,16 @@ struct Picture {
 
 impl ViewFrame<'_> {
     fn receivers<'a>(&'a self, picture: &'a Picture, bounds: Option<Aabb>) -> Receivers<'a> {
-        Receivers {
-            size_px: self.size_px,
-            origin_px: picture.origin_px,
-            depth: &picture.depth,
-            depth_convention: DepthConvention::Reversed,
+        let camera = antumbra::Camera {
             view_from_world: self.view_from_world,
             clip_from_view: self.clip_from_view,
-            normals: picture.normals.as_ref(),
-            bounds,
-            hull: &[],
-            seen: self.seen,
-            shadow_distance: None,
-            version: None,
-        }
+            depth_convention: DepthConvention::Reversed,
+        };
+        Receivers::new(&picture.depth, self.size_px, camera)
+            .with_origin_px(picture.origin_px)
+            .with_normals(picture.normals.as_ref())
+            .with_bounds(bounds)
+            .with_seen(self.seen)
     }
 }
 

@@ -8,8 +8,8 @@ use antumbra::casters::{
 };
 use antumbra::light::{Aabb, Light, LightShape};
 use antumbra::{
-    AnyShadow, Casters, DepthConvention, Error, Frame, Gpu, Mask, MaskChannels, Receivers, Recorder, TechniqueKind,
-    WarmUp,
+    AnyShadow, Camera, Casters, DepthConvention, Error, Frame, Gpu, Mask, MaskChannels, Receivers, Recorder,
+    TechniqueKind, WarmUp,
 };
 use glam::{Affine2, Mat4, UVec2};
 
@@ -122,20 +122,15 @@ impl Shadows {
         recorder: &mut Recorder<'_>,
     ) -> Result<(), Error> {
         for (light, (shadow, mask)) in lights.iter().zip(&mut self.views[view].of_lights) {
-            let receivers = Receivers {
-                size_px: mask.size_px(),
-                origin_px: seen.origin_px,
-                depth: seen.depth,
-                depth_convention: DepthConvention::Standard,
+            let camera = Camera {
                 view_from_world: seen.view_from_world,
                 clip_from_view: seen.clip_from_view,
-                normals: Some(seen.normals),
-                bounds: None,
-                hull: &[],
-                seen: &[],
-                shadow_distance: None,
-                version: None, // something moves in every frame
+                depth_convention: DepthConvention::Standard,
             };
+            // Without a version: something moves in every frame.
+            let receivers = Receivers::new(seen.depth, mask.size_px(), camera)
+                .with_origin_px(seen.origin_px)
+                .with_normals(seen.normals);
             let casters = Casters::Set { set: &self.casters, layers: u32::MAX };
             shadow.prepare(&Frame { light, casters, receivers, mask })?.record(recorder);
         }
@@ -158,10 +153,10 @@ impl ViewShadows {
             view_formats: &[],
         });
         let of_light = |(light, layer)| {
-            let mask = Mask::of_layers(&masks, layer, MaskChannels::One);
-            shadow_of(gpu, light).map(|shadow| (shadow, mask))
+            let mask = Mask::of_layers(&masks, layer, MaskChannels::One)?;
+            Ok((shadow_of(gpu, light)?, mask))
         };
-        let of_lights = lights.iter().zip(0..).map(of_light).collect::<Result<Vec<_>, _>>()?;
+        let of_lights = lights.iter().zip(0..).map(of_light).collect::<Result<Vec<_>, Error>>()?;
         Ok(Self { masks, of_lights })
     }
 }

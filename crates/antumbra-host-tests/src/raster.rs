@@ -171,24 +171,16 @@ impl Picture {
 
     /// The receivers of the picture: with normals, and without anything that a host may leave out.
     pub fn receivers(&self) -> Receivers<'_> {
-        Receivers {
-            size_px: self.camera.size_px,
-            origin_px: UVec2::ZERO,
-            depth: &self.depth_view,
+        let camera = antumbra::Camera {
+            view_from_world: self.camera.view_from_world(),
+            clip_from_view: self.camera.clip_from_view(),
             depth_convention: if self.camera.is_reversed {
                 DepthConvention::Reversed
             } else {
                 DepthConvention::Standard
             },
-            view_from_world: self.camera.view_from_world(),
-            clip_from_view: self.camera.clip_from_view(),
-            normals: Some(&self.normals_view),
-            bounds: None,
-            hull: &[],
-            seen: &[],
-            shadow_distance: None,
-            version: None,
-        }
+        };
+        Receivers::new(&self.depth_view, self.camera.size_px, camera).with_normals(&self.normals_view)
     }
 }
 

@@ -158,7 +158,9 @@ impl Street {
     }
 
     fn receivers(&self) -> Receivers<'_> {
-        Receivers { view_from_world: self.view_from_world, ..self.images.receivers() }
+        let mut receivers = self.images.receivers();
+        receivers.view_from_world = self.view_from_world;
+        receivers
     }
 }
 

@@ -94,9 +94,9 @@ pub use antumbra_light as light;
 pub use antumbra_light::ShadowDistance;
 pub use casters::CasterSet;
 pub use contract::{
-    Denoise, DepthConvention, DepthMapCaster, DrawnLists, DrawnMap, Error, Mask, MaskChannels, MaskPlace, MeshCaster,
-    MeshVersion, Opacity, Overflow, PointBuffer, PointReceivers, PointWidths, Quality, Receivers, SurfaceCoverage,
-    SurfaceTexture,
+    Camera, Denoise, DepthConvention, DepthMapCaster, DrawnLists, DrawnMap, Error, Mask, MaskChannels, MaskPlace,
+    MeshCaster, MeshVersion, Opacity, Overflow, PointBuffer, PointReceivers, PointWidths, Quality, Receivers,
+    SurfaceCoverage, SurfaceTexture,
 };
 #[doc(hidden)]
 pub use gpu::programs;
@@ -108,6 +108,8 @@ pub use receivers::split_receivers::SplitReceivers;
 pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp, WarmUpSteps};
 pub use technique_kind::{TechniqueFacts, TechniqueKind};
 pub use techniques::Technique;
+/// Crates whose types appear in this one's interface.
+pub use {glam, wgpu};
 
 /// The linked shaders, embedded.
 pub(crate) mod shaders {

@@ -27,6 +27,7 @@ use crate::techniques::single_map::{
 };
 #[cfg(feature = "summed")]
 use crate::techniques::summed::{cssm::Cssm, essm::Essm, evssm::Evssm, mssm::Mssm, savsm::Savsm, vssm::Vssm};
+use crate::techniques::technique::Listed;
 
 /// Facts for choosing a technique. Tables of the documentation, the command line's help and this page are generated from them.
 /// Texts are Markdown without a full stop, for table cells.
@@ -98,6 +99,8 @@ macro_rules! techniques {
             is_same(<$variant as Technique>::NAME, $name),
             concat!("`", $name, "` is listed by another name than its own, `Technique::NAME`")
         ); )+
+
+        $( #[cfg(feature = $family)] impl Listed for $variant {} )+
 
         impl TechniqueKind {
             /// All techniques, in the order of the documentation.

@@ -3,8 +3,8 @@
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::light::{Light, LightShape};
 use antumbra::{
-    Casters, Denoise, DepthConvention, DepthMapCaster, Error, Frame, Gpu, Mask, MaskChannels, Quality, Receivers,
-    Recorder, SplitReceivers, TechniqueKind, WarmUp,
+    Camera, Casters, Denoise, DepthConvention, DepthMapCaster, Error, Frame, Gpu, Mask, MaskChannels, Quality,
+    Receivers, Recorder, SplitReceivers, TechniqueKind, WarmUp,
 };
 use antumbra_render::gpu_scene::GpuScene;
 use antumbra_render::receivers::{ReceiverImages, ReceiverPass};
@@ -161,20 +161,13 @@ impl<'a> Hosts<'a> {
     }
 
     fn receivers(&self) -> Receivers<'_> {
-        Receivers {
-            size_px: Self::SIZE_PX,
-            origin_px: UVec2::ZERO,
-            depth: &self.depth,
-            depth_convention: DepthConvention::Reversed,
+        let camera = Camera {
             view_from_world: Mat4::from_translation(Vec3::new(0.0, 0.0, -4.0)),
             clip_from_view: glam::camera::rh::proj::directx::perspective_infinite_reverse(1.0, 1.0, 0.1),
-            normals: None,
-            bounds: Some(antumbra::light::Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE }),
-            hull: &[],
-            seen: &[],
-            shadow_distance: None,
-            version: None,
-        }
+            depth_convention: DepthConvention::Reversed,
+        };
+        let bounds = antumbra::light::Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE };
+        Receivers::new(&self.depth, Self::SIZE_PX, camera).with_bounds(bounds)
     }
 
     /// A map that the host has drawn, for techniques that take one.
@@ -223,7 +216,8 @@ impl<'a> Hosts<'a> {
         let normals = [None, Some(wgpu::TextureFormat::Rgba8Unorm), Some(wgpu::TextureFormat::Rgba16Float)]
             .map(|format| format.map(|format| texture(self.gpu, format, 4)));
         for normals in &normals {
-            let receivers = Receivers { depth: &depth, normals: normals.as_ref(), ..self.receivers() };
+            let mut receivers = self.receivers().with_normals(normals.as_ref());
+            receivers.depth = &depth;
             // Never submitted.
             let mut encoder = self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             SplitReceivers::new(self.gpu).record(&mut Recorder::new(&mut encoder, None), &receivers)?;

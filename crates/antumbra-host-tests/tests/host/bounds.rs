@@ -1,7 +1,7 @@
 //! Casters whose bounds are unknown or reach far: what lies outside a light's range of depths changes nothing.
 
+use antumbra::TechniqueKind;
 use antumbra::light::{Aabb, Light, LightShape};
-use antumbra::{Receivers, TechniqueKind};
 use antumbra_host_tests::device::Device;
 use antumbra_host_tests::host::{HostCasters, in_buffer, kind_of, mask_of, matrix_buffer};
 use antumbra_host_tests::raster::Picture;
@@ -56,7 +56,7 @@ impl Base {
 
     fn mask(&self, kind: TechniqueKind, casters: &HostCasters, of_light: usize, bounds: Option<Aabb>) -> Vec<f32> {
         let mut shadow = kind.create(&self.device.gpu).expect("any device");
-        let receivers = Receivers { bounds, ..self.picture.receivers() };
+        let receivers = self.picture.receivers().with_bounds(bounds);
         mask_of(self.device, &mut shadow, &self.lights[of_light].0, casters.all(), receivers)
     }
 }

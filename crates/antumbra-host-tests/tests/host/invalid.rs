@@ -6,7 +6,7 @@ use antumbra::light::{Aabb, Light, LightShape, ShadowDistance};
 use antumbra::techniques::single_map::pcss::{Pcss, PcssParams};
 use antumbra::{
     AnyShadow, CasterSet, Casters, Denoise, DepthConvention, DepthMapCaster, Error, Frame, Mask, MaskChannels,
-    MeshCaster, Opacity, Receivers, Shadow, TechniqueKind,
+    MaskPlace, MeshCaster, Receivers, Shadow, TechniqueKind,
 };
 use antumbra_host_tests::device::Device;
 use antumbra_host_tests::host::{HostCasters, draw, in_buffer, mask_of, matrix_buffer, small_shadow};
@@ -74,39 +74,37 @@ fn lights_and_cameras() {
         let light: &'static Light = Box::leak(Box::new(light.clone()));
         good.is_refused(&words, |frame| Frame { light, ..frame });
     }
-    let seen_by = |good: &mut Good, words: &[&str], change: fn(Receivers<'_>) -> Receivers<'_>| {
-        good.is_refused(words, |frame| Frame { receivers: change(frame.receivers), ..frame });
+    let seen_by = |good: &mut Good, words: &[&str], change: fn(&mut Receivers<'_>)| {
+        good.is_refused(words, |mut frame| {
+            change(&mut frame.receivers);
+            frame
+        });
     };
-    seen_by(&mut good, &["the receivers' size"], |it| Receivers { size_px: UVec2::new(16, 0), ..it });
-    seen_by(&mut good, &["the mask's size", "[8, 9]"], |it| Receivers { size_px: UVec2::new(8, 9), ..it });
-    seen_by(&mut good, &["the depth buffer"], |it| Receivers { origin_px: UVec2::new(1, 0), ..it });
-    seen_by(&mut good, &["the camera's pose", "not finite"], |it| Receivers { view_from_world: Mat4::NAN, ..it });
+    seen_by(&mut good, &["the receivers' size"], |it| it.size_px = UVec2::new(16, 0));
+    seen_by(&mut good, &["the mask's size", "[8, 9]"], |it| it.size_px = UVec2::new(8, 9));
+    seen_by(&mut good, &["the depth buffer"], |it| it.origin_px = UVec2::new(1, 0));
+    seen_by(&mut good, &["the camera's pose", "not finite"], |it| it.view_from_world = Mat4::NAN);
     seen_by(&mut good, &["the camera's pose", "not rigid"], |it| {
-        let view_from_world = Mat4::from_scale(Vec3::splat(2.0)) * it.view_from_world;
-        Receivers { view_from_world, ..it }
+        it.view_from_world = Mat4::from_scale(Vec3::splat(2.0)) * it.view_from_world;
     });
-    seen_by(&mut good, &["the camera's matrix", "singular"], |it| Receivers { clip_from_view: Mat4::ZERO, ..it });
-    seen_by(&mut good, &["the depth convention", "Reversed, as the projection"], |it| Receivers {
-        depth_convention: DepthConvention::Standard,
-        ..it
+    seen_by(&mut good, &["the camera's matrix", "singular"], |it| it.clip_from_view = Mat4::ZERO);
+    seen_by(&mut good, &["the depth convention", "Reversed, as the projection"], |it| {
+        it.depth_convention = DepthConvention::Standard;
     });
-    seen_by(&mut good, &["the receivers' box", "not a number"], |it| Receivers {
-        bounds: Some(Aabb { min: Vec3::NAN, max: Vec3::ONE }),
-        ..it
+    seen_by(&mut good, &["the receivers' box", "not a number"], |it| {
+        it.bounds = Some(Aabb { min: Vec3::NAN, max: Vec3::ONE });
     });
-    seen_by(&mut good, &["the receivers' box", "empty"], |it| Receivers {
-        bounds: Some(Aabb { min: Vec3::ONE, max: Vec3::ZERO }),
-        ..it
+    seen_by(&mut good, &["the receivers' box", "empty"], |it| {
+        it.bounds = Some(Aabb { min: Vec3::ONE, max: Vec3::ZERO });
     });
-    seen_by(&mut good, &["`hull`", "point 1"], |it| Receivers { hull: &[Vec3::ZERO, Vec3::NAN, Vec3::X], ..it });
-    seen_by(&mut good, &["`seen`", "point 0"], |it| Receivers { seen: &[Vec3::INFINITY], ..it });
-    seen_by(&mut good, &["shadow distance"], |it| Receivers {
-        shadow_distance: Some(ShadowDistance { end_m: f32::NAN, fade_m: 1.0 }),
-        ..it
+    seen_by(&mut good, &["`hull`", "point 1"], |it| it.hull = &[Vec3::ZERO, Vec3::NAN, Vec3::X]);
+    seen_by(&mut good, &["`seen`", "point 0"], |it| it.seen = &[Vec3::INFINITY]);
+    seen_by(&mut good, &["shadow distance"], |it| {
+        it.shadow_distance = Some(ShadowDistance { end_m: f32::NAN, fade_m: 1.0 });
     });
     // A box of no receivers is no error, nor is an infinite one.
     for bounds in [Aabb::EMPTY, Aabb::EVERYTHING] {
-        let receivers = Receivers { bounds: Some(bounds), ..good.picture.receivers() };
+        let receivers = good.picture.receivers().with_bounds(bounds);
         mask_of(
             good.device,
             &mut small_shadow(good.device, TechniqueKind::Hard),
@@ -137,10 +135,7 @@ fn textures() {
         (view(&other, Format::Depth32Float, bound), &["the depth buffer", "cannot be bound"]),
     ];
     for (depth, words) in &depths {
-        good.is_refused(words, |frame| Frame {
-            receivers: Receivers { depth: long(depth), ..frame.receivers },
-            ..frame
-        });
+        good.is_refused(words, |frame| Frame { receivers: in_depth_of(frame.receivers, long(depth)), ..frame });
     }
     let half = texture(device, SIZE / 2, 1, Format::Rgba16Float, bound);
     let normals: [(wgpu::TextureView, &[&str]); 4] = [
@@ -150,19 +145,16 @@ fn textures() {
         (view(&other, Format::Rgba16Float, bound), &["the normals' texture", "cannot be bound"]),
     ];
     for (normals, words) in &normals {
-        good.is_refused(words, |frame| Frame {
-            receivers: Receivers { normals: Some(long(normals)), ..frame.receivers },
-            ..frame
-        });
+        good.is_refused(words, |frame| Frame { receivers: frame.receivers.with_normals(long(normals)), ..frame });
     }
     let elsewhere = Mask::new(other.wgpu(), SIZE);
     good.is_refused(&["the mask", "cannot be bound"], |frame| Frame { mask: long(&elsewhere), ..frame });
     let in_depth = texture(device, SIZE, 1, Mask::FORMAT, Mask::usages(Mask::FORMAT));
     let depth = in_depth.create_view(&wgpu::TextureViewDescriptor::default());
-    let mask = Mask::of_layers(&in_depth, 0, MaskChannels::One);
+    let mask = Mask::of_layers(&in_depth, 0, MaskChannels::One).expect("a mask's texture");
     good.is_refused(&["the mask", "in one of its own"], |frame| Frame {
         mask: long(&mask),
-        receivers: Receivers { depth: long(&depth), ..frame.receivers },
+        receivers: in_depth_of(frame.receivers, long(&depth)),
         ..frame
     });
     let wrong =
@@ -176,6 +168,44 @@ fn textures() {
         let error = shadow.prepare(&good.frame()).map(drop).expect_err(words).to_string();
         assert!(error.contains(words), "{error}");
     }
+}
+
+/// The receivers, in another depth buffer.
+fn in_depth_of<'a>(mut receivers: Receivers<'a>, depth: &'a wgpu::TextureView) -> Receivers<'a> {
+    receivers.depth = depth;
+    receivers
+}
+
+/// Textures and places in them that no mask can have.
+#[test]
+fn masks_in_textures() {
+    let Some(good) = Good::new() else { return };
+    let device = good.device;
+    let format = Mask::FORMAT;
+    let of = |format, usage| texture(device, SIZE, 2, format, usage);
+    let whole = |texture: &wgpu::Texture| MaskPlace::layer(texture, 0);
+    let fits = of(format, Mask::usages(format));
+    let four = of(Format::Rgba8Unorm, Mask::usages(Format::Rgba8Unorm));
+    let place = whole(&fits);
+    let bad: [(&wgpu::Texture, MaskPlace, MaskChannels, &[&str]); 6] = [
+        (
+            &of(Format::Rgba32Float, Mask::usages(format)),
+            place,
+            MaskChannels::One,
+            &["format", "Rgba32Float", "R32Float"],
+        ),
+        (&of(format, wgpu::TextureUsages::TEXTURE_BINDING), place, MaskChannels::One, &["usage", "STORAGE_BINDING"]),
+        (&fits, MaskPlace { layer: 2, ..place }, MaskChannels::One, &["last layer is 2", "below 2"]),
+        (&fits, place, MaskChannels::Three, &["last layer is 2", "below 2"]),
+        (&fits, MaskPlace { origin_px: UVec2::new(1, 0), ..place }, MaskChannels::One, &["far corner", "[17, 9]"]),
+        (&four, MaskPlace { component: 4, ..whole(&four) }, MaskChannels::One, &["component is 4", "below 4"]),
+    ];
+    for (texture, place, channels, words) in bad {
+        let message = Mask::within(texture, place, channels).expect_err("no mask").to_string();
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+    Mask::within(&four, MaskPlace { component: 3, layer: 1, ..whole(&four) }, MaskChannels::One)
+        .expect("in the texture");
 }
 
 /// A reference that outlives the test's frames: leaked, since the changed frame borrows for any lifetime.
@@ -196,27 +226,18 @@ fn casters_of_a_frame() {
     let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE;
     let buffer: &'static wgpu::Buffer = Box::leak(Box::new(device.buffer(&[0; 144], usage)));
     let unusable: &'static wgpu::Buffer = Box::leak(Box::new(device.buffer(&[0; 144], wgpu::BufferUsages::STORAGE)));
-    let mesh = MeshCaster {
-        positions: buffer,
-        indices: buffer,
-        first_triangle: 0,
-        index_count: 3,
-        instances: buffer,
-        first_instance: 0,
-        instance_count: 1,
-        closed: false,
-        opacity: Opacity::Opaque,
-        bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE },
-        version: None,
+    let of = |positions, indices, index_count| {
+        MeshCaster::new(positions, indices, index_count, buffer).with_bounds(Aabb { min: Vec3::ZERO, max: Vec3::ONE })
     };
+    let mesh = of(buffer, buffer, 3);
     let bad: [(MeshCaster<'static>, &[&str]); 7] = [
-        (MeshCaster { bounds: Aabb::EMPTY, ..mesh }, &["`bounds`", "empty", "caster 1"]),
-        (MeshCaster { bounds: Aabb { min: Vec3::NAN, ..mesh.bounds }, ..mesh }, &["`bounds`", "not a number"]),
-        (MeshCaster { index_count: 4, ..mesh }, &["`index_count`", "a multiple of three"]),
-        (MeshCaster { first_triangle: 12, ..mesh }, &["indices", "up to byte 156 of a buffer of 144"]),
-        (MeshCaster { first_instance: 2, ..mesh }, &["instances", "up to byte 192 of a buffer of 144"]),
-        (MeshCaster { positions: unusable, ..mesh }, &["positions", "VERTEX", "caster 1"]),
-        (MeshCaster { indices: unusable, ..mesh }, &["indices", "INDEX", "caster 1"]),
+        (mesh.with_bounds(Aabb::EMPTY), &["`bounds`", "empty", "caster 1"]),
+        (mesh.with_bounds(Aabb { min: Vec3::NAN, ..mesh.bounds }), &["`bounds`", "not a number"]),
+        (of(buffer, buffer, 4), &["`index_count`", "a multiple of three"]),
+        (mesh.with_first_triangle(12), &["indices", "up to byte 156 of a buffer of 144"]),
+        (mesh.with_instances(2..3), &["instances", "up to byte 192 of a buffer of 144"]),
+        (of(unusable, buffer, 3), &["positions", "VERTEX", "caster 1"]),
+        (of(buffer, unusable, 3), &["indices", "INDEX", "caster 1"]),
     ];
     for (caster, words) in bad {
         let casters: &'static [MeshCaster<'static>] = Box::leak(Box::new([mesh, caster]));

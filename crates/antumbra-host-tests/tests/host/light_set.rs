@@ -84,7 +84,7 @@ impl<'a> Hall<'a> {
 
     /// One of a depth buffer that stays as it is.
     fn draw_still(&mut self, budget: Budget) -> Vec<LightId> {
-        self.draw_of(budget, |receivers| Receivers { version: Some(0), ..receivers })
+        self.draw_of(budget, |receivers| receivers.with_version(0))
     }
 
     fn state(&self, id: LightId) -> MaskState {
@@ -202,7 +202,10 @@ fn lights_out_of_view_are_culled_and_begin_anew() {
     // Looks away from the hall.
     let camera = Camera { eye: Vec3::new(40.0, 5.0, 8.0), target: Vec3::new(90.0, 0.0, 0.0), ..Camera::base() };
     let view_from_world = camera.view_from_world();
-    let away = hall.draw_of(Budget::Lights(2), |receivers| Receivers { view_from_world, ..receivers });
+    let away = hall.draw_of(Budget::Lights(2), |mut receivers| {
+        receivers.view_from_world = view_from_world;
+        receivers
+    });
     assert_eq!(away, []);
     assert_eq!(hall.states(), [MaskState::Culled; 16]);
     assert_eq!(hall.draw(Budget::Lights(3)).len(), 3);
@@ -260,7 +263,7 @@ fn frames_that_come_to_nothing_are_made_up_for() {
     let all = Budget::Lights(u32::MAX);
     hall.draw_still(all);
     hall.move_boxes(0..100, 7);
-    let receivers = Receivers { version: Some(0), ..hall.picture.receivers() };
+    let receivers = hall.picture.receivers().with_version(0);
     drop(hall.lights.prepare(&LightSetFrame { casters: &hall.casters.set, receivers, budget: all }).expect("good"));
     assert_eq!(hall.draw_still(Budget::Lights(1)).len(), 1);
     let missing = |hall: &Hall<'_>| hall.states().iter().filter(|state| **state == MaskState::Missing).count();

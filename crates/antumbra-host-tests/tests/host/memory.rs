@@ -219,7 +219,8 @@ fn what_is_planned_takes_no_memory() {
     drop(depth_texture);
     let mask = Mask::new(plan.gpu().device(), size_px);
     let light = base_light();
-    let receivers = antumbra::Receivers { size_px, depth: &depth, normals: None, ..picture.receivers() };
+    let mut receivers = picture.receivers().with_normals(None);
+    (receivers.size_px, receivers.depth) = (size_px, &depth);
     let frame = Frame { light: &light, casters: casters.all(), receivers, mask: &mask };
     let mut shadow = shadow_of(plan.gpu(), kind_of("sample_based"), &[]);
     drop(shadow.prepare(&frame).expect("a good frame"));

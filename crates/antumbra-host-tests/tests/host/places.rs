@@ -1,6 +1,5 @@
 //! Lights, cameras and grounds in places that hosts put them: inside solids, in housings, beside walls, above wide grounds.
 
-use antumbra::contract::Receivers;
 use antumbra::light::{Aabb, Light, LightShape};
 use antumbra_host_tests::device::Device;
 use antumbra_host_tests::host::{HostCasters, kind_of, mask_of};
@@ -130,7 +129,7 @@ fn walls_of_many_depths_stay_closed() {
     );
     let Some(place) = Place::new(&scene, &camera, light) else { return };
     let mut shadow = kind_of("multi_layer").create(&place.device.gpu).expect("any device");
-    let receivers = Receivers { bounds: Some(room), ..place.picture.receivers() };
+    let receivers = place.picture.receivers().with_bounds(room);
     let mask = mask_of(place.device, &mut shadow, &place.light, place.casters.all(), receivers);
     let (leak, error) = (umbra_leak(&mask, &place.truth), rmse(&mask, &place.truth));
     println!("a room under a lamp: {leak} of what is dark is lit, rmse {error}");

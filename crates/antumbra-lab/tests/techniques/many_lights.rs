@@ -1,7 +1,7 @@
 //! `examples/many_lights`, a renderer that knows nothing of this project but the library: its masks against the ray tracer,
 //! and against the laboratory's of the same scene.
 
-use antumbra::{Casters, Receivers};
+use antumbra::Casters;
 use antumbra_lab::device::LabDevice;
 use antumbra_lab::gpu_scene::GpuScene;
 use antumbra_lab::metrics::compare_visibility;
@@ -124,7 +124,7 @@ fn lab_mask(
     // On the renderer's handle, which has compiled it all.
     let choice = TechniqueChoice::with_settings(shadow.kind(), settings);
     let mut technique = create(renderer.shadows.gpu(), &choice).expect("good settings");
-    let receivers = Receivers { bounds: None, hull: &[], seen: &[], ..images.receivers() };
+    let receivers = images.receivers().with_bounds(None).with_hull(&[]).with_seen(&[]);
     let mut casters = scene.casters();
     assert_eq!(casters.len(), renderer.scene.objects.len());
     for (caster, object) in casters.iter_mut().zip(&renderer.scene.objects) {

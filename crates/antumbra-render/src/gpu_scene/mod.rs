@@ -187,19 +187,15 @@ impl GpuScene {
                 },
             },
         };
-        Some(MeshCaster {
-            positions: &buffers.positions,
-            indices: &buffers.indices,
-            first_triangle: geometry.place.first_index / 3,
-            index_count: geometry.index_count,
-            instances: &self.instances[draw.instances],
-            first_instance: draw.first_instance,
-            instance_count: draw.instance_count,
-            closed: geometry.closed && !draw.mirrored,
-            opacity,
-            bounds: draw.bounds,
-            version: Some(geometry.version),
-        })
+        let instances = &self.instances[draw.instances];
+        let mesh = MeshCaster::new(&buffers.positions, &buffers.indices, geometry.index_count, instances)
+            .with_first_triangle(geometry.place.first_index / 3)
+            .with_instances(draw.first_instance..draw.first_instance + draw.instance_count)
+            .with_closed(geometry.closed && !draw.mirrored)
+            .with_opacity(opacity)
+            .with_bounds(draw.bounds)
+            .with_version(geometry.version);
+        Some(mesh)
     }
 
     /// A geometry's buffers, which it may share with others.

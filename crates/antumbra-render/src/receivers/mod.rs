@@ -106,20 +106,17 @@ impl ReceiverImages {
 
     /// As the library's techniques take it.
     pub fn receivers(&self) -> Receivers<'_> {
-        Receivers {
-            size_px: self.size_px,
-            origin_px: UVec2::ZERO,
-            depth: &self.depth_view,
-            depth_convention: DepthConvention::Reversed,
+        let camera = antumbra::Camera {
             view_from_world: self.view_from_world,
             clip_from_view: self.clip_from_view,
-            normals: Some(&self.geometric_normal_view),
-            bounds: self.bounds,
-            hull: &self.hull,
-            seen: &self.seen,
-            shadow_distance: self.shadow_distance,
-            version: None,
-        }
+            depth_convention: DepthConvention::Reversed,
+        };
+        Receivers::new(&self.depth_view, self.size_px, camera)
+            .with_normals(&self.geometric_normal_view)
+            .with_bounds(self.bounds)
+            .with_hull(&self.hull)
+            .with_seen(&self.seen)
+            .with_shadow_distance(self.shadow_distance)
     }
 
     /// World positions by pixel, rebuilt from `depths`, which is what [`depth`](Self::depth) holds; `None` where there is

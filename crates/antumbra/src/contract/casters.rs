@@ -1,5 +1,7 @@
 //! Casters: the host's meshes, or a depth map of the light that the host has rendered.
 
+use std::ops::Range;
+
 use antumbra_light::Aabb;
 use glam::{Mat4, UVec2, Vec3};
 
@@ -24,14 +26,66 @@ impl PreparedCasters<'_> {
     }
 }
 
-impl MeshCaster<'_> {
+impl<'a> MeshCaster<'a> {
+    /// One instance of `index_count / 3` triangles: opaque, not closed, its bounds unknown. `with_` and a field's name set the rest.
+    pub fn new(
+        positions: &'a wgpu::Buffer,
+        indices: &'a wgpu::Buffer,
+        index_count: u32,
+        instances: &'a wgpu::Buffer,
+    ) -> Self {
+        Self {
+            positions,
+            indices,
+            first_triangle: 0,
+            index_count,
+            instances,
+            first_instance: 0,
+            instance_count: 1,
+            closed: false,
+            opacity: Opacity::Opaque,
+            bounds: Aabb::EVERYTHING,
+            version: None,
+        }
+    }
+
+    /// Sets [`first_triangle`](Self::first_triangle).
+    pub fn with_first_triangle(self, first_triangle: u32) -> Self {
+        Self { first_triangle, ..self }
+    }
+
+    /// Sets [`first_instance`](Self::first_instance) and [`instance_count`](Self::instance_count).
+    pub fn with_instances(self, instances: Range<u32>) -> Self {
+        Self { first_instance: instances.start, instance_count: instances.end.saturating_sub(instances.start), ..self }
+    }
+
+    /// Sets [`closed`](Self::closed).
+    pub fn with_closed(self, closed: bool) -> Self {
+        Self { closed, ..self }
+    }
+
+    /// Sets [`opacity`](Self::opacity).
+    pub fn with_opacity(self, opacity: Opacity<'a>) -> Self {
+        Self { opacity, ..self }
+    }
+
+    /// Sets [`bounds`](Self::bounds). Known bounds make light maps tighter.
+    pub fn with_bounds(self, bounds: Aabb) -> Self {
+        Self { bounds, ..self }
+    }
+
+    /// Sets [`version`](Self::version).
+    pub fn with_version(self, version: impl Into<Option<MeshVersion>>) -> Self {
+        Self { version: version.into(), ..self }
+    }
+
     /// The indices to draw.
-    pub(crate) fn index_range(&self) -> std::ops::Range<u32> {
+    pub(crate) fn index_range(&self) -> Range<u32> {
         3 * self.first_triangle..3 * self.first_triangle + self.index_count
     }
 
     /// The instances to draw.
-    pub(crate) fn instance_range(&self) -> std::ops::Range<u32> {
+    pub(crate) fn instance_range(&self) -> Range<u32> {
         self.first_instance..self.first_instance + self.instance_count
     }
 }
@@ -42,6 +96,7 @@ impl MeshCaster<'_> {
 /// triangles in compute (`ray_traced`, `alias_free`, `sample_based`, `multi_view` unless it compares otherwise) also need `STORAGE` on all
 /// three, and `multi_layer` sees parts of texels where positions and indices have it.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct MeshCaster<'a> {
     /// Object-space positions: `[f32; 3]` each, tightly packed from offset 0.
     pub positions: &'a wgpu::Buffer,

@@ -2,6 +2,8 @@
 
 use glam::UVec2;
 
+use super::Error;
+
 /// The visibility mask: 1 lit, 0 umbra. Every pixel is written once per light; the host multiplies.
 ///
 /// It lies in a texture of its own, or in [a part](MaskPlace) of a host's: in layers of an array, in a rectangle of an atlas, in
@@ -93,34 +95,61 @@ impl Mask {
         format: wgpu::TextureFormat,
     ) -> Self {
         let texture = texture_of_layers(device, size_px, format, layers_of(format, channels));
-        Self::of_layers(&texture, 0, channels)
+        Self::of_own_layers(&texture, 0, channels)
     }
 
     /// A mask in the host's own texture array: its layers from `first_layer` on, as many as there are channels; in formats of
     /// four components one.
     ///
-    /// # Panics
+    /// # Errors
     /// As [`within`](Self::within).
-    pub fn of_layers(texture: &wgpu::Texture, first_layer: u32, channels: MaskChannels) -> Self {
+    pub fn of_layers(texture: &wgpu::Texture, first_layer: u32, channels: MaskChannels) -> Result<Self, Error> {
         Self::within(texture, MaskPlace::layer(texture, first_layer), channels)
     }
 
     /// A mask in part of a host's texture, which has one of the [`FORMATS`](Self::FORMATS) and its [`usages`](Self::usages).
     ///
-    /// # Panics
-    /// Where the texture has another format, lacks a usage, or does not hold the place.
-    pub fn within(texture: &wgpu::Texture, place: MaskPlace, channels: MaskChannels) -> Self {
+    /// # Errors
+    /// [`Error::BadFrame`] if the texture has another format, lacks a usage, or does not hold the place.
+    pub fn within(texture: &wgpu::Texture, place: MaskPlace, channels: MaskChannels) -> Result<Self, Error> {
+        let bad = |what, had: String, needed: String| Err(Error::BadFrame { technique: "mask", what, had, needed });
         let format = texture.format();
-        assert!(Self::FORMATS.contains(&format), "a mask's format is one of {:?}, not {format:?}", Self::FORMATS);
-        let usages = Self::usages(format);
-        assert!(texture.usage().contains(usages), "a mask's usages are {usages:?}, and not {:?}", texture.usage());
+        if !Self::FORMATS.contains(&format) {
+            return bad("the texture's format", format!("{format:?}"), format!("one of {:?}", Self::FORMATS));
+        }
+        let (had, needed) = (texture.usage(), Self::usages(format));
+        if !had.contains(needed) {
+            return bad("the texture's usage", format!("{had:?}"), format!("{needed:?} at least"));
+        }
         let (layers, count) = (texture.depth_or_array_layers(), layers_of(format, channels));
-        assert!(place.layer.saturating_add(count) <= layers, "a mask of layers {} and on of {layers}", place.layer);
-        let (end_px, size_px) =
-            (place.origin_px.saturating_add(place.size_px), UVec2::new(texture.width(), texture.height()));
-        assert!(end_px.cmple(size_px).all(), "a mask up to pixel {end_px} of {size_px}");
+        let layer_end = place.layer.saturating_add(count);
+        if layer_end > layers {
+            return bad(
+                "the mask's last layer",
+                (layer_end - 1).to_string(),
+                format!("below {layers}, as the texture's"),
+            );
+        }
+        let end_px = place.origin_px.saturating_add(place.size_px);
+        let size_px = UVec2::new(texture.width(), texture.height());
+        if end_px.cmpgt(size_px).any() {
+            return bad("the mask's far corner", end_px.to_string(), format!("within the texture's {size_px}"));
+        }
         let components = u32::from(format.components());
-        assert!(place.component < components, "a mask in component {} of {components}", place.component);
+        if place.component >= components {
+            return bad("the mask's component", place.component.to_string(), format!("below {components}"));
+        }
+        Ok(Self::at(texture, place, channels))
+    }
+
+    /// Mask in the layers of a texture that the library has made for it.
+    pub(crate) fn of_own_layers(texture: &wgpu::Texture, first_layer: u32, channels: MaskChannels) -> Self {
+        Self::at(texture, MaskPlace::layer(texture, first_layer), channels)
+    }
+
+    /// Mask at a place that the texture holds.
+    fn at(texture: &wgpu::Texture, place: MaskPlace, channels: MaskChannels) -> Self {
+        let count = layers_of(texture.format(), channels);
         let view = |dimension, layers| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 label: Some("antumbra mask"),
@@ -155,7 +184,7 @@ impl Mask {
         let texture = texture_of_layers(device, size_px, format, count.div_ceil(in_layer) * layers_each);
         let of_light = |i: u32| {
             let place = MaskPlace::layer(&texture, i / in_layer * layers_each);
-            Self::within(&texture, MaskPlace { component: i % in_layer, ..place }, channels)
+            Self::at(&texture, MaskPlace { component: i % in_layer, ..place }, channels)
         };
         (0..count).map(of_light).collect()
     }

@@ -31,7 +31,10 @@ impl DepthConvention {
 }
 
 /// Receivers of one frame. Positions are reconstructed from depth.
+///
+/// [`Receivers::new`] takes what every host has; `with_` and a field's name set the rest.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Receivers<'a> {
     /// Size of the mask and of the viewport in depth buffer and normals, pixels.
     pub size_px: UVec2,
@@ -69,7 +72,61 @@ pub struct Receivers<'a> {
     pub version: Option<u64>,
 }
 
-impl Receivers<'_> {
+impl<'a> Receivers<'a> {
+    /// Receivers that fill a depth buffer of `size_px` pixels, seen by `camera`. Normals are derived from depth, bounds are the
+    /// casters', and each frame counts as changed.
+    pub fn new(depth: &'a wgpu::TextureView, size_px: UVec2, camera: Camera) -> Self {
+        Self {
+            size_px,
+            origin_px: UVec2::ZERO,
+            depth,
+            depth_convention: camera.depth_convention,
+            view_from_world: camera.view_from_world,
+            clip_from_view: camera.clip_from_view,
+            normals: None,
+            bounds: None,
+            hull: &[],
+            seen: &[],
+            shadow_distance: None,
+            version: None,
+        }
+    }
+
+    /// Sets [`origin_px`](Self::origin_px).
+    pub fn with_origin_px(self, origin_px: UVec2) -> Self {
+        Self { origin_px, ..self }
+    }
+
+    /// Sets [`normals`](Self::normals).
+    pub fn with_normals(self, normals: impl Into<Option<&'a wgpu::TextureView>>) -> Self {
+        Self { normals: normals.into(), ..self }
+    }
+
+    /// Sets [`bounds`](Self::bounds).
+    pub fn with_bounds(self, bounds: impl Into<Option<Aabb>>) -> Self {
+        Self { bounds: bounds.into(), ..self }
+    }
+
+    /// Sets [`hull`](Self::hull).
+    pub fn with_hull(self, hull: &'a [Vec3]) -> Self {
+        Self { hull, ..self }
+    }
+
+    /// Sets [`seen`](Self::seen).
+    pub fn with_seen(self, seen: &'a [Vec3]) -> Self {
+        Self { seen, ..self }
+    }
+
+    /// Sets [`shadow_distance`](Self::shadow_distance).
+    pub fn with_shadow_distance(self, shadow_distance: impl Into<Option<ShadowDistance>>) -> Self {
+        Self { shadow_distance: shadow_distance.into(), ..self }
+    }
+
+    /// Sets [`version`](Self::version).
+    pub fn with_version(self, version: impl Into<Option<u64>>) -> Self {
+        Self { version: version.into(), ..self }
+    }
+
     /// Camera of the depth buffer.
     pub(crate) fn camera(&self) -> Camera {
         Camera {

@@ -207,7 +207,7 @@ impl PartImage {
         let channels = frame.mask.channels();
         let scratch = frame.noisy.is_none().then(|| part_mask(stage, frame.mask.size_px(), channels));
         let made = earlier.filter(|earlier| earlier.scratch == scratch).and_then(|earlier| earlier.mask.clone());
-        let mask = made.or_else(|| scratch.as_ref().map(|texture| Mask::of_layers(texture, 0, channels)));
+        let mask = made.or_else(|| scratch.as_ref().map(|texture| Mask::of_own_layers(texture, 0, channels)));
         Self {
             depth: are_seen.then(|| texture(Scratch::PartDepth, DEPTH_FORMAT)),
             normals: (!are_seen || receivers.normals.is_none()).then(|| texture(Scratch::PartNormals, NORMAL_FORMAT)),

@@ -17,7 +17,7 @@ pub mod single_map;
 #[cfg(feature = "summed")]
 pub mod summed;
 
-mod technique;
+pub(crate) mod technique;
 
 pub use crate::light_partition::Coverage;
 pub use technique::Technique;

@@ -6,11 +6,16 @@ use crate::contract::{DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFra
 use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
 use crate::light_partition::Coverage;
 
+/// Seal of [`Technique`]: the list of techniques implements it for each entry.
+pub trait Listed {}
+
 /// A shadow technique, as the library runs it: hosts use it through [`Shadow`](crate::Shadow).
 ///
 /// Three phases: [`new`](Self::new) asks for programs and checks features and limits; [`prepare`](Self::prepare)
 /// allocates and uploads, and may fail; [`record`](Self::record) only records. None of them submits or blocks.
-pub trait Technique: Sized + wgpu::WasmNotSendSync {
+///
+/// Sealed: techniques are those of [`TechniqueKind`](crate::TechniqueKind).
+pub trait Technique: Sized + Listed + wgpu::WasmNotSendSync {
     /// The name that command lines, files and errors use.
     const NAME: &'static str;
     /// Its parameters.

@@ -541,7 +541,7 @@ fn receivers_come_as_engines_have_them() {
             | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     });
-    let layer = Mask::of_layers(&array, 2, MaskChannels::One);
+    let layer = Mask::of_layers(&array, 2, MaskChannels::One).expect("a layer of a good texture");
     let small = [("map_size", "128"), ("view_size", "64"), ("samples", "8"), ("search_samples", "8")];
     for kind in TechniqueKind::ALL {
         let technique = || {

@@ -2,7 +2,7 @@
 
 use antumbra::light::{Aabb, Light, LightShape};
 use antumbra::{
-    AnyShadow, Casters, DepthConvention, Error, Frame, Gpu, Mask, MeshCaster, Opacity, Receivers, Recorder,
+    AnyShadow, Camera, Casters, DepthConvention, Error, Frame, Gpu, Mask, MeshCaster, Receivers, Recorder,
     TechniqueKind,
 };
 use glam::{Mat4, UVec2, Vec2, Vec3};
@@ -45,33 +45,16 @@ impl SoftLight {
 
     /// Records the shadow passes. Call it after your depth pass and before shading.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, model: &Model, view: &View) -> Result<(), Error> {
-        let casters = [MeshCaster {
-            positions: &model.positions,
-            indices: &model.indices,
-            first_triangle: 0,
-            index_count: model.index_count,
-            instances: &model.instances,
-            first_instance: 0,
-            instance_count: 1,
-            closed: true, // a watertight mesh
-            opacity: Opacity::Opaque,
-            bounds: model.bounds,
-            version: None,
-        }];
-        let receivers = Receivers {
-            size_px: view.size_px,
-            origin_px: UVec2::ZERO, // the viewport's corner
-            depth: &view.depth,     // Depth32Float, usage TEXTURE_BINDING
-            depth_convention: DepthConvention::Reversed,
+        let mesh = MeshCaster::new(&model.positions, &model.indices, model.index_count, &model.instances)
+            .with_bounds(model.bounds)
+            .with_closed(true); // watertight
+        let casters = [mesh];
+        let camera = Camera {
             view_from_world: view.view_from_world,
             clip_from_view: view.clip_from_view,
-            normals: None, // derived from depth
-            bounds: None,  // the casters' box
-            hull: &[],
-            seen: &[],
-            shadow_distance: None,
-            version: None,
+            depth_convention: DepthConvention::Reversed,
         };
+        let receivers = Receivers::new(&view.depth, view.size_px, camera);
         let frame = Frame { light: &self.light, casters: Casters::Meshes(&casters), receivers, mask: &self.mask };
         self.shadow.prepare(&frame)?.record(&mut Recorder::new(encoder, None));
         Ok(())

@@ -174,7 +174,7 @@ impl Denoiser {
         let scratch = gpu.device.scratch_texture(Scratch::NoisyMask, &descriptor);
         let made = self.noisy.take().filter(|noisy| noisy.scratch == scratch);
         let noisy = made.unwrap_or_else(|| {
-            let mask = Mask::of_layers(&scratch, 0, mask.channels());
+            let mask = Mask::of_own_layers(&scratch, 0, mask.channels());
             NoisyMask { scratch, mask }
         });
         self.noisy.insert(noisy).mask.clone()

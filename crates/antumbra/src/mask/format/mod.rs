@@ -55,7 +55,7 @@ impl NarrowMask {
         let scratch = stage.device.scratch_texture(Scratch::WideMask, &descriptor);
         let wide = earlier
             .filter(|earlier| earlier.scratch == scratch)
-            .map_or_else(|| Mask::of_layers(&scratch, 0, mask.channels()), |earlier| earlier.wide);
+            .map_or_else(|| Mask::of_own_layers(&scratch, 0, mask.channels()), |earlier| earlier.wide);
         let layout = WideMask::layout(stage);
         Self {
             pipeline: pipeline(stage, &layout, mask),

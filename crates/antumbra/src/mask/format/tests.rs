@@ -89,7 +89,7 @@ fn masks_of_every_format_and_place_hold_the_same() {
                 let of_four = format.components() == 4;
                 let component = if of_four && channels == MaskChannels::One { 2 } else { 0 };
                 let place = MaskPlace { layer: 1, origin_px: UVec2::new(33, 17), size_px, component };
-                let mask = Mask::within(&texture, place, channels);
+                let mask = Mask::within(&texture, place, channels).expect("within a good texture");
                 let mut encoder =
                     gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
                 let work = shadow.prepare(&Frame { mask: &mask, ..*frame }).expect("a good frame");

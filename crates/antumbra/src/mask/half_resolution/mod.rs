@@ -162,7 +162,7 @@ impl HalfImage {
         let scratch = stage.device.scratch_texture(Scratch::HalfMask, &of_mask);
         let mask = earlier
             .filter(|earlier| earlier.scratch == scratch)
-            .map_or_else(|| Mask::of_layers(&scratch, 0, channels), |earlier| earlier.mask.clone());
+            .map_or_else(|| Mask::of_own_layers(&scratch, 0, channels), |earlier| earlier.mask.clone());
         Self {
             size_px,
             depth: texture(Scratch::HalfDepth, DEPTH_FORMAT),

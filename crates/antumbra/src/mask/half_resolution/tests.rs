@@ -141,7 +141,7 @@ fn unwritten_mask(gpu: &Gpu, size_px: UVec2, channels: MaskChannels) -> Mask {
     let (bytes_per_row, rows_per_image) = (Some(4 * size_px.x), Some(size_px.y));
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image };
     gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(&texels), layout, texture.size());
-    Mask::of_layers(&texture, 0, channels)
+    Mask::of_own_layers(&texture, 0, channels)
 }
 
 /// In one channel and three, under a lamp whose maps are a cube's faces, with a depth buffer of odd size, denoised or not:

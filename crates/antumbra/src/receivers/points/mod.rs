@@ -105,7 +105,7 @@ impl PointTextures {
         );
         let mask = earlier
             .filter(|earlier| earlier.scratch == scratch)
-            .map_or_else(|| Mask::of_layers(&scratch, 0, channels), |earlier| earlier.mask);
+            .map_or_else(|| Mask::of_own_layers(&scratch, 0, channels), |earlier| earlier.mask);
         let points = &stage.uniform("antumbra points", &PointLayout::new(stage.anchor(), receivers, size_px, channels));
         // What the host did not bring has the positions in its place, which are not read for it.
         let words = receivers.buffers().map(|buffer| buffer.unwrap_or(receivers.positions).buffer);

@@ -51,6 +51,7 @@ use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::map::MapWindow;
 use crate::techniques::Technique;
 use crate::techniques::summed::summed_area_table::{Scan, Sums, TableDesign, Tiling};
+use crate::techniques::technique::Listed;
 
 mod basis_texture;
 pub mod cssm;
@@ -255,7 +256,10 @@ pub struct SoftTechnique<P> {
     _params: PhantomData<P>,
 }
 
-impl<P: SoftParams> Technique for SoftTechnique<P> {
+impl<P: SoftParams> Technique for SoftTechnique<P>
+where
+    Self: Listed,
+{
     const NAME: &'static str = P::NAME;
     type Params = P;
     type Prepared = PreparedSoft;
