@@ -1,24 +1,24 @@
-//! Adapter of a measurement, as reports and advices name it.
+//! Adapter of a measurement, as named in reports and recommendations.
 
 use serde::{Deserialize, Serialize};
 
 use crate::device::AdapterReport;
 
-/// The adapter whose times these are.
+/// Adapter on which times were measured.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct AdapterInfo {
-    /// As the driver names it.
+    /// Name reported by the driver.
     pub name: String,
     /// Driver and version.
     pub driver: String,
-    /// Vulkan, Metal, …
+    /// Graphics API: Vulkan, Metal, …
     pub backend: String,
-    /// The adapter is a program on the CPU: its times rank techniques only roughly and say nothing about a GPU.
+    /// Whether the adapter is a software renderer. Its times rank techniques only roughly and do not represent a GPU.
     pub is_software: bool,
 }
 
 impl AdapterInfo {
-    /// What a report says of an adapter.
+    /// Returns the fields of a device's adapter that reports show.
     pub fn of(adapter: &AdapterReport) -> Self {
         Self {
             name: adapter.name.clone(),

@@ -1,9 +1,8 @@
-//! Antialiased pictures of masks that have one sample a pixel.
+//! Antialiased images from masks with one sample per pixel.
 //!
-//! A picture is the mean of several that are shifted by fractions of a pixel. Where a shifted pixel shows the surface that is seen at its
-//! centre, it has the centre's colour, so that a mask's noise and steps stay as they are, neither blurred nor hidden. Where it shows another
-//! one, past an edge, it is shaded anew, and takes its visibility from that of the mask's samples about it whose surface is its own. Truth
-//! and techniques are treated alike.
+//! The image is the mean of several that are shifted by fractions of a pixel. If a shifted pixel shows the same surface as its centre, it
+//! keeps the centre's colour, so noise and steps of a mask are neither blurred nor hidden. If it shows another surface, past an edge, it
+//! is shaded anew with the visibility of a neighbouring mask sample on that surface. Ground truth and techniques are treated alike.
 
 use antumbra_render::antialiasing::{ALIKE, NORMALS_COUNT};
 use glam::{IVec2, UVec2, Vec2, Vec3};
@@ -11,24 +10,24 @@ use glam::{IVec2, UVec2, Vec2, Vec3};
 use crate::picture::{Visibility, VisibilityValues};
 use crate::truth::SurfacePoint;
 
-/// What a mask's samples are of.
+/// Surfaces on which a mask's samples lie.
 #[derive(Debug)]
 pub(crate) struct Samples {
     pub(crate) size_px: UVec2,
-    /// Surface at each pixel's centre.
+    /// Surface at each pixel's centre; `None` for background.
     pub(crate) points: Vec<Option<SurfacePoint>>,
     pub(crate) eye: Vec3,
-    /// Size of a pixel, metres, at a metre from the eye.
+    /// Size of a pixel at 1 m from the eye, metres.
     pub(crate) pixel_at_1_m: f32,
 }
 
 impl Samples {
-    /// For each pixel of a picture that is shifted by `offset_px`, of which `shifted` are the surfaces: which sample shows its surface,
-    /// or `None` where that is the one at the pixel's centre.
+    /// Returns, for each pixel of an image shifted by `offset_px` with the surfaces `shifted`, the index of the sample on its surface, or
+    /// `None` if that is the sample at the pixel's centre.
     pub(crate) fn sources(&self, shifted: &[Option<SurfacePoint>], offset_px: Vec2) -> Vec<Option<u32>> {
         let source = |(i, point): (usize, &Option<SurfacePoint>)| match point {
             Some(point) => self.source(i, point, offset_px),
-            // Background has no visibility, and any sample does.
+            // Background has no visibility, so any sample will do.
             None => self.points[i].is_some().then_some(i as u32),
         };
         shifted.iter().enumerate().map(source).collect()
@@ -38,7 +37,7 @@ impl Samples {
         let width = self.size_px.x as i32;
         let at = IVec2::new(pixel as i32 % width, pixel as i32 / width);
         let pixel_m = self.pixel_at_1_m * shown.position.distance(self.eye);
-        // Pixels between a sample and the plane of what is shown, and what their normals count.
+        // Distance of a sample from the plane of the shown surface in pixels, plus a weight for different normals.
         let unlike = |sample: &SurfacePoint| {
             let off_plane = (sample.position - shown.position).dot(shown.normal).abs() / pixel_m;
             off_plane + NORMALS_COUNT * (1.0 - sample.normal.dot(shown.normal))
@@ -63,7 +62,7 @@ impl Samples {
     }
 }
 
-/// A mask's values at such sources, and none where there is none: what is dark costs no shading.
+/// Gathers a mask's values at the given sources. Pixels without a source are dark, so they cost no shading.
 pub(crate) fn gathered(visibility: &Visibility, sources: &[Option<u32>]) -> Visibility {
     let values = match &visibility.values {
         VisibilityValues::One(values) => {
@@ -91,7 +90,7 @@ mod tests {
         Samples { size_px, points: points.collect(), eye: Vec3::Z, pixel_at_1_m: 0.01 }
     }
 
-    /// On one surface each place takes its own pixel's sample, however that looks on it.
+    /// Within one surface, each pixel uses its own sample, whatever its value.
     #[test]
     fn within_a_surface_samples_stay_where_they_are() {
         let flat = samples(|_| 0.0, |_| Vec3::Z);
@@ -105,12 +104,12 @@ mod tests {
         }
     }
 
-    /// Beyond a silhouette, and round a corner, the neighbour's is taken that shows the same surface.
+    /// Beyond a silhouette or a corner, the neighbour on the shown surface is used.
     #[test]
     fn across_an_edge_the_sample_of_the_same_surface_is_taken() {
         let silhouette = samples(|x| if x < 2 { 0.0 } else { -0.5 }, |_| Vec3::Z);
         let corner = samples(|_| 0.0, |x| if x < 2 { Vec3::Z } else { Vec3::X });
-        // Pixel 6 shows the left surface at its centre, and the right one at the right of it; pixel 7 the other way round.
+        // At its centre, pixel 6 shows the left surface, and at its right the right one; pixel 7 vice versa.
         let right = Vec2::new(7.0 / 16.0, 0.0);
         for (all, z) in [(&silhouette, -0.5), (&corner, 0.0)] {
             let mut shifted = all.points.clone();
@@ -120,7 +119,7 @@ mod tests {
             shifted[7] = Some(SurfacePoint { position: Vec3::new(0.0155, -0.01, 0.0), ..all.points[6].unwrap() });
             assert_eq!(all.sources(&shifted, -right)[7], Some(6));
         }
-        // Where no sample shows it, or background is shown, the pixel's own does.
+        // If no sample shows the surface, or the pixel shows background, its own sample is used.
         let alone = Samples { points: vec![None; 15], ..samples(|_| 0.0, |_| Vec3::Z) };
         let own: Vec<_> = (0..15).map(Some).collect();
         assert_eq!(alone.sources(&silhouette.points, right), own);

@@ -1,6 +1,6 @@
-//! Results beside those of another run: on another adapter, or of another commit.
+//! Comparison of results with another run: on another adapter, or of another commit.
 //!
-//! Rows are paired by name. Of each pair there is the ratio of times, here over there, and the difference of errors, here less there.
+//! Rows are paired by name. Each pair has the ratio of times (here / there) and the differences of errors (here − there).
 
 use std::path::Path;
 
@@ -14,15 +14,15 @@ use crate::names::numbered;
 use crate::output_files::{FileError, read_json};
 use crate::reproduce::{ExhibitResult, Outcome as Reproduced};
 
-/// Errors of which differences are printed. All that a file has are in the JSON.
+/// Errors whose differences are printed. The JSON has all errors of the file.
 pub const DIFFERENCES: [&str; 4] = ["rmse", "penumbra_rmse", "roughness", "flip"];
 
-/// Which command wrote a file.
+/// Command that wrote a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// `compare`: a `metrics.json`.
+    /// `compare`, a `metrics.json`.
     Compare,
-    /// `bench --json` or `--share`.
+    /// `bench --json` or `bench --share`.
     Bench,
     /// `reproduce --json`.
     Reproduce,
@@ -33,14 +33,14 @@ impl Source {
         match json["format"].as_str() {
             Some("antumbra-metrics") => Some(Self::Compare),
             Some("antumbra-bench" | "antumbra-share") => Some(Self::Bench),
-            // Before files of these commands named their format.
+            // Older files have no format name.
             None if json["antumbra"].is_string() && json["rows"].is_array() => Some(Self::Bench),
             None if json["exhibits"].is_array() => Some(Self::Reproduce),
             _ => None,
         }
     }
 
-    /// What would be right.
+    /// Returns the remedy to print for a wrong file.
     fn wanted(self) -> &'static str {
         match self {
             Self::Compare => "give a metrics.json that `antumbra compare` wrote",
@@ -50,70 +50,70 @@ impl Source {
     }
 }
 
-/// Figures of one row.
+/// Time and errors of one row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figures {
-    /// Its name, by which rows are paired.
+    /// Name by which rows are paired.
     pub name: String,
-    /// Median milliseconds.
+    /// Median time, milliseconds.
     pub ms: Option<f64>,
     /// Errors by key.
     pub errors: Map<String, Value>,
 }
 
-/// Another run's figures.
+/// Results of the other run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Baseline {
-    /// Its adapter's name.
+    /// Name of its adapter.
     pub adapter: String,
-    /// The commit of the program.
+    /// Commit of its program.
     pub commit: String,
     rows: Vec<Figures>,
     json: Value,
 }
 
-/// A run beside another.
+/// Comparison of a run with another.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Against {
-    /// The other run's adapter.
+    /// Adapter of the other run.
     pub adapter: String,
-    /// The other run's commit.
+    /// Commit of the other run.
     pub commit: String,
-    /// Rows that both have.
+    /// Rows that both runs have.
     pub rows: Vec<Beside>,
-    /// Geometric mean of the ratios of time.
+    /// Geometric mean of the time ratios.
     pub mean_ratio: Option<f64>,
     /// Names of rows that the other run lacks.
     pub not_there: Vec<String>,
 }
 
-/// A row beside the other run's.
+/// A row paired with the other run's.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Beside {
-    /// Its name.
+    /// Name of the row.
     pub name: String,
-    /// Milliseconds here.
+    /// Time of this run, milliseconds.
     pub ms: Option<f64>,
-    /// Milliseconds there.
+    /// Time of the other run, milliseconds.
     pub baseline_ms: Option<f64>,
-    /// Here over there: above 1 it is slower here.
+    /// Ratio of times, here / there: above 1, this run is slower.
     pub ratio: Option<f64>,
-    /// Errors here less those there, by key.
+    /// Differences of errors, here − there, by key.
     pub differences: Map<String, Value>,
 }
 
 impl Beside {
-    /// The difference of one error; `None` where one of the runs does not have it.
+    /// Returns the difference of one error; `None` unless both runs have it.
     pub fn difference(&self, key: &str) -> Option<f64> {
         self.differences.get(key).and_then(Value::as_f64)
     }
 }
 
 impl Baseline {
-    /// Reads a file that this command wrote.
+    /// Reads a file that the `source` command wrote.
     ///
     /// # Errors
-    /// Where it cannot be read, or another command wrote it.
+    /// If the file cannot be read, or another command wrote it.
     pub fn read(path: &Path, source: Source) -> Result<Self, FileError> {
         let json: Value = read_json(path, source.wanted())?;
         let bad = |why: String| FileError::bad_content(path, why, source.wanted());
@@ -133,14 +133,14 @@ impl Baseline {
         Ok(Self { adapter: text(adapter), commit: text(&json["commit"]), rows, json })
     }
 
-    /// Refuses a `metrics.json` of another view: errors and times of two views are not compared.
+    /// Checks that a `metrics.json` is of the same view, because errors and times of different views cannot be compared.
     ///
     /// # Errors
-    /// One line with what differs.
+    /// A message that names the first difference.
     pub fn check_view(&self, path: &Path, report: &[(&str, Value)]) -> Result<(), LabError> {
         let there = |key: &str| if key == "size" { &self.json["size"] } else { &self.json["scene"][key] };
         let Some((key, here)) = report.iter().find(|(key, here)| there(key) != here) else { return Ok(()) };
-        // A setup is a page of text.
+        // A setup is a page of text, so its values are not printed.
         let what = if *key == "setup" {
             "its camera or lights differ from those here".to_owned()
         } else {
@@ -149,7 +149,7 @@ impl Baseline {
         Err(LabError::Request(format!("--baseline {}: {what}; give the metrics.json of the same view", path.display())))
     }
 
-    /// Holds rows against those of the same name.
+    /// Pairs rows with those of the same name.
     pub fn against(&self, rows: &[Figures]) -> Against {
         let mut against = Against { adapter: self.adapter.clone(), commit: self.commit.clone(), ..Against::default() };
         for row in rows {
@@ -182,7 +182,7 @@ fn beside(row: &Figures, other: &Figures) -> Beside {
 }
 
 impl Against {
-    /// What it is held against, and the mean of the ratios.
+    /// Returns one line: the other run, the mean ratio of times, and missing rows.
     pub fn summary(&self) -> String {
         let mean = self.mean_ratio.map_or_else(String::new, |mean| {
             format!("; here over there, geometric mean of {} times: {mean:.3}", self.timed())
@@ -198,7 +198,7 @@ impl Against {
         self.rows.iter().filter(|row| row.ratio.is_some()).count()
     }
 
-    /// Rows of a table, with its heading.
+    /// Returns the rows of a table, heading first.
     pub fn table(&self) -> Vec<Vec<String>> {
         let has_errors = self.rows.iter().any(|row| !row.differences.is_empty());
         let keys: &[&str] = if has_errors { &DIFFERENCES } else { &[] };
@@ -227,9 +227,9 @@ fn of_metrics(json: &Value) -> Vec<Figures> {
     figures.collect()
 }
 
-/// Figures of rows of `bench`.
+/// Returns the figures of rows of `bench`.
 pub fn of_bench(rows: &[BenchRow]) -> Vec<Figures> {
-    // Files from before rows had names.
+    // Older files have no row names.
     let plain = rows.iter().map(|row| plain_name(&row.scene, UVec2::from_array(row.size), &row.technique));
     let figures = rows.iter().zip(numbered(plain, ", ")).filter_map(|(row, name)| {
         let BenchOutcome::Ran { timings, .. } = &row.outcome else { return None };
@@ -239,7 +239,7 @@ pub fn of_bench(rows: &[BenchRow]) -> Vec<Figures> {
     figures.collect()
 }
 
-/// Figures of measured rows of exhibits.
+/// Returns the figures of measured rows of exhibits.
 pub fn of_reproduced(results: &[ExhibitResult]) -> Vec<Figures> {
     let rows = results.iter().flat_map(|result| result.rows.iter().map(move |row| (result, row)));
     let figures = rows.filter_map(|(result, row)| match &row.outcome {
@@ -272,7 +272,7 @@ fn of_exhibit_row(exhibit: &str, what: &str, form: &str, measured: &Value) -> Fi
     Figures { name, ms: measured["ms"].as_f64(), errors: numbers(errors.collect()) }
 }
 
-/// Those of the values that are numbers.
+/// Returns the entries that are numbers.
 pub(crate) fn numbers(values: Map<String, Value>) -> Map<String, Value> {
     values.into_iter().filter(|(_, value)| value.is_number()).collect()
 }

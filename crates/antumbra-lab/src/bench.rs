@@ -1,4 +1,4 @@
-//! The time of every pass of every technique: scenes × sizes × techniques.
+//! Timing of every pass of every technique: scenes × sizes × techniques.
 
 mod file;
 
@@ -22,132 +22,132 @@ use crate::progress::Progress;
 use crate::technique_run::{StartUp, TechniqueChoice, TechniqueRun, Timing, Timings, create, parameters_of};
 use crate::view::View;
 
-/// A scene to measure.
+/// Scene to measure.
 #[derive(Clone, Debug)]
 pub struct BenchScene {
-    /// How it was named: `builtin:street`, a path.
+    /// Scene as named on the command line: `builtin:street`, a path.
     pub spec: String,
-    /// The scene.
+    /// Geometry and materials.
     pub scene: Scene,
-    /// Its camera and lights.
+    /// Camera and lights.
     pub setup: Setup,
-    /// Which of the lights is measured.
+    /// Index of the measured light.
     pub light: usize,
 }
 
-/// How many frames a measurement has, where there is time.
+/// Number of frames of a measurement, if time permits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frames {
-    /// Before the timed ones.
+    /// Number of warm-up frames.
     pub warm_up: u32,
-    /// Timed.
+    /// Number of timed frames.
     pub timed: u32,
 }
 
-/// What to measure.
+/// Request for measurements.
 #[derive(Clone, Copy, Debug)]
 pub struct BenchRequest<'a> {
-    /// Scenes.
+    /// Scenes to measure.
     pub scenes: &'a [BenchScene],
-    /// Techniques.
+    /// Techniques to measure.
     pub choices: &'a [TechniqueChoice],
-    /// Sizes of images, pixels.
+    /// Image sizes, pixels.
     pub sizes_px: &'a [UVec2],
     /// Frames of a measurement.
     pub frames: Frames,
-    /// Time that the measurements share equally.
+    /// Total time, shared equally by the measurements.
     pub at_most: Duration,
-    /// When it ends, whatever is missing, and how long a technique may take.
+    /// Deadline of the run, and time limit per technique.
     pub limits: Limits,
 }
 
 /// One measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BenchRow {
-    /// `builtin:street, 640x360, pcss`; several techniques of one name, with other settings, are numbered: `pcss, 2`.
+    /// Name: `builtin:street, 640x360, pcss`. Techniques of the same name with other settings are numbered: `pcss, 2`.
     #[serde(default)]
     pub name: String,
-    /// How the scene was named.
+    /// Scene as named on the command line.
     pub scene: String,
-    /// Its triangles as drawn.
+    /// Number of drawn triangles.
     pub triangles: usize,
-    /// The name of the light.
+    /// Name of the light.
     pub light: String,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// The technique's name.
+    /// Name of the technique.
     pub technique: String,
-    /// Every parameter with its value.
+    /// All parameters with their values.
     pub parameters: Map<String, Value>,
-    /// The limit of a technique, seconds, where it cut this short.
+    /// Time limit that cut the measurement short, seconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cut_short_s: Option<f64>,
-    /// Time that the measurement took in all, seconds.
+    /// Total duration of the measurement, seconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-    /// What came of it.
+    /// Outcome of the measurement.
     #[serde(flatten)]
     pub outcome: BenchOutcome,
 }
 
-/// What came of a measurement.
+/// Outcome of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BenchOutcome {
-    /// It ran.
+    /// The measurement ran.
     Ran {
-        /// Times.
+        /// Times of frames and passes.
         timings: Timings,
         /// GPU memory that the technique holds, bytes.
         memory_bytes: u64,
-        /// Texels along a side of each map whose size is `auto`.
+        /// Side of each map whose size is `auto`, texels.
         #[serde(default)]
         auto_map_sizes: Vec<u32>,
-        /// Time before its first result.
+        /// Time before the first result.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         start_up: Option<StartUp>,
     },
-    /// The device lacks something, the scene does not suit, or there was no time.
+    /// Reason why there is no result: unsupported by the device, unsuitable scene, or no time left.
     Skipped(String),
 }
 
-/// Why a row has no times that there was no time for.
+/// Reason of rows for which no time was left.
 const NO_TIME: &str = "no time was left for it";
 
-/// Rows so far.
+/// Rows of a run in progress.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BenchRows {
-    /// What was measured, or cannot be, in the plan's order.
+    /// Measured or unsupported rows, in the plan's order.
     pub rows: Vec<BenchRow>,
-    /// What was not measured yet, in the same order; each says that there was no time.
+    /// Rows not measured yet, in the plan's order; each states that no time was left.
     pub missing: Vec<BenchRow>,
 }
 
 impl BenchRows {
-    /// All rows, those without a result where no time was left included.
+    /// Returns all rows, including those for which no time was left.
     pub fn all(&self) -> Vec<BenchRow> {
         self.rows.iter().chain(&self.missing).cloned().collect()
     }
 
-    /// Names of what is missing.
+    /// Returns the names of the missing rows.
     pub fn missing_names(&self) -> Vec<&str> {
         self.missing.iter().map(|row| row.name.as_str()).collect()
     }
 }
 
-/// A measurement in the plan.
+/// A planned measurement.
 struct Job<'a> {
     name: String,
     size_px: UVec2,
     choice: &'a TechniqueChoice,
 }
 
-/// Measures every scene at every size with every technique but for `earlier` rows, and ends within `at_most` but for the measurement
-/// that runs then: each has an equal share of the time that is left, so that what fast ones leave falls to slow ones, and those for which
-/// none is left are missing. `each` receives what there is after every measurement.
+/// Measures every scene at every size with every technique, except `earlier` rows, within `at_most` plus the last running measurement.
+/// Each measurement gets an equal share of the remaining time, so time that fast ones do not use goes to slow ones. Rows without time are
+/// missing. `each` receives the rows after every measurement.
 ///
 /// # Errors
-/// Where a parameter is wrong or the device fails, and those of `each`; a technique that the device cannot run is a skipped row.
+/// If a parameter is wrong, the device fails, or `each` fails. A technique that the device cannot run is a skipped row.
 pub fn bench(
     lab: &LabDevice,
     request: &BenchRequest<'_>,
@@ -183,12 +183,12 @@ pub fn bench(
     Ok(run.rows())
 }
 
-/// A row's name, before rows of the same are numbered: `builtin:street, 640x360, pcss`.
+/// Returns a row's name before duplicates are numbered: `builtin:street, 640x360, pcss`.
 pub(crate) fn plain_name(scene: &str, size_px: UVec2, technique: &str) -> String {
     format!("{scene}, {}x{}, {technique}", size_px.x, size_px.y)
 }
 
-/// The measurements of a scene, size by size. Techniques of one name are numbered.
+/// Returns the measurements of a scene, by size. Techniques of the same name are numbered.
 fn jobs<'a>(request: &BenchRequest<'a>, scene: &BenchScene) -> Vec<Vec<Job<'a>>> {
     let of_size = |&size_px: &UVec2| {
         let names = request.choices.iter().map(|choice| plain_name(&scene.spec, size_px, &choice.name()));
@@ -198,11 +198,11 @@ fn jobs<'a>(request: &BenchRequest<'a>, scene: &BenchScene) -> Vec<Vec<Job<'a>>>
     request.sizes_px.iter().map(of_size).collect()
 }
 
-/// A run of measurements.
+/// State of a run.
 struct Run<'a> {
     lab: &'a LabDevice,
     request: &'a BenchRequest<'a>,
-    /// When the time that is shared is over.
+    /// Time at which the shared time ends.
     over: Instant,
     pace: Pace,
     done: BTreeMap<String, BenchRow>,
@@ -223,7 +223,7 @@ impl<'a> Run<'a> {
         Self { lab, request, over: Instant::now() + request.at_most, pace, done }
     }
 
-    /// One measurement; `None` if there is no time for it.
+    /// Makes one measurement; `None` if no time is left.
     fn measure(&mut self, view: &View<'_>, scene: &BenchScene, job: &Job<'_>) -> Result<Option<BenchRow>, LabError> {
         let left = self.over.saturating_duration_since(Instant::now());
         if left.is_zero() {
@@ -275,7 +275,7 @@ fn empty_row(scene: &BenchScene, view: &View<'_>, job: &Job<'_>) -> BenchRow {
     BenchRow { triangles: view.triangle_count(), ..unmeasured(scene, job) }
 }
 
-/// Row of what there was no time for.
+/// Returns the row of a measurement for which no time is left.
 fn unmeasured(scene: &BenchScene, job: &Job<'_>) -> BenchRow {
     BenchRow {
         name: job.name.clone(),
@@ -337,7 +337,7 @@ mod tests {
         assert_eq!(run(request(minute, over), Vec::new()).missing_names()[1], "builtin:overlap, 32x18, pcf");
         let all = run(request(minute, Limits::default()), Vec::new());
         assert_eq!((outcomes(&all), all.missing.len()), (vec!["hard 3".to_owned(), "pcf 3".to_owned()], 0));
-        // What is there stays as it is.
+        // Existing rows stay unchanged.
         let resumed = run(request(minute, Limits::default()), all.rows[..1].to_vec());
         assert_eq!((&resumed.rows[0], outcomes(&resumed)), (&all.rows[0], outcomes(&all)));
     }

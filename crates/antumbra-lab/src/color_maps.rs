@@ -1,25 +1,24 @@
-//! Numbers as colours: signed errors on a diverging map, magnitudes on a sequential one.
+//! Colour maps: diverging for signed errors, sequential for magnitudes.
 //!
-//! **Signed error** e = V − V_ref runs over a fixed ±0.5, so that pictures of different techniques can be held side by
-//! side: deep red = leak (at least 0.5 too bright), white = right, deep blue = overshadow (at least 0.5 too dark). The
-//! map is ColorBrewer's *RdBu*, which stays legible with the common kinds of colour blindness. Pixels that are not
-//! judged (background, or turned away from the light) are a flat dark grey, which the map does not contain, and values
-//! that are not finite are magenta.
+//! **Signed error** e = V − V_ref has the fixed range ±0.5, so that images of different techniques are comparable: deep red = leak (at
+//! least 0.5 too bright), white = correct, deep blue = overshadow (at least 0.5 too dark). The map is ColorBrewer's *RdBu*, which is
+//! legible with the common kinds of colour blindness. Pixels that are not judged (background, or facing away from the light) are a flat
+//! dark grey, which the map does not contain. Values that are not finite are magenta.
 
 use image::RgbImage;
 
 use crate::picture::{Visibility, rgb_image};
 
-/// The error at either end of [`signed_error_color`]'s map.
+/// Absolute error at which [`signed_error_color`] saturates.
 pub const SIGNED_ERROR_RANGE: f32 = 0.5;
 
-/// Pixels that are not judged.
+/// Colour of pixels that are not judged.
 pub const NOT_JUDGED_COLOR: [u8; 3] = [52, 55, 60];
 
-/// Values that are NaN or infinite.
+/// Colour of NaN and infinities.
 pub const NON_FINITE_COLOR: [u8; 3] = [255, 0, 255];
 
-/// The colour of a signed error: red above zero, blue below, saturating at ±[`SIGNED_ERROR_RANGE`].
+/// Returns the colour of a signed error: red above zero, blue below, saturating at ±[`SIGNED_ERROR_RANGE`].
 pub fn signed_error_color(error: f32) -> [u8; 3] {
     if !error.is_finite() {
         return NON_FINITE_COLOR;
@@ -28,7 +27,7 @@ pub fn signed_error_color(error: f32) -> [u8; 3] {
     colorous::RED_BLUE.eval_continuous(unit).into_array()
 }
 
-/// The colour of a magnitude in `[0, 1]`, dark to bright (matplotlib's *viridis*); it saturates beyond.
+/// Returns the colour of a magnitude in `[0, 1]`, dark to bright (matplotlib's *viridis*). It saturates outside.
 pub fn magnitude_color(unit: f32) -> [u8; 3] {
     if !unit.is_finite() {
         return NON_FINITE_COLOR;
@@ -36,8 +35,7 @@ pub fn magnitude_color(unit: f32) -> [u8; 3] {
     colorous::VIRIDIS.eval_continuous(f64::from(unit.clamp(0.0, 1.0))).into_array()
 }
 
-/// The signed error of every pixel; where visibility is coloured, of the channel that errs most. All three must be of
-/// one size.
+/// Returns the signed error of every pixel. Coloured visibility shows the channel with the largest error. All images must have one size.
 pub fn signed_error_map(reference: &Visibility, tested: &Visibility, judged: &[bool]) -> RgbImage {
     assert_eq!(reference.size_px, tested.size_px, "images to compare are of one size");
     let channels = reference.channel_count().max(tested.channel_count());
@@ -46,12 +44,12 @@ pub fn signed_error_map(reference: &Visibility, tested: &Visibility, judged: &[b
             return NOT_JUDGED_COLOR;
         }
         let errors = (0..channels).map(|c| tested.at(i, c) - reference.at(i, c));
-        // An ordering by magnitude in which NaN is the largest, so that it shows.
+        // This order by magnitude makes NaN the largest, so that it is visible.
         errors.max_by(|a, b| a.abs().total_cmp(&b.abs())).map_or(NOT_JUDGED_COLOR, signed_error_color)
     })
 }
 
-/// Magnitudes from 0 to `max`, which is shown brightest; pixels outside `shown` are flat grey.
+/// Returns the magnitudes from 0 to `max`, the brightest; pixels outside `shown` are flat grey.
 pub fn magnitude_map(size_px: glam::UVec2, values: &[f32], max: f32, shown: &[bool]) -> RgbImage {
     rgb_image(size_px, |i| if shown[i] { magnitude_color(values[i] / max) } else { NOT_JUDGED_COLOR })
 }

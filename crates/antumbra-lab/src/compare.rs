@@ -1,4 +1,4 @@
-//! Techniques against the truth, on one scene, seen by one camera, for one light.
+//! Comparison of techniques with the ground truth, for one scene, camera and light.
 
 mod motions;
 mod rows;
@@ -21,59 +21,59 @@ use crate::view::View;
 use rows::{measure_row, planned};
 use truth::Judge;
 
-/// What techniques are held against.
+/// Reference of a comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Truth {
-    /// Light as it is: rays to the whole light.
+    /// Traced ground truth: rays to the whole light.
     #[default]
     Traced,
-    /// Exact comparisons of each technique's own map under its own kernel of fixed width: what a filterable basis
-    /// approximates, apart from what a fixed width cannot be.
+    /// Exact comparisons in each technique's own map under its own kernel of fixed width: the value that a filterable basis approximates,
+    /// without the error of a fixed width.
     Filtered,
 }
 
-/// What to compare.
+/// Request for a comparison.
 #[derive(Clone, Debug)]
 pub struct CompareRequest<'a> {
-    /// How the scene was named: `builtin:overlap`, a path.
+    /// Scene as named on the command line: `builtin:overlap`, a path.
     pub spec: &'a str,
-    /// The scene.
+    /// Geometry and materials.
     pub scene: &'a Scene,
-    /// Camera and lights. Every light shines in the pictures.
+    /// Camera and lights. All lights contribute to the shaded images.
     pub setup: &'a Setup,
-    /// The world position that scene and setup are counted from.
+    /// World position of the origin of scene and setup.
     pub anchor: Vec3,
-    /// Which light is judged and timed.
+    /// Index of the light that is judged and timed.
     pub light: usize,
-    /// Width and height, pixels.
+    /// Width and height of the image, pixels.
     pub size_px: UVec2,
-    /// The techniques, in the order to show them.
+    /// Techniques in the order of display.
     pub choices: &'a [TechniqueChoice],
-    /// What they are held against.
+    /// Reference of the comparison.
     pub truth: Truth,
-    /// Light points for each pixel of the traced truth.
+    /// Light samples per pixel of the traced ground truth.
     pub samples: u32,
-    /// Frames to warm up, and to time.
+    /// Number of warm-up and timed frames.
     pub timing: Timing,
-    /// Pictures are shaded coherently; see [`crate::shading::Shading::bend_normals`].
+    /// Whether images are shaded coherently; see [`crate::shading::Shading::bend_normals`].
     pub coherent: bool,
-    /// What moves, where something is to.
+    /// Motions to measure, if any.
     pub motion: Option<&'a MotionOptions>,
-    /// The command line that makes the report again.
+    /// Command line that reproduces the report.
     pub command: String,
-    /// The arguments of that command line which say what is seen: scene, setup, size.
+    /// Arguments of that command line that select scene, setup and size.
     pub scene_arguments: String,
-    /// The commit of the program.
+    /// Commit of the program.
     pub commit: &'a str,
 }
 
 impl CompareRequest<'_> {
-    /// What a report depends on, for resuming it.
+    /// Returns everything that a report depends on, for resuming it.
     pub fn identity(&self, lab: &LabDevice) -> Identity {
         Identity::new(lab, self.commit, &self.settings())
     }
 
-    /// The scene's name in the report.
+    /// Returns the scene's name in the report.
     pub fn scene_name(&self) -> String {
         if self.builtin_name().is_some() { builtin::declared_name(self.spec) } else { self.scene.name.clone() }
     }
@@ -106,16 +106,16 @@ impl CompareRequest<'_> {
     }
 }
 
-/// Called with the report as far as it is, whenever there is more of it.
+/// Callback that receives the report whenever it has grown.
 pub type Each<'a> = &'a mut dyn FnMut(&Report) -> Result<(), LabError>;
 
-/// Traces the truth, runs each technique, and says how far it is from the truth. What `earlier` has, an unfinished report of the same
-/// [identity](CompareRequest::identity), is not measured again; what is not expected to end before the deadline is named in
-/// [`Report::missing`].
+/// Traces the ground truth, runs each technique, and measures its errors. `earlier` is an unfinished report of the same
+/// [identity](CompareRequest::identity); its results are not measured again. Measurements that are not expected to end before the deadline
+/// are named in [`Report::missing`].
 ///
 /// # Errors
-/// Where the scene cannot be traced, a parameter is wrong, the device fails, the deadline comes before the truth is traced, and those of
-/// `each`. A technique that the device cannot run is a row that says so.
+/// If the scene cannot be traced, a parameter is wrong, the device fails, the deadline passes before the truth is traced, or `each` fails.
+/// A technique that the device cannot run is a row with the reason.
 pub fn compare(
     lab: &LabDevice,
     request: &CompareRequest<'_>,
@@ -126,7 +126,7 @@ pub fn compare(
 ) -> Result<Report, LabError> {
     let make_view = if request.coherent { View::coherent } else { View::new };
     let view = make_view(lab, request.scene, request.setup, request.size_px)?;
-    // All parameters are looked at before the long work begins.
+    // Check all parameters before the long work begins.
     let techniques: Vec<_> = request.choices.iter().map(|choice| create(&lab.gpu(), choice)).collect();
     if let Some(error) = techniques.iter().find_map(|made| made.as_ref().err().filter(|e| !is_unsupported(e))) {
         return Err(error.clone().into());
@@ -164,7 +164,7 @@ pub fn compare(
     Ok(report)
 }
 
-/// The report before its first measurement, or as far as an earlier one has it.
+/// Returns the report before its first measurement, with the results of an earlier one.
 fn begin(
     lab: &LabDevice,
     request: &CompareRequest<'_>,
@@ -203,7 +203,7 @@ fn begin(
     }
 }
 
-/// Names what was not measured: rows, and motions of those that were.
+/// Names the missing measurements: rows, and motions of measured rows.
 fn name_missing(report: &mut Report, motions: &[Motion]) {
     let rows = report.rows.iter().filter(|row| row.is_missing).map(|row| row.technique.clone());
     let in_motion = motions.iter().flat_map(|motion| motions::open_names(&report.rows, *motion));

@@ -1,16 +1,16 @@
-//! Measurement that a time limit ended.
+//! Measurement that ended at a time limit.
 
 use std::fmt;
 use std::time::Duration;
 
-/// Why a measurement ended without a result.
+/// Reason of a measurement without a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CutShort {
-    /// As [`End::limit`](crate::limits::End).
+    /// Limit of the technique, as [`End::limit`](crate::limits::End); `None` for the run's deadline.
     pub limit: Option<Duration>,
-    /// Time that it took, seconds.
+    /// Duration until then, seconds.
     pub seconds: f64,
-    /// Frames that were drawn, too few for a result.
+    /// Number of frames drawn, too few for a result.
     pub frames: u32,
 }
 

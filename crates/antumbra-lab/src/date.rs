@@ -1,8 +1,8 @@
-//! The date for reports: UTC, as RFC 3339 writes it.
+//! Dates of reports: UTC, in RFC 3339.
 
 use std::time::SystemTime;
 
-/// Now, e.g. `2026-03-01T12:34:56Z`.
+/// Returns the current time, e.g. `2026-03-01T12:34:56Z`.
 pub fn utc_now() -> String {
     rfc3339(SystemTime::now())
 }

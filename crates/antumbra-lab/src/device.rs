@@ -1,82 +1,81 @@
-//! Adapter of the laboratory and its headless device, which keeps every error.
+//! The laboratory's adapter and headless device, which records every error.
 //!
-//! A real GPU is preferred, software Vulkan does where there is none. Errors that wgpu reports asynchronously are
-//! recorded rather than thrown from a driver's thread: [`LabDevice::check`] hands them to the caller, who can fail with
-//! the words of the first.
+//! A real GPU is preferred to software Vulkan. Errors that wgpu reports asynchronously are recorded, not thrown on a driver's thread.
+//! [`LabDevice::check`] returns the first of them to the caller.
 
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The environment variable that names the adapter when the command line does not: a part of its name, in any case.
+/// Environment variable with a part of the adapter's name, in any case. The command line takes precedence.
 pub const ADAPTER_VARIABLE: &str = "ANTUMBRA_ADAPTER";
 
-/// What the caller may choose about the device.
+/// Options of the device.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceOptions {
-    /// Part of the adapter's name, driver or backend, in any case. `None` reads [`ADAPTER_VARIABLE`], and without that
-    /// the best adapter is taken.
+    /// Part of the adapter's name, driver or backend, in any case. `None` reads [`ADAPTER_VARIABLE`]; if
+    /// that is unset, the best adapter is used.
     pub adapter: Option<String>,
-    /// Features to take where the adapter has them; `TIMESTAMP_QUERY` is always among them.
+    /// Features to enable if the adapter has them; `TIMESTAMP_QUERY` is always among them.
     pub wanted_features: wgpu::Features,
 }
 
-/// Why there is no device, or why what it computed is not to be trusted.
+/// Reason why there is no device, or why its results cannot be trusted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DeviceError {
-    /// The machine offers nothing to draw with.
+    /// The machine has no adapter.
     #[error(
         "no usable adapter; install a graphics driver, or software Vulkan: on Debian and Ubuntu \
          `apt-get install mesa-vulkan-drivers libvulkan1`"
     )]
     NoAdapter,
-    /// The adapter asked for is not there.
+    /// The requested adapter does not exist.
     #[error("no adapter whose name, driver or backend contains `{wanted}`; there are: {available}")]
     NoSuchAdapter {
-        /// What was asked for.
+        /// Requested name.
         wanted: String,
-        /// What there is.
+        /// Names of the available adapters.
         available: String,
     },
-    /// The adapter is there and cannot be used.
+    /// The adapter exists but cannot be used.
     #[error("adapter `{adapter}` is not usable: {reason}")]
     Unusable {
-        /// Its name.
+        /// Name of the adapter.
         adapter: String,
-        /// What the driver said, or which limit is short.
+        /// Message of the driver, or the limit that is too low.
         reason: String,
     },
-    /// The device refused or failed at some of the work it was given.
+    /// The device reported errors.
     #[error("the graphics device reported {count} error(s); the first: {first}")]
     Failed {
-        /// How many.
+        /// Number of errors.
         count: usize,
-        /// The first in full.
+        /// First error in full.
         first: String,
     },
-    /// The device is gone.
+    /// The device was lost.
     #[error("the graphics device was lost: {reason}; if the picture is large, try a smaller one")]
     Lost {
-        /// What the driver said.
+        /// Message of the driver.
         reason: String,
     },
 }
 
-/// An adapter, in words that people and reports can use.
+/// Description of an adapter for people and reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdapterReport {
-    /// The adapter's name, `llvmpipe (LLVM 15.0.6, 256 bits)`.
+    /// Name of the adapter, e.g. `llvmpipe (LLVM 15.0.6, 256 bits)`.
     pub name: String,
-    /// The driver's name, empty where the backend does not tell.
+    /// Name of the driver; empty if the backend does not report it.
     pub driver: String,
-    /// The driver's version.
+    /// Version of the driver.
     pub driver_info: String,
-    /// Vulkan, Metal or DirectX 12.
+    /// Graphics API: Vulkan, Metal or DirectX 12.
     pub backend: wgpu::Backend,
-    /// Discrete, integrated, virtual, CPU.
+    /// Kind of device: discrete, integrated, virtual, CPU.
     pub device_type: wgpu::DeviceType,
-    /// Everything the adapter can do.
+    /// All features of the adapter.
     pub features: wgpu::Features,
-    /// The most of everything.
+    /// All limits of the adapter.
     pub limits: wgpu::Limits,
 }
 
@@ -94,23 +93,23 @@ impl AdapterReport {
         }
     }
 
-    /// The driver's name and version, in one.
+    /// Returns the driver's name and version.
     pub fn driver_and_version(&self) -> String {
         format!("{} {}", self.driver, self.driver_info).trim().to_owned()
     }
 
-    /// Whether a CPU plays the GPU's part.
+    /// Returns whether the adapter is a software renderer.
     pub fn is_software(&self) -> bool {
         self.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Whether `part` occurs in the name, the driver or the backend, in any case.
+    /// Returns whether `part` occurs in the name, the driver or the backend, in any case.
     pub fn matches(&self, part: &str) -> bool {
         let part = part.to_lowercase();
         [&self.name, &self.driver, &self.backend.to_string()].into_iter().any(|s| s.to_lowercase().contains(&part))
     }
 
-    /// Smaller is better: real hardware first, then the API that its vendor maintains best.
+    /// Returns the rank, best first: real hardware, then the backend that vendors maintain best.
     fn rank(&self) -> (u8, u8) {
         let device_type = match self.device_type {
             wgpu::DeviceType::DiscreteGpu => 0,
@@ -128,19 +127,19 @@ impl AdapterReport {
     }
 }
 
-/// Every adapter of this machine, the one that would be taken first.
+/// Returns every adapter of this machine, in order of preference.
 pub fn list_adapters() -> Vec<AdapterReport> {
     adapters().into_iter().map(|(_, report)| report).collect()
 }
 
-/// A device, its queue, and the errors that it reported.
+/// Device with its queue and recorded errors.
 #[derive(Debug)]
 pub struct LabDevice {
-    /// The device.
+    /// Device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// Queue of the device.
     pub queue: wgpu::Queue,
-    /// The adapter it came from.
+    /// Adapter of the device.
     pub adapter: AdapterReport,
     gpu: antumbra::gpu::Gpu,
     faults: Arc<Mutex<Faults>>,
@@ -152,7 +151,7 @@ struct Faults {
     lost: Option<String>,
 }
 
-/// The renderer and the library take the device as their own handle on it.
+/// Dereferences to the library's handle on the device, as renderer and library expect it.
 impl Deref for LabDevice {
     type Target = antumbra::gpu::Gpu;
 
@@ -162,10 +161,10 @@ impl Deref for LabDevice {
 }
 
 impl LabDevice {
-    /// Makes a device on the adapter that `options` name, or on the best.
+    /// Creates a device on the adapter that `options` name, or on the best.
     ///
     /// # Errors
-    /// Where there is no adapter, not the one asked for, or none that gives a device.
+    /// If there is no adapter, the requested one does not exist, or none provides a device.
     pub fn new(options: &DeviceOptions) -> Result<Self, DeviceError> {
         let from_environment = || std::env::var(ADAPTER_VARIABLE).ok().filter(|part| !part.is_empty());
         let wanted = options.adapter.clone().or_else(from_environment);
@@ -180,7 +179,7 @@ impl LabDevice {
                 return Err(DeviceError::NoSuchAdapter { wanted, available: available.join(", ") });
             }
         }
-        // A driver that is installed without its hardware still lists an adapter; the next may work.
+        // A driver installed without its hardware still lists an adapter; the next one may work.
         let mut first_refusal = None;
         for (adapter, report) in candidates {
             match open(&adapter, report, options.wanted_features) {
@@ -191,12 +190,12 @@ impl LabDevice {
         Err(first_refusal.unwrap_or(DeviceError::NoAdapter))
     }
 
-    /// The library's handle on this device; programs are made once for all clones.
+    /// Returns the library's handle on this device. All clones share pipelines.
     pub fn gpu(&self) -> antumbra::gpu::Gpu {
         self.gpu.clone()
     }
 
-    /// Waits until all submitted work is done, then reports what went wrong since the last call.
+    /// Waits until all submitted work is done, then reports errors since the last call.
     ///
     /// # Errors
     /// The first error that the device recorded, or its loss.
@@ -218,8 +217,8 @@ impl LabDevice {
 }
 
 fn adapters() -> Vec<(wgpu::Adapter, AdapterReport)> {
-    // Debug information in SPIR-V names WGSL as its source language, which validation layers older than 2023 report
-    // as an error for every shader; `WGPU_DEBUG=1` brings it back for captures.
+    // Debug information in SPIR-V names WGSL as its source language, which validation layers older than 2023 report as an error for every
+    // shader. `WGPU_DEBUG=1` restores it for captures.
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.flags.remove(wgpu::InstanceFlags::DEBUG);
     let instance = wgpu::Instance::new(descriptor.with_env());
@@ -240,8 +239,8 @@ fn open(
     wanted_features: wgpu::Features,
 ) -> Result<LabDevice, DeviceError> {
     let unusable = |reason: String| DeviceError::Unusable { adapter: report.name.clone(), reason };
-    // WebGPU's defaults, so that what runs here runs anywhere; only pictures and scenes may be larger where they can. Where the
-    // library wants more storage buffers, for its uniforms, it holds its own to the defaults.
+    // WebGPU's default limits, so that everything runs anywhere; only images and scenes may be larger. If the library asks for more
+    // storage buffers, for its uniforms, it keeps its own use within the defaults.
     let required_limits = wgpu::Limits {
         max_texture_dimension_2d: report.limits.max_texture_dimension_2d,
         max_buffer_size: report.limits.max_buffer_size,
@@ -273,7 +272,7 @@ fn open(
     }));
     let for_loss = faults.clone();
     device.set_device_lost_callback(move |reason, message| {
-        // Dropping the device also ends here, and is no fault.
+        // Dropping the device also ends here, and is no error.
         if reason != wgpu::DeviceLostReason::Destroyed {
             for_loss.lock().unwrap_or_else(PoisonError::into_inner).lost = Some(message);
         }

@@ -1,4 +1,4 @@
-//! Errors between a scene and its report.
+//! Errors of the laboratory, from scene to report.
 
 use antumbra_reference::ReferenceError;
 use antumbra_scene::SceneError;
@@ -8,7 +8,7 @@ use crate::device::DeviceError;
 use crate::metrics::MetricsError;
 use crate::output_files::FileError;
 
-/// Why there is no picture, no comparison, no time.
+/// Reason why an image, comparison or time could not be produced.
 #[derive(Debug, thiserror::Error)]
 pub enum LabError {
     /// A scene or a setup file is wrong.
@@ -29,29 +29,29 @@ pub enum LabError {
     /// A file cannot be written or read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A technique found no room for its lists however much it made.
+    /// A technique ran out of space for its lists, however far they were enlarged.
     #[error("{technique}: {overflow}, however often the frame was drawn again; lower the map's or the image's size")]
     NoRoom {
-        /// Which technique.
+        /// Technique that failed.
         technique: antumbra::TechniqueKind,
-        /// Of what there was too much.
+        /// Lists that overflowed.
         overflow: antumbra::Overflow,
     },
-    /// A limit of time came before a frame that counts.
+    /// A time limit passed before the first valid frame.
     #[error("{technique}: {cut}")]
     CutShort {
-        /// Which technique.
+        /// Technique that was measured.
         technique: antumbra::TechniqueKind,
-        /// By which limit, after how much.
+        /// Limit, duration and number of frames.
         cut: CutShort,
     },
-    /// What was asked for does not exist: which, and what there is.
+    /// The request is invalid; the message names the argument and the alternatives.
     #[error("{0}")]
     Request(String),
 }
 
 impl LabError {
-    /// Whether the run's deadline came before there was a result.
+    /// Returns whether the run's deadline passed before there was a result.
     pub fn is_deadline(&self) -> bool {
         matches!(
             self,
@@ -59,8 +59,8 @@ impl LabError {
         )
     }
 
-    /// The reason of a measurement that gave nothing, where the others go on: the device lacks something, there is no room, or the
-    /// technique exceeds its limit.
+    /// Returns the reason of a skipped measurement after which others continue: the device lacks a feature, lists overflow, or the
+    /// technique exceeds its time limit.
     pub fn why_skipped(&self) -> Option<String> {
         match self {
             Self::Technique(antumbra::Error::Unsupported { .. }) | Self::NoRoom { .. } | Self::CutShort { .. } => {
@@ -70,7 +70,7 @@ impl LabError {
         }
     }
 
-    /// The limit that cut a measurement short, seconds; `None` for other errors.
+    /// Returns the limit that cut a measurement short, seconds; `None` for other errors.
     pub fn limit_s(&self) -> Option<f64> {
         match self {
             Self::CutShort { cut: CutShort { limit, .. }, .. } => limit.map(|limit| limit.as_secs_f64()),

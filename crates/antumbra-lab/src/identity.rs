@@ -1,4 +1,4 @@
-//! Identity of results: what they depend on. A file is resumed only where all of it is the same.
+//! Identity of results: everything that they depend on. A file is resumed only if all of it is equal.
 
 use std::path::Path;
 
@@ -8,13 +8,13 @@ use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::output_files::{FileError, read_json};
 
-/// Program, adapter and settings of a run, as they are in its file: `antumbra` (the version), `commit`, `adapter`, `driver`,
-/// `backend`, `settings`.
+/// Program, adapter and settings of a run, as stored in its file: `antumbra` (the version), `commit`,
+/// `adapter`, `driver`, `backend`, `settings`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity(Map<String, Value>);
 
 impl Identity {
-    /// Identity of a run on this device, by the program of this commit, with these settings: an object.
+    /// Creates the identity of a run from device, commit of the program, and settings (an object).
     pub fn new(lab: &LabDevice, commit: &str, settings: &Value) -> Self {
         let adapter = &lab.adapter;
         let map = json!({
@@ -29,20 +29,20 @@ impl Identity {
         Self(map)
     }
 
-    /// Its keys and values, for a file.
+    /// Returns the keys and values for a file.
     pub fn entries(&self) -> impl Iterator<Item = (&String, &Value)> {
         self.0.iter()
     }
 
-    /// What a file keeps of the settings.
+    /// Returns the settings as stored in a file.
     pub fn settings(&self) -> &Value {
         &self.0["settings"]
     }
 
-    /// Refuses to resume the file at `path`, whose keys are `there`, if it is of another run.
+    /// Checks that the file at `path`, with the keys `there`, belongs to this run.
     ///
     /// # Errors
-    /// One line with the first key that differs, its value there and here, and what would be right.
+    /// A line with the first key that differs, its two values, and a remedy.
     pub fn check(&self, path: &Path, there: &Value) -> Result<(), LabError> {
         let Some((key, there, here)) = self.difference(there) else { return Ok(()) };
         Err(LabError::Request(format!(
@@ -53,7 +53,7 @@ impl Identity {
         )))
     }
 
-    /// The first key that differs in a file, and its values there and here; of settings the one below it.
+    /// Returns the first key that differs from a file, and its values there and here; for settings, the nested key.
     fn difference(&self, there: &Value) -> Option<(String, Value, Value)> {
         let differs = |(key, here): &(&String, &Value)| there.get(key.as_str()) != Some(here);
         let (key, here) = self.0.iter().find(differs)?;
@@ -68,7 +68,7 @@ impl Identity {
     }
 }
 
-/// A value on one line of bearable length.
+/// Returns a value as one line, truncated to 80 characters.
 fn short(value: &Value) -> String {
     let text = match value {
         Value::Null => return "not in it".to_owned(),
@@ -77,10 +77,10 @@ fn short(value: &Value) -> String {
     if text.chars().count() > 80 { format!("{}…", text.chars().take(79).collect::<String>()) } else { text }
 }
 
-/// A file's JSON; `None` if there is no such file, so that a run that was stopped early is begun anew by the same line.
+/// Reads a file's JSON; `None` if there is no such file, so that the same command line also starts a new run.
 ///
 /// # Errors
-/// Where it cannot be read, or is not JSON of this format.
+/// If the file cannot be read, or is not JSON of this format.
 pub fn read_to_resume(path: &Path, format: &str) -> Result<Option<Value>, LabError> {
     const REMEDY: &str = "leave out --resume to measure anew, or name another file";
     if !path.exists() {

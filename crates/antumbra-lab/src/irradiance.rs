@@ -1,7 +1,7 @@
-//! Irradiance of surfaces by a light of unit radiance: traced, and unshadowed by the shader of the picture.
+//! Irradiance of surfaces by a light of unit radiance: traced, and unshadowed by the image's shader.
 //!
-//! What a renderer shows of a white diffuse surface is irradiance over π, and a mask is a factor of it: [`IrradianceTruth`] is the truth for
-//! the product of both.
+//! A renderer's image of a white diffuse surface is irradiance over π, and a mask is a factor of it. [`IrradianceTruth`]
+//! is the ground truth of their product.
 
 use std::f64::consts::PI;
 use std::num::NonZero;
@@ -21,19 +21,19 @@ use crate::readback::read_f32;
 use crate::truth::{SurfacePoint, is_same_surface};
 use crate::view::View;
 
-/// A light's irradiance of all that a camera sees.
+/// Irradiance of all visible surfaces by one light.
 #[derive(Clone, Debug)]
 pub struct IrradianceTruth {
-    /// By pixel, `None` for background and where the depth buffer shows another surface than the camera's ray meets: traced, and analytic
-    /// without shadows.
+    /// Traced irradiance and analytic unshadowed irradiance of each pixel; `None` for background and where depth buffer
+    /// and camera ray show different surfaces.
     pixels: Vec<Option<(TracedIrradiance, f64)>>,
 }
 
 impl IrradianceTruth {
-    /// Traces `rays` light points from every pixel of a view of the setup, of its light of this index.
+    /// Traces `rays` light samples from every pixel of a view, for the setup's light with index `light`.
     ///
     /// # Errors
-    /// Where the scene or the light cannot be traced, or the device failed.
+    /// If the scene or the light cannot be traced, or the device fails.
     pub fn new(
         lab: &LabDevice,
         scene: &Scene,
@@ -62,12 +62,12 @@ impl IrradianceTruth {
         Ok(Self { pixels: traced.into_iter().map(|traced| Some((traced?, analytic.next()?))).collect() })
     }
 
-    /// How many pixels count.
+    /// Returns the number of valid pixels.
     pub fn count(&self) -> usize {
         self.pixels.iter().flatten().count()
     }
 
-    /// The root mean square error of analytic irradiance times a mask, as a part of the mean analytic irradiance. Of colours green counts.
+    /// Returns the root mean square error of analytic irradiance times a mask (green if coloured), relative to the mean irradiance.
     pub fn rmse(&self, mask: &Visibility) -> f64 {
         self.rmse_of(|i, _| match &mask.values {
             VisibilityValues::One(values) => values[i].into(),
@@ -75,12 +75,12 @@ impl IrradianceTruth {
         })
     }
 
-    /// The same of the traced visibility: what the plain product errs by where visibility is exact.
+    /// Returns the same error for the traced visibility: the error of the plain product with exact visibility.
     pub fn rmse_of_visibility(&self) -> f64 {
         self.rmse_of(|_, traced| traced.visibility)
     }
 
-    /// The same of the traced ratio: how far analytic irradiance without shadows and its sum over points are apart.
+    /// Returns the same error for the traced ratio: the difference between analytic unshadowed irradiance and its sum over samples.
     pub fn rmse_of_ratio(&self) -> f64 {
         self.rmse_of(|_, traced| traced.arriving / traced.unshadowed.max(f64::MIN_POSITIVE))
     }
@@ -98,23 +98,23 @@ impl IrradianceTruth {
     }
 }
 
-/// What a light of unit radiance gives a surface, summed over points of the light.
+/// Irradiance by a light of unit radiance, summed over samples of the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TracedIrradiance {
-    /// What arrives past opaque casters.
+    /// Irradiance that passes the opaque casters.
     pub arriving: f64,
-    /// What would arrive without any.
+    /// Irradiance without casters.
     pub unshadowed: f64,
-    /// The fraction of the light's points that the surface sees, as `docs/formats.md` defines visibility.
+    /// Visible fraction of the light's points, as `docs/formats.md` defines visibility.
     pub visibility: f64,
 }
 
-/// Irradiance of every receiver, from one ray to each point of the light; `None` for background. Casters that let light through
-/// are left out, and a sphere is the disc that faces the receiver, as for visibility: less than the sphere by the square of its
-/// radius over its distance.
+/// Returns the irradiance of every receiver, from one ray to each point of the light; `None` for background. Casters that
+/// transmit light are ignored. A sphere is the disc that faces the receiver, as for visibility: its irradiance is less than the
+/// sphere's by the square of radius over distance.
 ///
 /// # Errors
-/// Where the light or the options are invalid.
+/// If the light or the options are invalid.
 pub fn traced(
     tracer: &Tracer,
     receivers: &Receivers,
@@ -165,7 +165,7 @@ fn traced_at(
     }
 }
 
-/// Both cosines over the squared distance.
+/// Returns the product of both cosines over the squared distance.
 fn given_by_point(light: &Light, point: &LightPoint, receiver: &ReceiverPoint) -> f64 {
     let d = point.vector_from(receiver.position).as_dvec3();
     let facing: Option<DVec3> = match light.shape {
@@ -179,8 +179,8 @@ fn given_by_point(light: &Light, point: &LightPoint, receiver: &ReceiverPoint) -
     cosines / squared
 }
 
-/// What the points of a light stand for together: square metres, of a sun on its tangent disc at a distance of 1. Of a list each
-/// point has its share of one radiant intensity.
+/// Returns the area that the light's points represent together, m²; for a sun, on its tangent disc at a distance of 1. For a list, all
+/// points share one radiant intensity.
 fn measure(light: &Light) -> f64 {
     match &light.shape {
         LightShape::Rectangle { size_m } => f64::from(size_m.x) * f64::from(size_m.y),
@@ -191,7 +191,7 @@ fn measure(light: &Light) -> f64 {
     }
 }
 
-/// Runs `irradiance` of the shader at points with normals.
+/// Shader that evaluates `irradiance` at points with normals.
 const PROBE: &str = "
 struct Receiver { pos_in_world: vec3f, normal_in_world: vec3f, }
 @group(0) @binding(0) var<uniform> light: Light;
@@ -207,14 +207,14 @@ struct Receiver { pos_in_world: vec3f, normal_in_world: vec3f, }
 }
 ";
 
-/// Receivers in a row of the probe's results.
+/// Number of receivers per row of the results.
 const ROW: u32 = 1024;
 
-/// Unshadowed irradiance by a light of unit radiance (a list of points: of unit intensity) at places with normals, as
-/// [`Shading`](crate::shading::Shading) has it.
+/// Returns the unshadowed irradiance at points with normals, by a light of unit radiance (a list of points: of unit intensity), as
+/// [`Shading`](crate::shading::Shading) computes it.
 ///
 /// # Errors
-/// Where the device failed.
+/// If the device fails.
 pub fn analytic(lab: &LabDevice, light: &Light, receivers: &[(Vec3, Vec3)]) -> Result<Vec<f32>, DeviceError> {
     if receivers.is_empty() {
         return Ok(Vec::new());

@@ -1,39 +1,39 @@
-//! The laboratory of Antumbra: it holds shadow techniques against ray-traced truth and says what it saw.
+//! The laboratory of Antumbra compares shadow techniques with ray-traced ground truth and reports the results.
 //!
-//! The rooms, in the order in which data flows through them:
+//! Modules, in the order of the data flow:
 //!
-//! - [`picture`] — what a picture and a visibility image are here; plain data on the CPU.
-//! - [`metrics`] — how far a visibility image is from the truth, in the terms of the project's file formats.
+//! - [`picture`] — images and visibility masks: plain data on the CPU.
+//! - [`metrics`] — errors of a visibility mask, as the project's file formats define them.
 //! - [`color_maps`] — signed errors and magnitudes as colours.
-//! - [`image_io`] — PNG and OpenEXR, written and read.
-//! - [`output_files`] — files and folders that appear whole or not at all.
-//! - [`report`] — a folder that opens in a browser: pictures, numbers, milliseconds, and how to get them again.
+//! - [`image_io`] — reading and writing of PNG and OpenEXR.
+//! - [`output_files`] — files and folders that appear completely or not at all.
+//! - [`report`] — a folder for a browser: images, errors, times, and the command that reproduces them.
 //!
-//! None of those knows the GPU. These do:
+//! None of these uses the GPU. These do:
 //!
-//! - [`device`] — which adapter, and a device whose errors are kept.
-//! - [`gpu_scene`] — a scene on the GPU: the room of that name in `antumbra-render`, as [`picture`] is.
-//! - [`receivers`], [`shading`] — that crate's passes, waited for.
-//! - [`readback`] — textures back on the CPU.
-//! - [`irradiance`] — what a light gives surfaces: traced, and by the picture's own shader.
+//! - [`device`] — the adapter, and a device that records errors.
+//! - [`gpu_scene`] — a scene on the GPU: re-exported from `antumbra-render`, as is [`picture`].
+//! - [`receivers`], [`shading`] — that crate's passes, with waiting for their results.
+//! - [`readback`] — copies of textures on the CPU.
+//! - [`irradiance`] — irradiance of surfaces: traced, and by the image's shader.
 //!
-//! And these are what the commands do:
+//! And these implement the commands:
 //!
-//! - [`truth`] — every light of a setup, traced.
-//! - [`scene_facts`] — what a scene is like for shadows.
-//! - [`technique_run`] — one technique on one view for one light, timed once frames are alike (`stopwatch`).
-//! - [`view`] — a scene as one camera sees it, ready for techniques.
-//! - [`compare`] — techniques against the truth, as a report.
+//! - [`truth`] — ground truth of every light of a setup.
+//! - [`scene_facts`] — properties of a scene that matter for shadows.
+//! - [`technique_run`] — one technique on one view for one light, timed once frame times have settled (`stopwatch`).
+//! - [`view`] — a scene seen by one camera, ready for techniques.
+//! - [`compare`] — techniques against the ground truth, as a report.
 //! - [`motion`] — techniques while camera, light or a caster moves.
 //! - [`bench`](mod@bench) — scenes × sizes × techniques.
-//! - [`suite`] — everything that BENCHMARKS shows, in slices.
-//! - [`advise`](mod@advise) — which technique, with what settings, for a scene and a budget.
-//! - [`preset`] — a technique with its parameters as a file.
+//! - [`suite`] — all measurements of BENCHMARKS, in slices.
+//! - [`advise`](mod@advise) — the best technique and settings for a scene and a budget.
+//! - [`preset`] — files with a technique and its parameters.
 //! - [`sweep`] — scenes × sizes × settings as jobs in files, for many machines.
 //! - [`reproduce`] — the papers' tables and figures beside ours.
 //! - [`limits`], [`identity`] — when a run ends, and which file it may resume: shared by all of these.
-//! - [`baseline`], [`share`] — results beside those of another adapter.
-//! - [`progress`], [`error`] — what they tell while they work, and when they cannot.
+//! - [`baseline`], [`share`] — comparison with results of another adapter.
+//! - [`progress`], [`error`] — progress messages and errors.
 
 mod adapter_info;
 pub mod advise;

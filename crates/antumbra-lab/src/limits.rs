@@ -1,9 +1,8 @@
-//! Time limits of a run of measurements, shared by `bench`, `compare` and `reproduce`: when the run has to end, and how long one
-//! technique may take.
+//! Time limits of a run of measurements, shared by `bench`, `compare` and `reproduce`: the run's deadline, and the limit per technique.
 //!
-//! A measurement begins if it is expected to end in time. It is expected to take as long as the same technique took before in this run,
-//! in proportion to the pixels where there are more of them; a technique that was not measured yet, the median of all. A frame cannot be
-//! stopped, so what runs at its end stops after the frame that is being drawn.
+//! A measurement starts only if it is expected to end in time. Its expected time is that of the same technique earlier in this run, scaled
+//! by the number of pixels if there are more; for a technique that was not measured yet, the median of all. A frame cannot be interrupted,
+//! so a measurement stops after the frame during which its time ends.
 
 use std::time::{Duration, Instant};
 
@@ -12,45 +11,45 @@ use crate::error::LabError;
 /// Time limits of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// Time by which the run ends; `None`: once everything is measured.
+    /// Deadline of the run; `None` runs until everything is measured.
     pub deadline: Option<Instant>,
-    /// The most that one measurement of a technique takes.
+    /// Time limit of one measurement of a technique.
     pub technique: Option<Duration>,
 }
 
-/// Time at which a measurement ends, whatever it has until then.
+/// End time of a measurement, with or without a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End {
-    /// No frame is begun after it.
+    /// Time after which no frame is started.
     pub at: Instant,
-    /// The limit of a technique, if that comes first; `None` is the run's deadline.
+    /// Limit of the technique if it ends the measurement; `None` if the run's deadline does.
     pub limit: Option<Duration>,
 }
 
 impl End {
-    /// Whether it has come.
+    /// Returns whether the time has passed.
     pub fn is_past(&self) -> bool {
         Instant::now() >= self.at
     }
 }
 
-/// A measurement that is planned: its technique and the number of its pixels, by which its time is expected.
+/// A planned measurement: technique and number of pixels, from which its time is estimated.
 #[derive(Clone, Copy, Debug)]
 pub struct Planned<'a> {
-    /// The technique's name.
+    /// Name of the technique.
     pub technique: &'a str,
-    /// Pixels of its image.
+    /// Number of pixels of the image.
     pub pixels: u64,
 }
 
 impl<'a> Planned<'a> {
-    /// A technique at a size.
+    /// Creates the plan of a technique at an image size.
     pub fn new(technique: &'a str, size_px: glam::UVec2) -> Self {
         Self { technique, pixels: u64::from(size_px.x) * u64::from(size_px.y) }
     }
 }
 
-/// A measurement that was made.
+/// A completed measurement.
 #[derive(Clone, Debug)]
 struct Spent {
     technique: String,
@@ -59,13 +58,13 @@ struct Spent {
 }
 
 impl Spent {
-    /// What the same takes with more pixels. With fewer, compilation and casters take as long.
+    /// Returns the estimated time at another number of pixels. Fewer pixels take as long, because of compilation and casters.
     fn expected_s(&self, pixels: u64) -> f64 {
         self.seconds * (pixels as f64 / self.pixels.max(1) as f64).max(1.0)
     }
 }
 
-/// Limits of a run, and what its measurements took.
+/// Limits of a run and the times of its measurements.
 #[derive(Clone, Debug, Default)]
 pub struct Pace {
     limits: Limits,
@@ -73,21 +72,21 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// A run that begins.
+    /// Creates the state of a new run.
     pub fn new(limits: Limits) -> Self {
         Self { limits, spent: Vec::new() }
     }
 
-    /// Takes in what a measurement took, of this run or of one that it resumes.
+    /// Records the time of a measurement, of this run or of the one that it resumes.
     pub fn took(&mut self, planned: Planned<'_>, seconds: f64) {
         let Planned { technique, pixels } = planned;
         self.spent.push(Spent { technique: technique.to_owned(), pixels, seconds });
     }
 
-    /// Makes a measurement and takes in its time. `None` if it is not expected to end before the deadline, or did not.
+    /// Makes a measurement and records its time. `None` if it is not expected to end before the deadline, or did not.
     ///
     /// # Errors
-    /// Those of the measurement, but for the deadline's.
+    /// Those of the measurement, except the deadline's.
     pub fn measure<T>(
         &mut self,
         planned: Planned<'_>,
@@ -107,18 +106,18 @@ impl Pace {
         }
     }
 
-    /// Time that is left of the run; `None` without a deadline.
+    /// Returns the remaining time of the run; `None` without a deadline.
     pub fn left(&self) -> Option<Duration> {
         self.limits.deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()))
     }
 
-    /// Whether a measurement is expected to end in time.
+    /// Returns whether a measurement is expected to end in time.
     pub fn may_begin(&self, planned: Planned<'_>) -> bool {
         let Some(left) = self.left() else { return true };
         !left.is_zero() && self.expected_s(planned) <= left.as_secs_f64()
     }
 
-    /// Seconds that a measurement is expected to take; zero while nothing is known, and no more than a technique may.
+    /// Returns the expected time of a measurement, seconds; zero if nothing is known, and at most the technique's limit.
     fn expected_s(&self, planned: Planned<'_>) -> f64 {
         let of = |spent: &&Spent| spent.technique == planned.technique;
         let same = self.spent.iter().filter(of).map(|spent| spent.expected_s(planned.pixels)).reduce(f64::max);
@@ -128,7 +127,7 @@ impl Pace {
         self.limits.technique.map_or(expected_s, |limit| expected_s.min(limit.as_secs_f64()))
     }
 
-    /// End of a measurement that began then.
+    /// Returns the end time of a measurement that began at `began`.
     fn end_of(&self, began: Instant) -> Option<End> {
         let deadline = self.limits.deadline.map(|at| End { at, limit: None });
         let technique = self.limits.technique.map(|limit| End { at: began + limit, limit: Some(limit) });
@@ -138,12 +137,12 @@ impl Pace {
         }
     }
 
-    /// The run's deadline.
+    /// Returns the run's deadline.
     pub fn deadline(&self) -> Option<Instant> {
         self.limits.deadline
     }
 
-    /// Whether what was cut short at a limit, in a run that this one resumes, may be measured for longer here.
+    /// Returns whether a measurement that the given limit cut short, in a resumed run, may take longer in this one.
     pub fn is_longer_than(&self, limit_s: Option<f64>) -> bool {
         limit_s.is_some_and(|limit_s| self.limits.technique.is_none_or(|limit| limit.as_secs_f64() > limit_s))
     }
@@ -176,7 +175,7 @@ mod tests {
             !pace.may_begin(Planned::new("unknown", 4 * SIZE_PX)),
             "the median, 2 s, for sixteen times as many pixels"
         );
-        // No technique takes longer than its limit.
+        // No technique is expected to take longer than its limit.
         let limited =
             Pace { limits: Limits { technique: Some(Duration::from_secs(3)), ..pace.limits }, ..pace.clone() };
         assert!(limited.may_begin(large("slow")));

@@ -1,23 +1,20 @@
-//! Error metrics of a visibility image against the truth, as `metrics.json` defines them.
+//! Error metrics of a visibility mask against the ground truth, as `metrics.json` defines them.
 //!
-//! All but [`flip`](Metrics::flip) are over *judged* pixels: those with geometry that faces the light's centre, given
-//! as a mask. What the definitions leave open, and what is done here:
+//! All except [`flip`](Metrics::flip) are over *judged* pixels: those with geometry that faces the light's centre, given as a mask.
+//! Details that the definitions leave open:
 //!
-//! - **Coloured visibility.** Each channel of each judged pixel is one sample, so a mean is over pixels and channels,
-//!   and the sets `penumbra`, `umbra` and `lit` are chosen channel by channel. A one-channel image held against a
-//!   coloured one stands for all three channels.
-//! - **NaN and infinities** in the tested image are never dropped: each counts as the wrong end of [0, 1] (0 where the
-//!   truth is above ½, else 1), so as an error of at least ½, and [`Metrics::non_finite`] says how many there were.
-//!   A reference that is not finite is an error.
-//! - **Finite values outside [0, 1]** count as they are.
+//! - **Coloured visibility.** Each channel of each judged pixel is one sample, so a mean is over pixels and channels, and the sets
+//!   `penumbra`, `umbra` and `lit` are chosen per channel. A one-channel mask compared with a coloured one represents all three channels.
+//! - **NaN and infinities** in the tested mask are never dropped. Each counts as the wrong end of [0, 1] (0 where the truth is above ½,
+//!   else 1), so as an error of at least ½, and [`Metrics::non_finite`] counts them. A reference that is not finite is an error.
+//! - **Finite values outside [0, 1]** are not clamped.
 //! - **The 99th percentile** interpolates between the two nearest order statistics at rank 0.99·(n − 1).
-//! - **SSIM** (Wang, Bovik, Sheikh and Simoncelli, *Image Quality Assessment: From Error Visibility to Structural
-//!   Similarity*, IEEE Transactions on Image Processing, 2004), with its 11 × 11 Gaussian window of σ = 1.5,
-//!   K₁ = 0.01, K₂ = 0.03 and L = 1, masked: a window's weights are zero at pixels that are not judged or lie outside
-//!   the image and are scaled to sum to one again; windows stand at every judged pixel, and their mean is the result.
-//!   So nothing that is not judged leaks into a window, and an image that is judged everywhere gets the paper's values
-//!   but for the windows that overlap its border, which the paper's implementation leaves out.
-//! - **Roughness** has a module of its own, `metrics/roughness.rs`.
+//! - **SSIM** (Wang, Bovik, Sheikh and Simoncelli, *Image Quality Assessment: From Error Visibility to Structural Similarity*, IEEE
+//!   Transactions on Image Processing, 2004), with its 11 × 11 Gaussian window of σ = 1.5, K₁ = 0.01, K₂ = 0.03 and L = 1, is masked. A
+//!   window's weights are zero at pixels that are not judged or lie outside the image, and are normalised again. There is a window at
+//!   every judged pixel, and the result is their mean. So no unjudged pixel affects a window. An image that is judged everywhere gets the
+//!   paper's values, except that the paper's implementation omits windows that overlap the border.
+//! - **Roughness** has its own module, `metrics/roughness.rs`.
 //! - **Empty sets** have no mean: `None`, which JSON writes as null.
 
 mod flip;
@@ -34,81 +31,81 @@ use roughness::Roughness;
 pub use roughness::TILE_PX;
 use ssim::add_ssim;
 
-/// At or below this a reference value is umbra, at or above one minus this it is lit; between them lies penumbra.
+/// Thresholds of the reference: umbra below the first, lit above the second, penumbra between them.
 pub(crate) const UMBRA_BELOW: f32 = 0.01;
 pub(crate) const LIT_ABOVE: f32 = 0.99;
 
-/// Errors of a technique against the truth. Visibility is a fraction, so all but `ssim` and the counts are fractions
-/// too; 0 is best for all but `ssim`, where 1 is.
+/// Errors of a technique. Visibility is a fraction, so all except `ssim` and the counts are fractions
+/// too. The best value is 0, for `ssim` 1.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
-    /// Root of the mean squared error.
+    /// Root mean square error.
     pub rmse: Option<f64>,
     /// Mean absolute error.
     pub mae: Option<f64>,
     /// 99th percentile of the absolute error.
     pub p99: Option<f64>,
-    /// Mean of `max(0, V − V_ref)`: light where there should be less.
+    /// Mean of `max(0, V − V_ref)`: too much light.
     pub leak: Option<f64>,
-    /// Mean of `max(0, V_ref − V)`: shadow where there should be less.
+    /// Mean of `max(0, V_ref − V)`: too much shadow.
     pub overshadow: Option<f64>,
-    /// Root of the mean squared error where `0.01 < V_ref < 0.99`.
+    /// Root mean square error where `0.01 < V_ref < 0.99`.
     pub penumbra_rmse: Option<f64>,
     /// Mean `V` where `V_ref < 0.01`.
     pub umbra_leak: Option<f64>,
     /// Mean `1 − V` where `V_ref > 0.99`.
     pub lit_loss: Option<f64>,
-    /// Mean structural similarity of the visibility images; 1 where they are equal.
+    /// Mean structural similarity of the visibility masks; 1 if they are equal.
     pub ssim: Option<f64>,
-    /// Mean FLIP of the shaded pictures, over the whole picture, at 67 pixels per degree; see [`FlipMap`].
+    /// Mean FLIP of the shaded images, over the whole image, at 67 pixels per degree; see [`FlipMap`].
     pub flip: Option<f64>,
-    /// Visible artefacts: rms of the error's detail where the truth is smooth.
+    /// Visible artefacts: root mean square of the error's detail where the truth is smooth.
     pub roughness: Option<f64>,
-    /// The same over the worst tile of 32 × 32 pixels, 0 where the truth is not smooth.
+    /// Roughness of the worst tile of 32 × 32 pixels; 0 where the truth is not smooth.
     pub worst_tile: Option<f64>,
-    /// Mean FLIP of the shaded pictures over that tile: whether an eye sees it there.
+    /// Mean FLIP of the shaded images over that tile: whether its error is visible.
     pub worst_tile_flip: Option<f64>,
     /// Column and row of that tile's upper left pixel.
     pub worst_tile_at: Option<[u32; 2]>,
-    /// Judged pixels: with geometry that faces the light's centre.
+    /// Number of judged pixels: with geometry that faces the light's centre.
     pub pixels: u64,
-    /// Samples of judged pixels that were NaN or infinite.
+    /// Number of NaN and infinite samples of judged pixels.
     pub non_finite: u64,
 }
 
-/// Why two images cannot be compared.
+/// Reason why two images cannot be compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MetricsError {
     /// The images differ in size.
     #[error("the images differ in size: {reference} is the reference's, {tested} the other's; render both at one size")]
     Sizes {
-        /// The reference's, pixels.
+        /// Size of the reference, pixels.
         reference: UVec2,
-        /// The tested image's, pixels.
+        /// Size of the tested image, pixels.
         tested: UVec2,
     },
-    /// The mask of judged pixels is not the image's.
+    /// The mask of judged pixels has another size than the image.
     #[error("the mask holds {mask} pixels and the image {image}")]
     Mask {
-        /// Pixels of the mask.
+        /// Number of pixels of the mask.
         mask: usize,
-        /// Pixels of the image.
+        /// Number of pixels of the image.
         image: usize,
     },
-    /// The reference holds NaN or an infinity.
+    /// The reference contains NaN or an infinity.
     #[error("the reference is {value} at pixel ({x}, {y}); trace it again")]
     Reference {
-        /// Column.
+        /// Column of the pixel.
         x: usize,
-        /// Row, from the top.
+        /// Row of the pixel, from the top.
         y: usize,
-        /// What stands there.
+        /// Value of the pixel.
         value: f32,
     },
 }
 
-/// Compares a visibility image with the truth over the pixels where `judged` is true; what FLIP tells stays
-/// `None` until [`Metrics::add_flip`].
+/// Compares a visibility mask with the ground truth over the pixels where `judged` is true. FLIP values
+/// are `None` until [`Metrics::add_flip`].
 pub fn compare_visibility(
     reference: &Visibility,
     tested: &Visibility,
@@ -152,7 +149,7 @@ pub fn compare_visibility(
     })
 }
 
-/// The `rmse` and `roughness` of [`compare_visibility`] alone, to the bit, for whoever asks often.
+/// Computes only `rmse` and `roughness`, bit-identical to [`compare_visibility`], for frequent calls.
 pub fn visibility_errors(
     reference: &Visibility,
     tested: &Visibility,
@@ -174,16 +171,16 @@ pub fn visibility_errors(
     Ok(VisibilityErrors { rmse: squared.mean().map(f64::sqrt), roughness: roughness.rms() })
 }
 
-/// Two of the [`Metrics`].
+/// Subset of the [`Metrics`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VisibilityErrors {
-    /// Root of the mean squared error.
+    /// Root mean square error.
     pub rmse: Option<f64>,
     /// Visible artefacts.
     pub roughness: Option<f64>,
 }
 
-/// Pixels and channels of images that fit one another.
+/// Checks that images match. Returns the numbers of pixels and channels.
 fn checked(reference: &Visibility, tested: &Visibility, judged: &[bool]) -> Result<(usize, usize), MetricsError> {
     if reference.size_px != tested.size_px {
         return Err(MetricsError::Sizes { reference: reference.size_px, tested: tested.size_px });
@@ -195,7 +192,7 @@ fn checked(reference: &Visibility, tested: &Visibility, judged: &[bool]) -> Resu
     Ok((pixels, reference.channel_count().max(tested.channel_count())))
 }
 
-/// The truth at a pixel, and what was tested: where that is not finite, the wrong end of [0, 1].
+/// Returns reference and tested value of a pixel; a tested value that is not finite is replaced by the wrong end of [0, 1].
 fn sample(reference: &Visibility, tested: &Visibility, i: usize, channel: usize) -> Result<(f32, f32), MetricsError> {
     let v_ref = reference.at(i, channel);
     if !v_ref.is_finite() {
@@ -207,7 +204,7 @@ fn sample(reference: &Visibility, tested: &Visibility, i: usize, channel: usize)
     Ok((v_ref, if v.is_finite() { v } else { wrong }))
 }
 
-/// A mean that knows when it is empty.
+/// Mean that is `None` when empty.
 #[derive(Default)]
 struct Mean {
     sum: f64,
@@ -225,7 +222,7 @@ impl Mean {
     }
 }
 
-/// What one walk over the samples collects.
+/// Sums over all samples.
 #[derive(Default)]
 struct Sums {
     squared: Mean,
@@ -259,7 +256,7 @@ impl Sums {
     }
 }
 
-/// The value at rank `fraction · (n − 1)` of the sorted values, interpolated between its neighbours. Reorders `values`.
+/// Returns the value at rank `fraction · (n − 1)` of the sorted values, interpolated between its neighbours. Reorders `values`.
 fn percentile(values: &mut [f64], fraction: f64) -> Option<f64> {
     let last = values.len().checked_sub(1)?;
     let rank = fraction * last as f64;
@@ -332,7 +329,7 @@ mod tests {
 
         let broken = compare_visibility(&image(&[0.0, f32::NAN]), &image(&[0.0, 0.0]), &[true; 2]);
         assert!(matches!(broken, Err(MetricsError::Reference { x: 1, y: 0, .. })));
-        // Where nobody judges, a reference may hold anything.
+        // Pixels that are not judged may have any reference value.
         assert!(compare_visibility(&image(&[0.0, f32::NAN]), &image(&[0.0, 0.0]), &[true, false]).is_ok());
     }
 

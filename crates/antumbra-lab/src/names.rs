@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Names, of which those that come more than once are numbered from the second on: `pcss`, `pcss-2` with `-` as the separator.
+/// Returns the names with repeated ones numbered from the second on: `pcss`, `pcss-2` with `-` as the separator.
 pub(crate) fn numbered(names: impl IntoIterator<Item = String>, separator: &str) -> Vec<String> {
     let mut counts: BTreeMap<String, u32> = BTreeMap::new();
     let numbered = |name: String| {

@@ -1,9 +1,9 @@
-//! A technique with its parameters as a file: what `advise` writes, and what is read wherever a technique is named.
+//! Preset: a technique with its parameters in a file. `advise` writes it, and it is accepted wherever a technique is named.
 //!
 //! ```toml
-//! technique = "pcss"     # or with a quality, "pcss:fast", whose parameters come first
+//! technique = "pcss"     # or with a quality, "pcss:fast", whose parameters apply first
 //!
-//! [parameters]           # what is not named keeps its default
+//! [parameters]           # others keep their defaults
 //! map_size = 2048
 //! means = "ranges"
 //! ```
@@ -23,13 +23,13 @@ const REMEDY: &str =
 /// Reads a preset.
 ///
 /// # Errors
-/// Where the file cannot be read, is no preset, or names what does not exist.
+/// If the file cannot be read, is no preset, or has an unknown technique or parameter.
 pub fn read_preset(path: &Path) -> Result<TechniqueChoice, FileError> {
     let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
     parse(&text).map_err(|why| FileError::bad_content(path, why, REMEDY))
 }
 
-/// The preset's text.
+/// Returns the text of a preset.
 pub fn preset_toml(choice: &TechniqueChoice) -> String {
     let mut text = format!("technique = \"{}\"\n\n[parameters]\n", choice.name());
     for (key, value) in &choice.settings {
@@ -72,7 +72,7 @@ fn parse(text: &str) -> Result<TechniqueChoice, String> {
     Ok(choice)
 }
 
-/// A parameter's value as `--set` has it.
+/// Returns a parameter's value in the syntax of `--set`.
 fn text_of(value: &Value) -> Option<String> {
     match value {
         Value::String(text) => Some(text.clone()),

@@ -1,18 +1,18 @@
-//! Observers of long work. The laboratory reports what it does and how far it is; the caller decides what to show.
+//! Progress of long work. The laboratory reports stages and steps; the caller decides what to show.
 
 /// Receiver of progress reports of long work. All methods may be called from any thread.
 pub trait Progress: Sync {
-    /// A stage begins that has `steps` steps.
+    /// Starts a stage with `steps` steps.
     fn begin(&self, stage: &str, steps: u64);
-    /// `done` of the stage's steps are done.
+    /// Reports that `done` of the stage's steps are done.
     fn reach(&self, done: u64);
-    /// The stage is over.
+    /// Ends the stage.
     fn end(&self);
-    /// Something that the user should read, once: a technique skipped, a part of a scene left out.
+    /// Reports something that the user should read, once: a skipped technique, an omitted part of a scene.
     fn note(&self, text: &str);
 }
 
-/// Nobody watches.
+/// Progress receiver that ignores everything.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

@@ -1,11 +1,11 @@
-//! Textures and buffers back on the CPU; rows of textures tightly packed, the top row first.
+//! Readback of textures and buffers to the CPU. Rows of textures are tightly packed, top row first.
 
 use crate::device::{DeviceError, LabDevice};
 
 /// Reads an `R32Float` or `Depth32Float` texture: `width · height` values.
 ///
 /// # Errors
-/// Where the device failed, now or in the work before.
+/// If the device fails, also in earlier work.
 pub fn read_f32(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<f32>, DeviceError> {
     read_texels(lab, texture, 0)
 }
@@ -13,7 +13,7 @@ pub fn read_f32(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<f32>, De
 /// Reads one layer of an `R32Float` array: `width · height` values.
 ///
 /// # Errors
-/// Where the device failed, now or in the work before.
+/// If the device fails, also in earlier work.
 pub fn read_f32_layer(lab: &LabDevice, texture: &wgpu::Texture, layer: u32) -> Result<Vec<f32>, DeviceError> {
     read_texels(lab, texture, layer)
 }
@@ -21,7 +21,7 @@ pub fn read_f32_layer(lab: &LabDevice, texture: &wgpu::Texture, layer: u32) -> R
 /// Reads an `Rgba32Float` texture: `width · height` texels.
 ///
 /// # Errors
-/// Where the device failed, now or in the work before.
+/// If the device fails, also in earlier work.
 pub fn read_rgba32f(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[f32; 4]>, DeviceError> {
     read_texels(lab, texture, 0)
 }
@@ -29,23 +29,23 @@ pub fn read_rgba32f(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[f32
 /// Reads an `Rgba32Uint` texture: `width · height` texels.
 ///
 /// # Errors
-/// Where the device failed, now or in the work before.
+/// If the device fails, also in earlier work.
 pub fn read_rgba32u(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[u32; 4]>, DeviceError> {
     read_texels(lab, texture, 0)
 }
 
-/// Reads a texture of four bytes a texel, as they are stored: `width · height` texels.
+/// Reads a texture of four bytes per texel, as stored: `width · height` texels.
 ///
 /// # Errors
-/// Where the device failed, now or in the work before.
+/// If the device fails, also in earlier work.
 pub fn read_rgba8(lab: &LabDevice, texture: &wgpu::Texture) -> Result<Vec<[u8; 4]>, DeviceError> {
     read_texels(lab, texture, 0)
 }
 
-/// Reads the first values of a buffer with usage `COPY_SRC`: as many as it holds, `most` at the most.
+/// Reads the first values of a buffer with usage `COPY_SRC`: all of them, but at most `most`.
 ///
 /// # Errors
-/// Where the device failed, now or in the work before.
+/// If the device fails, also in earlier work.
 pub fn read_buffer<T: bytemuck::Pod>(
     lab: &LabDevice,
     source: &wgpu::Buffer,
@@ -68,17 +68,17 @@ fn readback_buffer(lab: &LabDevice, size: u64) -> wgpu::Buffer {
     })
 }
 
-/// A buffer's bytes once all that was submitted is done.
+/// Returns a buffer's bytes after all submitted work is done.
 fn mapped(lab: &LabDevice, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, DeviceError> {
     buffer.map_async(wgpu::MapMode::Read, .., |_| {});
-    // A copy that was refused leaves nothing mapped; the device's own words say why.
+    // A rejected copy leaves nothing mapped; the device's error has the reason.
     lab.check()?;
     buffer
         .get_mapped_range(..)
         .map_err(|error| DeviceError::Failed { count: 1, first: format!("cannot map what was read back: {error}") })
 }
 
-/// Copies the first level of a layer of a texture with usage `COPY_SRC` through a buffer, and waits.
+/// Reads the first mip level of a layer of a texture with usage `COPY_SRC` through a buffer, and waits.
 fn read_texels<T: bytemuck::Pod>(lab: &LabDevice, texture: &wgpu::Texture, layer: u32) -> Result<Vec<T>, DeviceError> {
     let (width, height) = (texture.width(), texture.height());
     let row_bytes = width as usize * size_of::<T>();

@@ -1,4 +1,4 @@
-//! Receivers of `antumbra-render`, rendered and waited for, with readback on demand.
+//! Receivers of `antumbra-render`: rendered synchronously, with readback on demand.
 
 use std::ops::Deref;
 use std::time::Instant;
@@ -15,7 +15,7 @@ use crate::stopwatch::{FrameCount, Seen, Stopwatch, Timing, clock_rise};
 use crate::technique_run::median;
 use crate::truth::SurfacePoint;
 
-/// The images of one layer, drawn.
+/// Rendered images of one layer.
 #[derive(Clone, Debug)]
 pub struct ReceiverImages(receivers::ReceiverImages);
 
@@ -28,32 +28,32 @@ impl Deref for ReceiverImages {
 }
 
 impl ReceiverImages {
-    /// As the renderer takes them.
+    /// Returns the renderer's type.
     pub fn into_inner(self) -> receivers::ReceiverImages {
         self.0
     }
 
-    /// World positions by pixel, in single precision and operation by operation as the library's shaders have them;
-    /// `None` for background.
+    /// Reads the world position of each pixel, in single precision with the same operations as the
+    /// library's shaders; `None` for background.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn read_shader_positions(&self, lab: &LabDevice) -> Result<Vec<Option<Vec3>>, DeviceError> {
         Ok(self.shader_positions(&read_f32(lab, &self.depth)?))
     }
 
-    /// World positions by pixel, rebuilt from depth; `None` where there is nothing. `width · height` of them.
+    /// Reads the world position of each of `width · height` pixels, reconstructed from depth; `None` for background.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn read_positions(&self, lab: &LabDevice) -> Result<Vec<Option<Vec3>>, DeviceError> {
         Ok(self.positions(&read_f32(lab, &self.depth)?))
     }
 
-    /// What is drawn at each pixel: positions rebuilt from depth, with the normals; `None` where there is nothing.
+    /// Reads the surface at each pixel: position reconstructed from depth, and normal; `None` for background.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn read_surface_points(&self, lab: &LabDevice) -> Result<Vec<Option<SurfacePoint>>, DeviceError> {
         let normals = read_rgba32f(lab, &self.geometric_normal)?;
         let point = |(position, normal): (Option<Vec3>, [f32; 4])| {
@@ -63,21 +63,21 @@ impl ReceiverImages {
     }
 }
 
-/// The pass that draws them.
+/// Render pass of the receiver images.
 #[derive(Debug)]
 pub struct ReceiverPass(receivers::ReceiverPass);
 
 impl ReceiverPass {
-    /// Makes the pipelines.
+    /// Creates the pipelines.
     pub fn new(lab: &LabDevice) -> Self {
         Self(receivers::ReceiverPass::new(lab))
     }
 
-    /// Draws a layer of `scene` and waits for it, to know what is seen. `size_px` must be positive and within the
-    /// device's largest texture.
+    /// Renders a layer of `scene`, waits for it, and records the visible positions. `size_px` must be positive and
+    /// within the device's maximum texture size.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn render(
         &self,
         lab: &LabDevice,
@@ -92,7 +92,7 @@ impl ReceiverPass {
         Ok(images)
     }
 
-    /// The same, shifted by a part of a pixel, without waiting and without what is seen: for pictures alone.
+    /// Renders shifted by a fraction of a pixel, without waiting and without visible positions: for images only.
     pub(crate) fn render_shifted(
         &self,
         lab: &LabDevice,
@@ -112,11 +112,11 @@ impl ReceiverPass {
         images
     }
 
-    /// Draws a layer again and again: the median time from submission to completion, milliseconds, by the processor's clock, and of
-    /// how many drawings it is.
+    /// Renders a layer repeatedly. Returns the median time from submission to completion, milliseconds, on the
+    /// CPU's clock, and the number of frames.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn time(
         &self,
         lab: &LabDevice,
@@ -127,7 +127,7 @@ impl ReceiverPass {
     ) -> Result<(f64, FrameCount), DeviceError> {
         let groups = self.0.draw_groups(lab, scene);
         let (mut watch, mut times_ms) = (Stopwatch::new(*timing, clock_rise(lab.adapter.is_software())), Vec::new());
-        // One is always timed.
+        // At least one frame is timed.
         let has_ended = |watch: &Stopwatch| watch.is_done() || (watch.is_over() && watch.has_timed());
         while !has_ended(&watch) {
             let mut encoder =

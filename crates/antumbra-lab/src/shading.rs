@@ -1,4 +1,4 @@
-//! The picture, waited for: the shading of `antumbra-render`, and its picture on the CPU.
+//! Shading of `antumbra-render`, executed synchronously, with its image on the CPU.
 
 use antumbra_light::Light;
 pub use antumbra_render::shading::VisibilitySource;
@@ -12,7 +12,7 @@ use crate::picture::Picture;
 use crate::readback::read_rgba32f;
 use crate::receivers::{Layer, ReceiverImages, ReceiverPass};
 
-/// Shades one view under one set of lights, as often as there are visibilities to see.
+/// Shading of one view with one set of lights, for any number of visibility masks.
 #[derive(Debug)]
 pub struct Shading {
     shading: shading::Shading,
@@ -20,10 +20,10 @@ pub struct Shading {
 }
 
 impl Shading {
-    /// Makes ready to shade what `images` show of `scene` under `lights`.
+    /// Prepares the shading of `images` of `scene` with `lights`.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn new(
         lab: &LabDevice,
         scene: &GpuScene,
@@ -40,7 +40,7 @@ impl Shading {
         Ok(Self::of_layers(lab, &ShadingPrograms::new(&lab.device), images, behind, lights, &seen))
     }
 
-    /// The same of both layers, drawn, with lights exposed to some points.
+    /// Prepares the shading of both layers, already rendered. The lights' exposure is computed at the points `seen`.
     pub(crate) fn of_layers(
         lab: &LabDevice,
         programs: &ShadingPrograms,
@@ -54,20 +54,20 @@ impl Shading {
         Self { shading, size_px: images.size_px }
     }
 
-    /// Shades coherently from now on; see [`shading::Shading::bend_normals`].
+    /// Switches to coherent shading; see [`shading::Shading::bend_normals`].
     pub fn bend_normals(&mut self, lab: &LabDevice, scene: &GpuScene, images: &ReceiverImages) {
         let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("bent") });
         self.shading.bend_normals(lab, &mut encoder, scene, images);
         lab.queue.submit([encoder.finish()]);
     }
 
-    /// The picture of the same `images`, each light seen through its visibility.
+    /// Returns the shaded image of the same `images`, each light multiplied by its visibility.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     ///
     /// # Panics
-    /// Where there are not as many visibilities as lights, or one is of another size than the picture.
+    /// If the numbers of visibilities and lights differ, or one has another size than the image.
     pub fn picture(
         &self,
         lab: &LabDevice,

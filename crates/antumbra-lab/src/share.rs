@@ -1,7 +1,7 @@
-//! Results that the owner of a graphics card can send: one file for `bench/cards`, and the page of all of them.
+//! Results that owners of graphics cards can send: one file each for `bench/cards`, and the page of all cards.
 //!
-//! A file holds what the device says of itself and what was measured: nothing of the machine's owner, its name or its folders. So only
-//! built-in scenes are measured, and each key is written by name.
+//! A file has data about the device and measurements, but nothing about the machine's owner, host name or folders. Therefore only built-in
+//! scenes are measured, and every key is written explicitly.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -20,40 +20,40 @@ use crate::report::utc_now;
 const FORMAT: &str = "antumbra-share";
 const VERSION: u32 = 1;
 
-/// Cards side by side in one table.
+/// Maximum number of cards side by side in one table.
 const ACROSS: usize = 6;
 
-/// Results of one adapter by one version of the program.
+/// Results of one adapter with one version of the program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SharedFile {
     format: String,
     version: u32,
-    /// Of the program.
+    /// Version of the program.
     pub antumbra: String,
-    /// Of the program.
+    /// Commit of the program.
     pub commit: String,
     /// Day of the measurement: `2026-11-27`.
     pub date: String,
-    /// Name of the operating system and of the processor's architecture: `linux x86_64`.
+    /// Operating system and processor architecture: `linux x86_64`.
     pub system: String,
-    /// As the driver names it.
+    /// Name reported by the driver.
     pub adapter: String,
     /// Driver and version.
     pub driver: String,
-    /// Vulkan, Metal, …
+    /// Graphics API: Vulkan, Metal, …
     pub backend: String,
-    /// The adapter is a program on the CPU.
+    /// Whether the adapter is a software renderer.
     pub software: bool,
-    /// Frames before the timed ones that were asked for.
+    /// Requested number of warm-up frames.
     pub warm_up: u32,
-    /// Timed frames that were asked for.
+    /// Requested number of timed frames.
     pub frames: u32,
     /// Measurements.
     pub rows: Vec<BenchRow>,
 }
 
 impl SharedFile {
-    /// What there is to send of a run.
+    /// Creates the file of a run.
     pub fn new(lab: &LabDevice, commit: &str, frames: Frames, rows: &BenchRows) -> Self {
         let adapter = &lab.adapter;
         Self {
@@ -73,10 +73,10 @@ impl SharedFile {
         }
     }
 
-    /// Reads a file that was sent.
+    /// Reads a shared file.
     ///
     /// # Errors
-    /// Where it cannot be read or holds something else.
+    /// If the file cannot be read or has other content.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         const REMEDY: &str = "give files that `antumbra bench --share` wrote";
         let file: Self = read_json(path, REMEDY)?;
@@ -86,16 +86,16 @@ impl SharedFile {
         Ok(file)
     }
 
-    /// Name of a column: the adapter, and the commit.
+    /// Returns the title of a column: adapter and commit.
     fn title(&self) -> String {
         format!("{}, {}", self.adapter, self.commit)
     }
 }
 
-/// Refuses scenes that are files: their names are their owners' own.
+/// Rejects scenes from files, because file names are private.
 ///
 /// # Errors
-/// One line with the first such scene.
+/// A line with the first such scene.
 pub fn check_scenes(specs: &[String]) -> Result<(), LabError> {
     match specs.iter().find(|spec| builtin::spec_of(spec).is_none()) {
         Some(spec) => Err(LabError::Request(format!(
@@ -105,10 +105,10 @@ pub fn check_scenes(specs: &[String]) -> Result<(), LabError> {
     }
 }
 
-/// All files of a folder, in the order of adapters and dates.
+/// Reads all files of a folder, in order of adapters and dates.
 ///
 /// # Errors
-/// Where the folder has none, or one cannot be read.
+/// If the folder has none, or one cannot be read.
 pub fn read_folder(dir: &Path) -> Result<Vec<SharedFile>, FileError> {
     let entries = std::fs::read_dir(dir).map_err(|error| FileError::from_read(dir, &error))?;
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
@@ -122,7 +122,7 @@ pub fn read_folder(dir: &Path) -> Result<Vec<SharedFile>, FileError> {
     Ok(files)
 }
 
-/// The page of all cards: which there are, and a table of times for each scene and size.
+/// Returns the page of all cards: a list, and a table of times per scene and size.
 pub fn markdown(files: &[SharedFile]) -> String {
     let mut text = "# Times by graphics card\n\n\
         Times of techniques at their default settings on graphics cards, one file for each card in `bench/cards`. To add yours:\n\n\
@@ -147,7 +147,7 @@ pub fn markdown(files: &[SharedFile]) -> String {
 
 type Card<'a> = (&'a SharedFile, Vec<&'a BenchRow>);
 
-/// The rows of each scene and size, by card.
+/// Groups the rows by scene and size, and then by card.
 fn by_scene(files: &[SharedFile]) -> BTreeMap<(String, [u32; 2]), Vec<Card<'_>>> {
     let mut scenes: BTreeMap<_, Vec<Card<'_>>> = BTreeMap::new();
     for file in files {
@@ -168,7 +168,7 @@ fn table(scene: &str, [width, height]: [u32; 2], cards: &[Card<'_>]) -> String {
         titles.join(" | "),
         "---:|".repeat(cards.len())
     );
-    // Techniques in the library's order, then qualities and what an older version had.
+    // Techniques in the library's order, then qualities and techniques of other versions.
     let mut techniques: Vec<String> = TechniqueKind::ALL.iter().map(|kind| kind.name().to_owned()).collect();
     for row in cards.iter().flat_map(|(_, rows)| rows) {
         if !techniques.contains(&row.technique) {
@@ -184,7 +184,7 @@ fn table(scene: &str, [width, height]: [u32; 2], cards: &[Card<'_>]) -> String {
     text
 }
 
-/// Milliseconds; a dash for what the adapter cannot run, nothing for what was not measured.
+/// Formats milliseconds; a dash if the adapter cannot run the technique, empty if not measured.
 fn cell(rows: &[&BenchRow], technique: &str) -> String {
     match rows.iter().find(|row| row.technique == technique).map(|row| &row.outcome) {
         None => String::new(),
@@ -258,7 +258,7 @@ mod tests {
         assert!(check_scenes(&["builtin:knot?triangles=1000".into()]).is_ok());
     }
 
-    /// The page is of the files beside it.
+    /// The page of cards is up to date with the files.
     #[test]
     fn the_page_of_cards_is_what_the_files_say() {
         let bench = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../bench");

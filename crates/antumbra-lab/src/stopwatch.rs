@@ -1,16 +1,15 @@
-//! Choice of the frames to time: those after which nothing new is compiled, created or found.
+//! Choice of the frames to time: those after all compilation, allocation and resizing.
 //!
-//! Drivers compile when a program is made, when it first runs, and once more where a texture's format or a number is another one;
-//! techniques find the room for their lists over some frames. None of that tells when it is over, so that it is seen by what frames
-//! take: a frame counts once
+//! Drivers compile when a pipeline is created, when it first runs, and again when a texture's format or a number changes. Techniques find
+//! the size of their lists over some frames. No event marks the end of this, so it is detected from frame times. A frame counts once
 //!
-//! - it has made no object of the library's,
-//! - it took about as long as the one before it ([`ALIKE`]),
-//! - as many frames as asked for came before it, or those took all the time that there is, and
-//! - the processor that draws them has been at work for long enough to have raised its clock ([`clock_rise`]).
+//! - it has created no wgpu resource of the library,
+//! - it took about as long as the previous one ([`ALIKE`]),
+//! - the requested number of frames preceded it, or those took all the available time, and
+//! - the adapter has worked for long enough to raise its clock ([`clock_rise`]).
 //!
-//! A frame that makes an object later begins all of it anew. So the second frame is the first that can count, however long frames are;
-//! on a graphics card the first that follows one that only drew.
+//! A later frame that creates a resource restarts this. So the second frame is the first that can count, however long frames are; on a
+//! graphics card, the first one after a frame that only rendered.
 
 use std::fmt;
 use std::time::Duration;
@@ -19,33 +18,33 @@ use serde::{Deserialize, Serialize};
 
 use crate::limits::End;
 
-/// How long and how often to measure.
+/// Number of frames and time limits of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
-    /// Frames before the timed ones, at least; one is always drawn, and as many more as it takes until frames are alike and a graphics card's
-    /// clock has risen.
+    /// Minimum number of warm-up frames. At least one is drawn, and more until frame times have settled
+    /// and a graphics card's clock has risen.
     pub warm_up: u32,
-    /// Timed frames, where there is time.
+    /// Number of timed frames, if time permits.
     pub frames: u32,
-    /// Short ones are timed more often, until they took this long together: a scheduler takes away milliseconds at a time.
+    /// Minimum total time of the timed frames, for which short frames are repeated, because a scheduler takes milliseconds at a time.
     pub at_least: Duration,
-    /// Once timed frames took this long together, no further one is begun; one is always timed.
+    /// Total time of timed frames after which no further one is started; at least one is timed.
     pub at_most: Duration,
-    /// No frame is begun after it, be one timed or not.
+    /// Time after which no frame is started, timed or not.
     pub end: Option<End>,
 }
 
-/// How many frames a time is the median of, and after how many: what stands beside every time.
+/// Numbers of timed and warm-up frames of a median, printed with every time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FrameCount {
-    /// Timed frames.
+    /// Number of timed frames.
     pub frames: u32,
-    /// Frames before them.
+    /// Number of warm-up frames.
     pub warm_up: u32,
 }
 
 impl FrameCount {
-    /// The fewest frames, and the fewest before them, of some counts; `None` of none.
+    /// Returns the minimum of both numbers over some counts; `None` without counts.
     pub(crate) fn least(counts: impl IntoIterator<Item = Self>) -> Option<Self> {
         let fewer = |a: Self, b: Self| Self { frames: a.frames.min(b.frames), warm_up: a.warm_up.min(b.warm_up) };
         counts.into_iter().reduce(fewer)
@@ -62,54 +61,52 @@ impl fmt::Display for FrameCount {
     }
 }
 
-/// Two frames after one another are alike where one takes at most so many times as long as the other. What compiles takes many
-/// times as long; what the scheduler takes away from a frame of some milliseconds is less than half of it, but now and then.
+/// Maximum ratio of the times of two consecutive frames that are alike. Compilation takes many times as long; the scheduler mostly takes
+/// less than half of a frame of some milliseconds.
 const ALIKE: f64 = 1.5;
 
-/// Beyond those that are asked for, and those in which a clock rises, no more frames are drawn to warm up: some machine's frames are never
-/// alike.
+/// Maximum number of warm-up frames beyond the requested ones and those in which a clock rises. On some machines frame times never settle.
 const MOST_WARM_UP: u32 = 16;
 
-/// After so many times as long as a clock takes to rise, frames count though they make something.
+/// Multiple of the clock's rise time after which frames count even if they create resources.
 const ENDLESS: f64 = 20.0;
 
-/// However short frames are, no more are timed than this or what is asked for.
+/// Maximum number of timed frames, unless more are requested.
 const MOST_TIMED: u32 = 200;
 
-/// How long an adapter works before its times count. A graphics card that waited runs at a fraction of its clock, and frames of a
-/// millisecond are over long before it has noticed that there is work: on an NVIDIA H200 five of them took four times as long after
-/// a pause as without.
+/// Returns how long an adapter works before its times count. An idle graphics card runs at a fraction of its clock, and frames of a
+/// millisecond end long before the clock rises: on an NVIDIA H200, five of them took four times as long after a pause as without one.
 pub(crate) fn clock_rise(is_software: bool) -> Duration {
     Duration::from_millis(if is_software { 0 } else { 150 })
 }
 
-/// What a frame took.
+/// Measurement of one frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Seen {
-    /// From its preparation to its completion, by the processor's clock, milliseconds.
+    /// Time from preparation to completion, on the CPU's clock, milliseconds.
     pub(crate) ms: f64,
-    /// It made programs, buffers, textures, views or bind groups.
+    /// Whether the frame created pipelines, buffers, textures, views or bind groups.
     pub(crate) has_made: bool,
 }
 
-/// Watches frames go by and says when there are enough.
+/// State that decides which frames count and when there are enough.
 #[derive(Debug)]
 pub(crate) struct Stopwatch {
     timing: Timing,
     clock_rise: Duration,
     before_ms: Option<f64>,
-    /// Frames that were seen, and of those the ones before the first that counts.
+    /// Number of frames, and of those before the first that counts.
     seen: u32,
     warm_up: u32,
     is_warm: bool,
     warming_ms: f64,
-    /// Of that, frames that made nothing: a driver that compiles keeps no graphics card at work.
+    /// Time of warm-up frames that created nothing, because compilation does not load a graphics card.
     worked_ms: f64,
     timed_ms: f64,
 }
 
 impl Stopwatch {
-    /// On an adapter that works for so long before its times count: see [`clock_rise`].
+    /// Creates the state for an adapter with the given rise time of its clock, see [`clock_rise`].
     pub(crate) fn new(timing: Timing, clock_rise: Duration) -> Self {
         let Timing { frames, .. } = timing;
         let timing = Timing { frames: frames.max(1), ..timing };
@@ -126,18 +123,18 @@ impl Stopwatch {
         }
     }
 
-    /// Takes a frame in.
+    /// Adds a frame.
     pub(crate) fn see(&mut self, Seen { ms, has_made }: Seen) {
         let before_ms = self.before_ms.replace(ms);
         self.seen += 1;
         let ms_of = |duration: Duration| duration.as_secs_f64() * 1e3;
         let at_most_ms = ms_of(self.timing.at_most);
         let rise_ms = ms_of(self.clock_rise).min(at_most_ms);
-        // A technique that makes something in every frame ends, too.
+        // Ends even if a technique creates a resource in every frame.
         let is_roused = self.worked_ms >= rise_ms || self.warming_ms >= ENDLESS * rise_ms;
         let is_last_chance = self.seen > self.timing.warm_up + MOST_WARM_UP && is_roused;
         if self.is_warm && has_made && !is_last_chance {
-            // What had been timed was not the whole of it.
+            // The frames timed so far were not representative.
             (self.is_warm, self.timed_ms, self.worked_ms) = (false, 0.0, 0.0);
         }
         if !self.is_warm {
@@ -145,7 +142,7 @@ impl Stopwatch {
             let is_alike = before_ms.is_some_and(|before_ms| are_alike(before_ms, ms));
             self.is_warm = (is_alike && !has_made && is_long_enough && is_roused) || is_last_chance;
             self.warm_up = self.seen - u32::from(self.is_warm);
-            // The first is of the driver's compiler, and tells nothing of how long frames are.
+            // The first frame includes driver compilation, so its time is not counted.
             let counts_ms = if before_ms.is_some() { ms } else { 0.0 };
             self.warming_ms += counts_ms;
             self.worked_ms += if has_made { 0.0 } else { counts_ms };
@@ -155,12 +152,12 @@ impl Stopwatch {
         }
     }
 
-    /// Forgets what it has seen: it was of something else.
+    /// Restarts, because the previous frames had other work.
     pub(crate) fn begin_anew(&mut self) {
         *self = Self::new(self.timing, self.clock_rise);
     }
 
-    /// Whether there are enough.
+    /// Returns whether enough frames are timed.
     pub(crate) fn is_done(&self) -> bool {
         let timed = self.seen - self.warm_up;
         let ms = |duration: Duration| duration.as_secs_f64() * 1e3;
@@ -170,22 +167,22 @@ impl Stopwatch {
         self.is_warm && (is_enough || is_over)
     }
 
-    /// Whether the end has come, be there enough or not.
+    /// Returns whether the end time has passed, with or without enough frames.
     pub(crate) fn is_over(&self) -> bool {
         self.timing.end.is_some_and(|end| end.is_past())
     }
 
-    /// Whether a frame counts.
+    /// Returns whether at least one frame counts.
     pub(crate) fn has_timed(&self) -> bool {
         self.seen > self.warm_up
     }
 
-    /// Whether the end came before there was enough.
+    /// Returns whether the end time passed before there were enough frames.
     pub(crate) fn is_cut_short(&self) -> bool {
         !self.is_done() && self.is_over()
     }
 
-    /// Frames before the first that counts.
+    /// Returns the number of frames before the first that counts.
     pub(crate) fn warm_up(&self) -> u32 {
         self.warm_up
     }
@@ -202,7 +199,8 @@ mod tests {
     const TIMING: Timing =
         Timing { warm_up: 1, frames: 3, at_least: Duration::ZERO, at_most: Duration::from_secs(3), end: None };
 
-    /// Frames until it is done: how many warmed up, and which count. A negative number is a frame that makes something.
+    /// Adds frames until done. Returns the number of warm-up frames and the frames that count. Negative
+    /// numbers are frames that create resources.
     fn counted(timing: Timing, frames_ms: &[f64]) -> (u32, Vec<f64>) {
         let mut watch = Stopwatch::new(timing, Duration::ZERO);
         for (i, ms) in frames_ms.iter().enumerate() {
@@ -218,11 +216,11 @@ mod tests {
     #[test]
     fn what_compiles_does_not_count() {
         assert_eq!(counted(TIMING, &[-30_907.0, 24.0, 25.0, 23.0, 24.0]), (2, vec![25.0, 23.0, 24.0]));
-        // Programs run first, and are compiled, over several frames.
+        // Pipelines run first, and are compiled, over several frames.
         assert_eq!(counted(TIMING, &[-900.0, -400.0, 80.0, 20.0, 21.0, 20.0, 22.0]), (4, vec![21.0, 20.0, 22.0]));
-        // Two that compile may take alike, and make something.
+        // Two compiling frames may take equally long, and create resources.
         assert_eq!(counted(TIMING, &[-900.0, -900.0, 20.0, 20.0, 20.0, 20.0]), (3, vec![20.0; 3]));
-        // What has been compiled before.
+        // Everything was compiled before.
         assert_eq!(counted(TIMING, &[-26.0, 24.0, 24.0, 24.0]), (1, vec![24.0; 3]));
     }
 
@@ -232,7 +230,7 @@ mod tests {
         assert_eq!((warm_up, timed), (5, vec![31.0, 30.0, 31.0]));
     }
 
-    /// However long a frame is, a second one is drawn, and is enough.
+    /// Even if frames are long, a second one is drawn and suffices.
     #[test]
     fn long_frames_are_two() {
         assert_eq!(counted(TIMING, &[-41_000.0, 40_000.0]), (1, vec![40_000.0]));
@@ -259,7 +257,7 @@ mod tests {
             watch.see(Seen { ms: if frames < 10 { 8.0 } else { 2.0 }, has_made: frames == 0 });
             frames += 1;
         }
-        // Nine of 8 ms after the first, fourteen of 2.
+        // Nine of 8 ms after the first, and fourteen of 2 ms.
         assert_eq!((watch.warm_up(), frames), (24, 27));
         let mut short_of_time = Stopwatch::new(Timing { at_most: Duration::ZERO, ..TIMING }, Duration::from_secs(1));
         (0..3).for_each(|_| short_of_time.see(Seen { ms: 2.0, has_made: false }));
@@ -273,7 +271,7 @@ mod tests {
         assert_eq!(counted(Timing { frames: 0, ..TIMING }, &[5.0; 3]), (1, vec![5.0]), "one is always timed");
     }
 
-    /// A machine on which no two frames are alike, or a technique that makes something in each, ends too.
+    /// The measurement ends even if no two frames are alike, or if every frame creates a resource.
     #[test]
     fn it_ends() {
         let frames: Vec<f64> = (0..30).map(|i| if i % 2 == 0 { 10.0 } else { 30.0 }).collect();

@@ -1,4 +1,4 @@
-//! Measurements in memory and in a file, from which interrupted work is resumed.
+//! Measurements in memory and in a file, from which interrupted work resumes.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,15 +11,15 @@ use serde_json::Value;
 use crate::error::LabError;
 use crate::output_files::{FileError, read_json, write_atomically};
 
-/// The file is written no oftener.
+/// Minimum time between writes of the file.
 const WRITE_EVERY: Duration = Duration::from_secs(1);
 
-/// Which files are read: those of one command, in the shape that this program writes.
+/// Kind of file: format of one command, in this program's version.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kind {
-    /// What the file says of itself.
+    /// Format name in the file.
     pub(crate) format: &'static str,
-    /// Of that shape.
+    /// Version of the format.
     pub(crate) version: u32,
 }
 
@@ -31,21 +31,21 @@ struct File<R> {
     rows: BTreeMap<String, R>,
 }
 
-/// All measurements, by name.
+/// All measurements by name.
 #[derive(Debug)]
 pub(crate) struct Store<R> {
     path: Option<PathBuf>,
     file: File<R>,
     written: Instant,
-    /// What this run has measured itself.
+    /// Number of measurements made in this run.
     pub(crate) fresh: usize,
 }
 
 impl<R: Serialize + DeserializeOwned> Store<R> {
-    /// That of a file, with what stands there from before; without one, of memory alone. `about` is what measurements depend on.
+    /// Opens the store of a file with its earlier measurements, or a store in memory. `about` is what measurements depend on.
     ///
     /// # Errors
-    /// Where the file is of something else, or cannot be read or written.
+    /// If the file belongs to another run, or cannot be read or written.
     pub(crate) fn open(path: Option<PathBuf>, kind: Kind, about: Value) -> Result<Self, LabError> {
         let mut file = File { format: kind.format.into(), version: kind.version, about, rows: BTreeMap::new() };
         if let Some(path) = path.as_deref().filter(|path| path.exists()) {
@@ -85,7 +85,7 @@ impl<R: Serialize + DeserializeOwned> Store<R> {
     }
 }
 
-/// FNV-1a of 64 bits (Fowler, Noll, Vo): it tells contents apart, and protects against nothing.
+/// FNV-1a hash of 64 bits (Fowler, Noll, Vo). It distinguishes contents, and is not cryptographic.
 pub(crate) fn fingerprint(bytes: impl IntoIterator<Item = u8>) -> String {
     let hash = bytes
         .into_iter()
@@ -102,7 +102,7 @@ fn read<R: DeserializeOwned>(path: &Path, kind: Kind) -> Result<File<R>, FileErr
     Ok(file)
 }
 
-/// The first key in which two descriptions differ.
+/// Returns the first key in which two descriptions differ, with both values.
 fn difference(there: &Value, here: &Value) -> Option<String> {
     let keys = here.as_object()?.keys();
     let differs = |key: &&String| there.get(key.as_str()) != here.get(key.as_str());

@@ -1,4 +1,4 @@
-//! One technique, on one view, for one light: made, set, prepared, warmed up, timed, and its mask read back.
+//! Run of one technique, on one view, for one light: creation, preparation, warm-up, timing, and readback of the mask.
 
 mod choice;
 mod frames;
@@ -29,47 +29,47 @@ pub use choice::{Extras, TechniqueChoice};
 pub(crate) use timings::median;
 pub use timings::{Clock, PassStatistics, Timings};
 
-/// What a technique drew.
+/// Result of drawing a technique.
 #[derive(Debug)]
 pub struct Drawn {
-    /// The mask.
+    /// Visibility mask.
     pub visibility: Visibility,
-    /// GPU memory that the technique takes for the light, bytes.
+    /// GPU memory of the technique for the light, bytes.
     pub memory_bytes: u64,
-    /// Texels along a side of each map whose size is `auto`; none where sizes are given.
+    /// Side of each map whose size is `auto`, texels; empty if sizes are given.
     pub auto_map_sizes: Vec<u32>,
 }
 
 /// Time before a technique's first result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StartUp {
-    /// Making its pipelines, milliseconds: those that no technique before it has made on this device.
+    /// Time to create its pipelines, milliseconds, except those that earlier techniques created on this device.
     pub compile_ms: f64,
-    /// Its first frame, milliseconds, in which drivers compile what they put off, and memory is made.
+    /// Time of its first frame, milliseconds, including deferred driver compilation and memory allocation.
     pub first_frame_ms: f64,
 }
 
-/// What a technique gave.
+/// Result of running a technique.
 #[derive(Debug)]
 pub struct TechniqueRun {
-    /// The mask.
+    /// Visibility mask.
     pub visibility: Visibility,
-    /// Its times.
+    /// Times of frames and passes.
     pub timings: Timings,
-    /// GPU memory that the technique takes for the light, bytes.
+    /// GPU memory of the technique for the light, bytes.
     pub memory_bytes: u64,
-    /// Texels along a side of each map whose size is `auto`; none where sizes are given.
+    /// Side of each map whose size is `auto`, texels; empty if sizes are given.
     pub auto_map_sizes: Vec<u32>,
     /// Time before its first result.
     pub start_up: StartUp,
-    /// The technique's limit, seconds, where fewer frames are timed because of it.
+    /// Time limit of the technique if it reduced the number of timed frames, seconds.
     pub cut_short_s: Option<f64>,
 }
 
-/// Makes a technique and sets its parameters.
+/// Creates a technique and sets its parameters.
 ///
 /// # Errors
-/// Where the device lacks something, or a setting is wrong.
+/// If the device lacks a feature, or a setting is wrong.
 pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyShadow, Error> {
     let mut technique = choice.kind.create(gpu)?;
     technique.set_quality(choice.quality);
@@ -81,16 +81,16 @@ pub fn create(gpu: &Gpu, choice: &TechniqueChoice) -> Result<AnyShadow, Error> {
     Ok(technique)
 }
 
-/// The parameters of a technique as they stand, for reports.
+/// Returns the current parameters of a technique, for reports.
 pub fn parameters_of(technique: &AnyShadow) -> Map<String, Value> {
     technique.params().map(|(spec, value)| (spec.key.to_owned(), json_of(value))).collect()
 }
 
-/// A parameter's value as JSON: numbers as numbers, choices as text.
+/// Converts a parameter's value to JSON: numbers as numbers, choices as text.
 fn json_of(value: ParamValue) -> Value {
     match value {
         ParamValue::U32(v) => v.into(),
-        // By way of text, so that 0.1 stays 0.1 and does not become its double-precision neighbour.
+        // Converted through text, so that 0.1 stays 0.1 and does not become its double-precision neighbour.
         ParamValue::F32(v) => v.to_string().parse::<Number>().map_or(Value::Null, Value::Number),
         ParamValue::Bool(v) => v.into(),
         ParamValue::Choice(v) => v.into(),
@@ -98,11 +98,11 @@ fn json_of(value: ParamValue) -> Value {
     }
 }
 
-/// Draws a light's mask: once, or so many times where it changes from frame to frame. Frames that lacked room are not
-/// counted, and the mask is never theirs: pictures are exact.
+/// Draws a light's mask: once, or `frames` times if it changes from frame to frame. Frames with overflowing lists do
+/// not count and never provide the mask.
 ///
 /// # Errors
-/// Where the technique cannot be prepared or finds no room, or the device fails.
+/// If the technique cannot be prepared or its lists overflow repeatedly, or the device fails.
 pub fn draw(
     lab: &LabDevice,
     technique: &mut AnyShadow,
@@ -114,10 +114,10 @@ pub fn draw(
     draw_until(lab, technique, light, casters, receivers, frames, None)
 }
 
-/// The same, given up at an end.
+/// Draws as [`draw`], until an end time.
 ///
 /// # Errors
-/// As [`draw`], and where the end comes first.
+/// As [`draw`], and if the end passes.
 pub(crate) fn draw_until(
     lab: &LabDevice,
     technique: &mut AnyShadow,
@@ -142,14 +142,13 @@ pub(crate) fn draw_until(
     })
 }
 
-/// Runs a technique: its programs are compiled, frames are drawn until nothing is new any more ([`Timing`] says how many at
-/// least), and those that follow are timed. Frames that lacked room are not counted. The mask is that of the frame up to which
-/// as many were drawn as are asked for, so that what adds up over frames is as often added up on any machine; or of the last,
-/// where time ran out before.
+/// Runs a technique: creates its pipelines, draws frames until nothing new is created ([`Timing`] sets the minimum number), and times the
+/// following ones. Frames with overflowing lists do not count. The mask is taken after the requested number of frames, so that
+/// accumulation is the same on any machine, or after the last frame if time ran out before.
 ///
 /// # Errors
-/// Where the technique cannot be prepared or finds no room, the device fails, or the end that `timing` sets comes before a frame that
-/// counts.
+/// If the technique cannot be prepared or its lists overflow repeatedly, the device fails, or the end in
+/// `timing` passes before a frame counts.
 pub fn run(
     lab: &LabDevice,
     technique: &mut AnyShadow,
@@ -163,7 +162,7 @@ pub fn run(
     let compile_ms = began.elapsed().as_secs_f64() * 1e3;
     let mask = mask_for(lab, technique, &casters, receivers.size_px);
     let asked_for = (timing.warm_up + timing.frames.max(1)) as usize;
-    // The error of what is denoised depends on how many frames it has seen, so that all of them are drawn.
+    // The error of denoised masks depends on the number of frames, so all requested frames are drawn.
     let least = if technique.denoise().is_some() { asked_for } else { 1 };
     let watch = Stopwatch::new(*timing, clock_rise(lab.adapter.is_software()));
     let mut timed = Timed { lab, mask: &mask, watch, asked_for, least, frames: Vec::new(), visibility: None };
@@ -192,18 +191,18 @@ pub fn run(
     })
 }
 
-/// What is said of a technique whose end came before a result.
+/// Returns the error of a technique whose end passed before a result.
 pub(crate) fn cut_short(technique: &AnyShadow, end: Option<End>, began: Instant, frames: u32) -> LabError {
     let (limit, seconds) = (end.and_then(|end| end.limit), began.elapsed().as_secs_f64());
     LabError::CutShort { technique: technique.kind(), cut: CutShort { limit, seconds, frames } }
 }
 
-/// GPU memory that one light takes, bytes: what it retains, and what it would share with others.
+/// Returns the GPU memory of one light, bytes: retained memory, and memory that lights would share.
 fn memory_of(lab: &LabDevice, technique: &AnyShadow) -> u64 {
     technique.memory_bytes() + lab.gpu().memory_bytes().shared
 }
 
-/// What there is among casters, by which programs differ.
+/// Returns the kinds of casters present, which determine the pipelines.
 fn kinds_of(casters: &Casters<'_>) -> WarmUp {
     let Casters::Meshes(meshes) = casters else { return WarmUp::default() };
     WarmUp {
@@ -212,18 +211,18 @@ fn kinds_of(casters: &Casters<'_>) -> WarmUp {
     }
 }
 
-/// A mask of as many channels as a technique writes of these casters.
+/// Creates a mask with as many channels as the technique writes for these casters.
 pub(crate) fn mask_for(lab: &LabDevice, technique: &AnyShadow, casters: &Casters<'_>, size_px: UVec2) -> Mask {
     let is_colored = technique.params().any(|(spec, value)| spec.colors_mask(value));
     let channels = if is_colored { MaskChannels::Three } else { casters.mask_channels() };
     Mask::with_channels(&lab.device, size_px, channels)
 }
 
-/// Draws one frame as a host does, without timing, and reads the mask; whether the frame before lacked room is said too,
-/// since no host draws a frame again for that.
+/// Draws one frame as a host does, without timing, and reads the mask. Also returns whether the previous frame's lists overflowed, because
+/// a host does not redraw such a frame.
 ///
 /// # Errors
-/// Where the technique cannot be prepared, or the device fails.
+/// If the technique cannot be prepared, or the device fails.
 pub(crate) fn draw_as_host(
     lab: &LabDevice,
     technique: &mut AnyShadow,

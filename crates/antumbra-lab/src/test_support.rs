@@ -1,4 +1,4 @@
-//! Helpers of GPU tests: one device for all of them, and small scenes.
+//! Helpers of GPU tests: a shared device, and small scenes.
 
 use std::sync::OnceLock;
 
@@ -7,8 +7,8 @@ use glam::{Vec2, Vec3};
 
 use crate::device::{DeviceError, DeviceOptions, LabDevice};
 
-/// The device, or `None` and a word where this machine has no adapter and none is required. An adapter that gives no
-/// device is a failure.
+/// Returns the device, or `None` with a message if this machine has no adapter and none is required. An
+/// adapter without a device is a failure.
 pub(crate) fn lab_or_skip() -> Option<&'static LabDevice> {
     static LAB: OnceLock<Option<LabDevice>> = OnceLock::new();
     let lab = LAB.get_or_init(|| {
@@ -25,7 +25,7 @@ pub(crate) fn lab_or_skip() -> Option<&'static LabDevice> {
     lab.as_ref()
 }
 
-/// A square in the xz plane about the origin, facing up, with texture coordinates over it.
+/// Returns a square in the xz plane centred at the origin, facing up, with texture coordinates over it.
 pub(crate) fn quad(half_side_m: f32) -> Mesh {
     let corners = [Vec2::new(-1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::new(1.0, 1.0), Vec2::new(1.0, -1.0)];
     Mesh {
@@ -38,7 +38,7 @@ pub(crate) fn quad(half_side_m: f32) -> Mesh {
     }
 }
 
-/// Looks from `eye` to the origin.
+/// Returns a camera that looks from `eye` to the origin.
 pub(crate) fn camera_at(eye: Vec3) -> Camera {
     Camera { eye, target: Vec3::ZERO, up: Vec3::Y, fov_y_rad: 0.8, near_m: 0.05, far_m: 200.0, shadow_distance: None }
 }

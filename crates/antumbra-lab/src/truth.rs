@@ -1,4 +1,4 @@
-//! The truth of a setup: what the camera sees, and how much of each light it sees from there.
+//! Ground truth of a setup: visible surfaces, and visibility of each light from them.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,27 +12,27 @@ use glam::{UVec2, Vec3};
 use crate::picture::Visibility;
 use crate::progress::Progress;
 
-/// A point of a surface, and which way the surface faces there.
+/// Position and normal of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// World position, metres.
     pub position: Vec3,
-    /// Unit geometric normal in world space, turned to the camera.
+    /// Unit geometric normal in world space, facing the camera.
     pub normal: Vec3,
 }
 
-/// The truth of one light.
+/// Ground truth of one light.
 #[derive(Clone, Debug)]
 pub struct LightTruth {
-    /// Visibility of every pixel; three channels where occluders tint.
+    /// Visibility of every pixel, with three channels if occluders tint.
     pub visibility: Visibility,
-    /// The pixels over which techniques are judged: with geometry that the light reaches and that faces its centre.
+    /// Whether each pixel is judged: it has geometry that the light reaches and that faces the light's centre.
     pub judged: Vec<bool>,
-    /// Where each pixel's ray first meets a surface; `None` for background.
+    /// First surface on each pixel's ray; `None` for background.
     pub first_hits: Arc<[Option<SurfacePoint>]>,
-    /// Wall-clock time of the rays, seconds.
+    /// Duration of tracing, seconds.
     pub seconds: f64,
-    /// Light points asked for, over all pixels.
+    /// Number of light samples over all pixels.
     pub rays: u64,
 }
 
@@ -46,9 +46,9 @@ impl LightTruth {
         Self { visibility, judged: image.faces_light_center, first_hits, seconds: image.seconds, rays: image.rays }
     }
 
-    /// Judges no longer the pixels at whose centre the depth buffer shows another surface than the ray meets, or another
-    /// face of it, and says how many these were: techniques are asked about the one there, and the truth tells about the
-    /// other. An edge lies on the centre then, within the rasteriser's rounding of corners. `seen` is by pixel, as drawn.
+    /// Stops judging pixels at whose centre depth buffer and ray show different surfaces, or different faces of one, and returns their
+    /// number: techniques see one surface, and the truth is of the other. An edge is at the pixel's centre then, within the rasteriser's
+    /// rounding of vertices. `seen` has the drawn surface of each pixel.
     pub fn judge_what_is_seen(&mut self, seen: &[Option<SurfacePoint>], eye: Vec3) -> usize {
         let mut others = 0;
         for ((judged, hit), seen) in self.judged.iter_mut().zip(self.first_hits.iter()).zip(seen) {
@@ -62,7 +62,7 @@ impl LightTruth {
         others
     }
 
-    /// Light points per second of wall-clock time, over all cores.
+    /// Returns the light samples per second of wall-clock time, over all cores.
     pub fn rays_per_second(&self) -> f64 {
         if self.seconds > 0.0 { self.rays as f64 / self.seconds } else { 0.0 }
     }
@@ -71,7 +71,7 @@ impl LightTruth {
 /// Traces every light of a setup, in the setup's order.
 ///
 /// # Errors
-/// Where the scene or a light cannot be traced.
+/// If the scene or a light cannot be traced.
 pub fn trace(
     scene: &Scene,
     setup: &Setup,
@@ -85,10 +85,10 @@ pub fn trace(
     trace_lights(&tracer, &receivers, &setup.lights, options, progress)
 }
 
-/// Traces lights from what a camera sees, with a tracer that has taken the scene in.
+/// Traces lights from what a camera sees, with an existing tracer.
 ///
 /// # Errors
-/// Where a light or the options are invalid.
+/// If a light or the options are invalid.
 pub fn trace_lights(
     tracer: &Tracer,
     receivers: &Receivers,
@@ -99,10 +99,10 @@ pub fn trace_lights(
     trace_lights_until(tracer, receivers, lights, options, None, progress)
 }
 
-/// The same, given up at a deadline.
+/// Traces as [`trace_lights`], until a deadline.
 ///
 /// # Errors
-/// Where a light or the options are invalid, or the deadline comes first.
+/// If a light or the options are invalid, or the deadline passes.
 pub fn trace_lights_until(
     tracer: &Tracer,
     receivers: &Receivers,
@@ -125,11 +125,10 @@ pub fn trace_lights_until(
     truths
 }
 
-/// Traces one light from what a camera sees, with a tracer that has taken the scene in. `report` is told the part that is
-/// done, from 0 to 1.
+/// Traces one light from what a camera sees, with an existing tracer. `report` receives the completed fraction, from 0 to 1.
 ///
 /// # Errors
-/// Where the light or the options are invalid, or the deadline comes first.
+/// If the light or the options are invalid, or the deadline passes.
 pub fn trace_light(
     tracer: &Tracer,
     receivers: &Receivers,
@@ -142,7 +141,7 @@ pub fn trace_light(
     Ok(LightTruth::of(image, first_hits(receivers)))
 }
 
-/// Traces with a report of progress that stops the work after a deadline.
+/// Traces with a progress callback that stops the work after a deadline.
 fn until(
     deadline: Option<Instant>,
     report: &(dyn Fn(f32) + Sync),
@@ -152,7 +151,7 @@ fn until(
     let stop = AtomicBool::new(is_over());
     let watched = |fraction: f32| {
         report(fraction);
-        // What is complete is kept.
+        // Complete work is kept.
         if fraction < 1.0 && is_over() {
             stop.store(true, Ordering::Relaxed);
         }
@@ -165,18 +164,18 @@ fn first_hits(receivers: &Receivers) -> Arc<[Option<SurfacePoint>]> {
     receivers.points.iter().map(|hit| hit.map(surface_of)).collect()
 }
 
-/// Whether what a camera's ray meets and what the depth buffer shows are one face of one surface.
+/// Returns whether camera ray and depth buffer show the same face of the same surface.
 pub(crate) fn is_same_surface(hit: &SurfacePoint, seen: &SurfacePoint, eye: Vec3) -> bool {
     hit.position.distance(seen.position) <= SAME_SURFACE * hit.position.distance(eye)
         && hit.normal.dot(seen.normal) >= SAME_FACE
 }
 
-/// Positions of one surface differ by less, as a part of the distance to the camera: a pixel is about as wide, and depth
-/// is rounded far more finely.
+/// Maximum distance between positions of one surface, relative to the distance to the camera. A pixel is about as wide,
+/// and depth is rounded far more finely.
 const SAME_SURFACE: f32 = 2e-3;
 
-/// Cosine between the normals of one face, or of two whose edge is all but flat: eight degrees. The sides of a hair meet
-/// within [`SAME_SURFACE`], and one may be lit where the other faces away.
+/// Minimum cosine between the normals of one face, or of two with a nearly flat edge: eight degrees. The sides of a hair are within
+/// [`SAME_SURFACE`], and one may be lit where the other faces away.
 const SAME_FACE: f32 = 0.99;
 
 /// Number of steps in which progress is reported.
@@ -189,7 +188,7 @@ mod tests {
     #[test]
     fn a_pixel_that_shows_another_face_is_not_judged() {
         let at = |x: f32, normal: Vec3| Some(SurfacePoint { position: Vec3::new(x, 0.0, 0.0), normal });
-        // A hair's other side, all but where the ray meets it; a surface behind; nothing; a neighbour all but flat.
+        // Other side of a hair, close to the ray's hit; a surface behind; background; a nearly flat neighbour.
         let seen = [at(1e-4, Vec3::Z), at(1.0, Vec3::Y), None, at(1e-4, Vec3::new(0.1, 1.0, 0.0).normalize())];
         let hit = at(0.0, Vec3::Y);
         let mut truth = LightTruth {

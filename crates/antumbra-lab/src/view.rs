@@ -1,4 +1,4 @@
-//! A scene as one camera sees it: everything that stays the same while techniques change.
+//! View: a scene seen by one camera, the state that is shared by all techniques.
 
 use std::cell::OnceCell;
 use std::rc::Rc;
@@ -20,68 +20,68 @@ use crate::shading::{Shading, VisibilitySource};
 use crate::technique_run::{Drawn, FrameCount, TechniqueChoice, TechniqueRun, Timing, create, draw_until, run};
 use crate::truth::SurfacePoint;
 
-/// A scene on the GPU, seen and lit as a setup says.
+/// A scene on the GPU with camera and lights of a setup.
 #[derive(Debug)]
 pub struct View<'a> {
     lab: &'a LabDevice,
     setup: &'a Setup,
     scene: Rc<GpuScene>,
     images: ReceiverImages,
-    /// Made when the first picture is asked for: times and errors need none.
+    /// Shading state, created for the first image: times and errors need none.
     pictures: OnceCell<Pictures>,
     is_coherent: bool,
 }
 
-/// What pictures are made with.
+/// State for shading images.
 #[derive(Debug)]
 struct Pictures {
     pass: ReceiverPass,
     programs: ShadingPrograms,
-    /// What masks are of.
+    /// Surfaces of the mask's samples.
     samples: Samples,
-    /// To which lights are exposed.
+    /// Points at which the lights' exposure is computed.
     seen: Vec<Vec3>,
-    /// At the pixels' centres.
+    /// Shading at the pixels' centres.
     centred: Shading,
-    /// Made once, where they are not too large to keep.
+    /// Shifted images, created once unless they are too large to keep.
     kept: OnceCell<Vec<Shifted>>,
 }
 
-/// What is seen a part of a pixel beside the pixels' centres, and how it is lit.
+/// Images shifted by a fraction of a pixel, with their shading.
 #[derive(Debug)]
 struct Shifted {
     images: ReceiverImages,
     shading: Shading,
-    /// Where the visibility of each pixel is taken from that shows another surface than its centre.
+    /// Source of each pixel's visibility if it shows another surface than its centre.
     sources: Vec<Option<u32>>,
 }
 
-/// Images of a picture of this many pixels are kept for the next one, with both layers about 72 bytes a pixel and shift: 600 MB. Of larger
-/// ones they are drawn again.
+/// Maximum number of pixels for which shifted images are kept: with both layers about 72 bytes per pixel and shift,
+/// 600 MB. Larger ones are rendered again.
 const MOST_KEPT_PX: usize = 1 << 20;
 
 impl<'a> View<'a> {
-    /// Uploads the scene and draws what the setup's camera sees of it.
+    /// Uploads the scene and renders what the setup's camera sees.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn new(lab: &'a LabDevice, scene: &Scene, setup: &'a Setup, size_px: UVec2) -> Result<Self, LabError> {
         Self::of_uploaded(lab, &Rc::new(GpuScene::upload(lab, scene)), setup, size_px)
     }
 
-    /// The same, shaded coherently; see [`Shading::bend_normals`].
+    /// Creates a view with coherent shading; see [`Shading::bend_normals`].
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn coherent(lab: &'a LabDevice, scene: &Scene, setup: &'a Setup, size_px: UVec2) -> Result<Self, LabError> {
         let uploaded = Rc::new(GpuScene::upload_with_faces(lab, scene));
         Ok(Self { is_coherent: true, ..Self::of_uploaded(lab, &uploaded, setup, size_px)? })
     }
 
-    /// The same of a scene that several views share.
+    /// Creates a view of a scene that several views share.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn of_uploaded(
         lab: &'a LabDevice,
         scene: &Rc<GpuScene>,
@@ -92,37 +92,37 @@ impl<'a> View<'a> {
         Ok(Self { lab, setup, scene: Rc::clone(scene), images, pictures: OnceCell::new(), is_coherent: false })
     }
 
-    /// Triangles as drawn.
+    /// Returns the number of drawn triangles.
     pub fn triangle_count(&self) -> usize {
         self.scene.triangle_count
     }
 
-    /// The surface that is drawn at each pixel; `None` for background.
+    /// Reads the surface drawn at each pixel; `None` for background.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn surface_points(&self) -> Result<Vec<Option<SurfacePoint>>, LabError> {
         Ok(self.images.read_surface_points(self.lab)?)
     }
 
-    /// Milliseconds for drawing what the camera sees, by the processor's clock: the median, and of how many drawings.
+    /// Measures the time to render the camera's view, on the CPU's clock. Returns median milliseconds and number of frames.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn scene_ms(&self, timing: &Timing) -> Result<(f64, FrameCount), LabError> {
         let pass = ReceiverPass::new(self.lab);
         Ok(pass.time(self.lab, &self.scene, &self.images, Layer::FirstHits, timing)?)
     }
 
-    /// Makes a technique on this view's device.
+    /// Creates a technique on this view's device.
     ///
     /// # Errors
-    /// Where the device lacks something, or a setting is wrong.
+    /// If the device lacks a feature, or a setting is wrong.
     pub fn create(&self, choice: &TechniqueChoice) -> Result<AnyShadow, LabError> {
         Ok(create(&self.lab.gpu(), choice)?)
     }
 
-    /// A technique's mask for a light of the setup: drawn once, or so many times where it changes from frame to frame.
+    /// Draws a technique's mask for a light of the setup: once, or `frames` times if it changes from frame to frame.
     ///
     /// # Errors
     /// As [`crate::technique_run::draw`].
@@ -130,10 +130,10 @@ impl<'a> View<'a> {
         self.draw_until(technique, light, frames, None)
     }
 
-    /// The same, given up at an end.
+    /// Draws as [`Self::draw`], until an end time.
     ///
     /// # Errors
-    /// As [`crate::technique_run::draw`], and where the end comes first.
+    /// As [`crate::technique_run::draw`], and if the end passes.
     pub fn draw_until(
         &self,
         technique: &mut AnyShadow,
@@ -146,7 +146,7 @@ impl<'a> View<'a> {
         draw_until(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), frames, end)
     }
 
-    /// Runs a technique for a light of the setup, and times it.
+    /// Runs and times a technique for a light of the setup.
     ///
     /// # Errors
     /// As [`run`].
@@ -156,11 +156,11 @@ impl<'a> View<'a> {
         run(self.lab, technique, light, Casters::Meshes(&casters), self.images.receivers(), timing)
     }
 
-    /// The picture with the visibility of each of the setup's lights, antialiased: masks and truths are of one sample a pixel, and what
-    /// is seen at eight places within each is lit by the samples of the same surface.
+    /// Returns the antialiased image with the visibility of each of the setup's lights. Masks and truths have one sample per pixel; eight
+    /// positions within each pixel are lit by the samples of the same surface.
     ///
     /// # Errors
-    /// Where the device failed.
+    /// If the device fails.
     pub fn shade(&self, visibilities: &[&Visibility]) -> Result<Picture, LabError> {
         let pictures = match self.pictures.get() {
             Some(pictures) => pictures,
@@ -258,7 +258,7 @@ mod tests {
     use super::*;
     use crate::test_support::lab_or_skip;
 
-    /// Edges of surfaces are between the colours on their two sides; a mask's own steps are neither blurred nor moved.
+    /// Antialiasing blends the colours on both sides of an edge, but neither blurs nor moves a mask's own steps.
     #[test]
     fn pictures_are_antialiased_and_masks_are_not_blurred() {
         let Some(lab) = lab_or_skip() else { return };
@@ -268,7 +268,7 @@ mod tests {
         let view = View::new(lab, &scene, &setup, size_px).unwrap();
         let pixels = pixel_count(size_px);
         let lit = Visibility::one(size_px, vec![1.0; pixels]);
-        // Each pixel and its neighbour in a row and a column differ.
+        // Each pixel differs from its neighbours in row and column.
         let chequered = Visibility::one(size_px, (0..pixels).map(|i| ((i % 96 + i / 96) % 2) as f32).collect());
         for mask in [&lit, &chequered] {
             let smooth = view.shade(&[mask]).unwrap().linear_rgb;
@@ -286,7 +286,7 @@ mod tests {
         }
     }
 
-    /// Pictures whose images are not kept are the same.
+    /// Images are the same whether shifted images are kept or rendered again.
     #[test]
     fn shifted_images_that_are_drawn_again_are_the_same() {
         let Some(lab) = lab_or_skip() else { return };

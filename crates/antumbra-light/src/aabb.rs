@@ -1,8 +1,8 @@
-//! An axis-aligned box in world space.
+//! Axis-aligned box in world space.
 
 use glam::{BVec3, DVec3, DVec4, Vec3};
 
-/// An axis-aligned box; empty where `min > max`.
+/// Axis-aligned box; empty if `min > max` on any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Smallest corner.
@@ -12,35 +12,34 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// Holds nothing.
+    /// Empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// Holds all: the box of what may lie anywhere.
+    /// Infinite box, for objects that may lie anywhere.
     pub const EVERYTHING: Self = Self { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
-    /// The box of some points.
+    /// Bounding box of some points.
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |b, p| Self { min: b.min.min(p), max: b.max.max(p) })
     }
 
-    /// The smallest box that holds both.
+    /// Smallest box that contains both.
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// What both hold; `None` where that is nothing.
+    /// Intersection of both; `None` if it is empty.
     pub fn intersection(self, other: Self) -> Option<Self> {
         let both = Self { min: self.min.max(other.min), max: self.max.min(other.max) };
         (!both.is_empty()).then_some(both)
     }
 
-    /// Whether it holds nothing.
+    /// Whether the box is empty.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }
 
-    /// What is wrong with the box of something: that it holds nothing, or has numbers that are none. Its sides may be infinitely
-    /// far.
+    /// Reason why the box cannot bound an object: it is empty or has NaNs. `None` if it can. Sides may be infinite.
     pub fn problem(&self) -> Option<&'static str> {
         if self.min.is_nan() || self.max.is_nan() {
             return Some("not a number");
@@ -49,12 +48,12 @@ impl Aabb {
         (self.is_empty() || is_beyond).then_some("empty")
     }
 
-    /// The eight corners.
+    /// Eight corners.
     pub fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|i| Vec3::select(BVec3::new(i & 1 != 0, i & 2 != 0, i & 4 != 0), self.max, self.min))
     }
 
-    /// The planes of the six faces: `plane · (x, 1) ≥ 0` inside.
+    /// Planes of the six faces: `plane · (x, 1) ≥ 0` inside.
     pub fn planes(&self) -> [DVec4; 6] {
         let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
         let [x, y, z] = DVec3::AXES;
@@ -68,12 +67,12 @@ impl Aabb {
         ]
     }
 
-    /// The middle.
+    /// Centre.
     pub fn center(&self) -> Vec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// The length of the diagonal.
+    /// Length of the diagonal; 0 for an empty box.
     pub fn diagonal(&self) -> f32 {
         if self.is_empty() { 0.0 } else { self.min.distance(self.max) }
     }

@@ -2,14 +2,15 @@
 
 use glam::Vec3;
 
-/// Within so much of the world's origin, along each axis, places are counted from it, metres: 32-bit floats are 4 µm apart there.
+/// Distance from the world's origin along each axis up to which the anchor is the origin, metres: 32-bit floats are 4 µm apart
+/// there.
 const AT_ORIGIN_M: f32 = 64.0;
-/// Elsewhere anchors lie on a grid so wide, metres: mostly the same while what they are near moves. A power of two, so that what
-/// is counted from them loses nothing.
+/// Spacing of the grid of anchors elsewhere, metres, so that an anchor rarely changes while its position moves. A power of two, so
+/// that relative positions lose no precision.
 const STEP_M: f32 = 16.0;
 
-/// The world position to count from near a place, so that 32-bit floats are as fine there as at the world's origin: the origin
-/// itself within 64 m of it, and for places that are not finite.
+/// Returns the anchor near a world position: relative to it, 32-bit floats are as fine there as at the world's origin. The anchor
+/// is the origin itself within 64 m of it, and for positions that are not finite.
 pub fn anchor_near(place: Vec3) -> Vec3 {
     if !place.is_finite() || place.abs().max_element() <= AT_ORIGIN_M {
         return Vec3::ZERO;

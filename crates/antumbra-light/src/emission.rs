@@ -14,18 +14,18 @@ pub struct EmissionTexture {
     pub height: u32,
     /// `width · height` linear luminances ≥ 0; the first row is the top (+up), the first column is −right.
     pub luminance: Vec<f32>,
-    /// Of as many texels the linear RGB at a luminance of 1; `None` is grey. Visibility goes by luminance alone; what weights
-    /// light points by colour reads it.
+    /// Linear RGB of each texel at a luminance of 1; `None` is grey. Visibility depends on luminance alone; techniques that weight
+    /// light points by colour read the tint.
     pub tint: Option<Vec<Vec3>>,
 }
 
 impl EmissionTexture {
-    /// A grey texture.
+    /// Creates a grey texture.
     pub fn gray(width: u32, height: u32, luminance: Vec<f32>) -> Self {
         Self { width, height, luminance, tint: None }
     }
 
-    /// A texture of `width · height` linear RGB values; without a tint where all are grey.
+    /// Creates a texture of `width · height` linear RGB values, without a tint if all are grey.
     pub fn from_rgb(width: u32, height: u32, rgb: &[Vec3]) -> Self {
         let luminance: Vec<f32> = rgb.iter().map(|c| c.dot(LUMINANCE)).collect();
         let is_gray = |c: &Vec3| c.max_element() - c.min_element() <= 1e-6 * c.max_element();
@@ -34,7 +34,7 @@ impl EmissionTexture {
         Self { width, height, luminance, tint }
     }
 
-    /// The texel's index at `u` in the unit square.
+    /// Index of the texel at `u` in the unit square.
     fn texel(&self, u: Vec2) -> usize {
         let column = ((u.x * self.width as f32) as u32).min(self.width - 1);
         let row = (((1.0 - u.y) * self.height as f32) as u32).min(self.height - 1);
@@ -53,7 +53,7 @@ impl EmissionTexture {
         self.luminance.iter().enumerate().map(move |(i, l)| *l * tint(i))
     }
 
-    /// Whether the numbers are as many as texels, finite, not negative, and not all dark.
+    /// Whether the texture has one value per texel, finite and not negative, and is not dark everywhere.
     pub(crate) fn is_usable(&self) -> bool {
         let texels = self.width as usize * self.height as usize;
         let is_color = |c: &Vec3| c.is_finite() && c.min_element() >= 0.0;
@@ -64,7 +64,7 @@ impl EmissionTexture {
             && self.tint.as_ref().is_none_or(|tint| tint.len() == texels && tint.iter().all(is_color))
     }
 
-    /// The luminance of the texel at `u` in the unit square, where `u.x` runs along right and `u.y` along up.
+    /// Luminance of the texel at `u` in the unit square, where `u.x` runs along right and `u.y` along up.
     pub fn luminance_at(&self, u: Vec2) -> f32 {
         self.luminance[self.texel(u)]
     }

@@ -1,31 +1,31 @@
-//! Convex bodies as the corners that span them: what frusta are fitted to where a box is too loose.
+//! Convex bodies as the corners that span them, to fit frusta where a box is too loose.
 
 use glam::{DVec3, DVec4, Vec3};
 
 use crate::Aabb;
 
-/// The corners of the convex body where `plane · (x, 1) ≥ 0` for all planes: [`Polytope::corners`].
+/// Returns the corners of the convex body where `plane · (x, 1) ≥ 0` for all planes: [`Polytope::corners`].
 pub fn polytope_corners(planes: &[DVec4], size_m: f64) -> Vec<Vec3> {
     Polytope::new(planes, size_m).corners
 }
 
-/// Convex body between planes, with its edges: bodies that are cut out of it by a few planes more are found from these.
+/// Convex body between planes, with its edges, from which bodies cut out of it by a few further planes are computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polytope {
-    /// Of unit normals.
+    /// Bounding planes, with unit normals.
     planes: Vec<DVec4>,
     room_m: f64,
     edges: Vec<Edge>,
     faces: Vec<Face>,
     corners: Vec<Vec3>,
-    /// It reaches a finite way in all directions.
+    /// Whether the body is finite in all directions.
     is_bounded: bool,
 }
 
-/// Edge of a polytope: the part of a line that all planes leave.
+/// Edge of a polytope: the part of a line that is in front of all planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Edge {
-    /// The two planes that meet there, the first one first.
+    /// Indices of the two planes that meet there, in ascending order.
     planes: [usize; 2],
     on_line: DVec3,
     along: DVec3,
@@ -33,27 +33,27 @@ struct Edge {
     to: f64,
 }
 
-/// What of a polytope lies in one of its planes.
+/// Face of a polytope in one of its planes.
 #[derive(Clone, Debug, PartialEq)]
 struct Face {
     edges: Vec<usize>,
-    /// The planes on the other side of its edges: of all, these alone bound it. All planes where it has no edge.
+    /// The other planes of its edges, which alone bound the face; all planes if it has no edge.
     bounded_by: Vec<DVec4>,
 }
 
-/// A plane that is farther than this from a polytope, as a part of its size, cuts nothing off, or all.
+/// Distance of a plane from a polytope, as a fraction of its size, beyond which the plane cuts off nothing or everything.
 const CLEARLY_BESIDE: f64 = 1e-2;
 
-/// Room for rounding, as a part of a polytope's size.
+/// Tolerance for rounding, as a fraction of a polytope's size.
 const ROOM: f64 = 1e-6;
 
 impl Polytope {
-    /// The body where `plane · (x, 1) ≥ 0` for all planes, which is about `size_m` large.
+    /// Creates the body where `plane · (x, 1) ≥ 0` for all planes, of about the size `size_m`.
     pub fn new(planes: &[DVec4], size_m: f64) -> Self {
         let planes = with_unit_normals(planes);
         let room_m = ROOM * size_m;
         let mut edges = Vec::new();
-        // Most lines lie outside, most of them by what cut off one of the last few.
+        // Most lines lie outside, mostly behind a plane that cut off one of the last few lines.
         let mut cutters = planes.clone();
         for (plane, a) in planes.iter().enumerate() {
             for (other, b) in planes.iter().enumerate().skip(plane + 1) {
@@ -66,13 +66,13 @@ impl Polytope {
         Self { planes, room_m, edges, faces, corners, is_bounded }
     }
 
-    /// The ends of its edges, each of which lies where two planes meet and no other cuts off, with a little room for rounding.
-    /// Corners come several times over.
+    /// Ends of its edges, each on the line where two planes meet and in front of all others, with a tolerance for rounding. Corners
+    /// occur several times.
     pub fn corners(&self) -> &[Vec3] {
         &self.corners
     }
 
-    /// The corners of what lies in front of further planes, too: as [`polytope_corners`] of all planes finds them.
+    /// Returns the corners of the part in front of further planes, as [`polytope_corners`] of all planes does.
     pub fn corners_within(&self, further: &[DVec4]) -> Vec<Vec3> {
         let further = with_unit_normals(further);
         let Some(cuts) = self.cuts_by(&further) else { return Vec::new() };
@@ -113,7 +113,7 @@ impl Polytope {
         corners
     }
 
-    /// Those of some planes that cut something off; `None` where one leaves nothing.
+    /// Returns those planes that cut something off; `None` if one leaves nothing.
     fn cuts_by(&self, planes: &[DVec4]) -> Option<Vec<Cut>> {
         let mut cuts = Vec::with_capacity(planes.len());
         for plane in planes {
@@ -139,7 +139,7 @@ impl Polytope {
 }
 
 impl Face {
-    /// The face of the plane with a number.
+    /// Creates the face in the plane with an index.
     fn of(plane: usize, planes: &[DVec4], edges: &[Edge]) -> Self {
         let of_face: Vec<usize> = (0..edges.len()).filter(|k| edges[*k].planes.contains(&plane)).collect();
         let other_side = |k: &usize| {
@@ -151,32 +151,32 @@ impl Face {
     }
 }
 
-/// A plane that cuts something off a polytope.
+/// Plane that cuts something off a polytope.
 struct Cut {
     plane: DVec4,
-    /// On which side of it each edge is; none of a polytope without bounds.
+    /// Side of the plane on which each edge is; empty for a polytope without bounds.
     edges: Vec<Side>,
 }
 
 impl Cut {
-    /// Whether the plane may meet a face of these edges; one without any is next to others, and may.
+    /// Whether the plane may meet a face of these edges; true for a face without edges.
     fn meets_face(&self, edges: &[usize]) -> bool {
         let are_all = |side: Side| edges.iter().all(|edge| self.edges[*edge] == side);
         edges.is_empty() || self.edges.is_empty() || !(are_all(Side::InFront) || are_all(Side::Behind))
     }
 }
 
-/// On which side of a plane something is, by a margin.
+/// Side of a plane, by a margin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Side {
     InFront,
     Behind,
-    /// On both, or too near to tell.
+    /// On both sides, or too near to decide.
     Across,
 }
 
 impl Side {
-    /// Of what reaches from one height above the plane to another.
+    /// Side of a range of heights above the plane.
     fn of(low: f64, high: f64, margin_m: f64) -> Self {
         if low > margin_m {
             Self::InFront
@@ -187,7 +187,7 @@ impl Side {
         }
     }
 
-    /// Of an edge with regard to all cuts together.
+    /// Side of an edge with regard to all cuts together.
     fn of_edge(cuts: &[Cut], edge: usize) -> Self {
         let side_of = |cut: &Cut| cut.edges.get(edge).copied().unwrap_or(Self::Across);
         if cuts.iter().any(|cut| side_of(cut) == Self::Behind) {
@@ -201,7 +201,7 @@ impl Side {
 }
 
 impl Edge {
-    /// The edge where two planes meet; `None` where others cut off all of it. Those come in the order of `cutters`.
+    /// Creates the edge where two planes meet; `None` if `cutters`, tested in their order, cut off all of it.
     fn between<const N: usize>(
         planes: [usize; 2],
         a: DVec4,
@@ -216,7 +216,7 @@ impl Edge {
         Some(Self { planes, on_line, along, from, to })
     }
 
-    /// Its ends, where it has such.
+    /// Finite ends of the edge.
     fn corners(&self) -> impl Iterator<Item = Vec3> + use<> {
         let Self { on_line, along, from, to, .. } = *self;
         [from, to].into_iter().filter(|t| t.is_finite()).map(move |t| (on_line + along * t).as_vec3())
@@ -228,7 +228,7 @@ fn with_unit_normals(planes: &[DVec4]) -> Vec<DVec4> {
     planes.iter().filter(has_normal).map(|plane| plane / plane.truncate().length()).collect()
 }
 
-/// A point of the line where two planes meet, and the unit vector along it; `None` where they are all but parallel.
+/// Returns a point of the line where two planes meet, and the unit vector along it; `None` if they are nearly parallel.
 fn line_where_planes_meet(a: DVec4, b: DVec4) -> Option<(DVec3, DVec3)> {
     let (normal_a, normal_b) = (a.truncate(), b.truncate());
     let along = normal_a.cross(normal_b);
@@ -240,8 +240,8 @@ fn line_where_planes_meet(a: DVec4, b: DVec4) -> Option<(DVec3, DVec3)> {
     Some((point, along / sine_squared.sqrt()))
 }
 
-/// From where to where a part of a line is in front of all planes; where it is so nowhere, but nearly, the two places between
-/// which it nearly is. The plane that tells that there is no such part comes first the next time.
+/// Returns the interval of a line that is in front of all planes, with swapped ends if it exists only within the tolerance. If
+/// there is none, returns `None` and moves the plane that decided this to the front for the next call.
 fn part_in_front(
     planes: &mut [DVec4],
     on_line: DVec3,
@@ -271,13 +271,13 @@ fn part_in_front(
     Some((from, to))
 }
 
-/// Corners of a convex body around some points: bounded by the planes across 13 directions (a box's faces, edges and
-/// corners) that touch them, so seldom much larger than their hull. None for no points.
+/// Corners of a convex body around some points, bounded by the planes across 13 directions (a box's faces, edges and corners) that
+/// touch them, so seldom much larger than their hull. Empty for no points.
 pub fn enclosing_corners(points: &[Vec3]) -> Vec<Vec3> {
     polytope_corners(&enclosing_planes(points), f64::from(Aabb::of(points.iter().copied()).diagonal()))
 }
 
-/// The planes that bound that body: it lies where `plane · (x, 1) ≥ 0` for all of them. None for no points.
+/// Planes that bound the body of [`enclosing_corners`]: `plane · (x, 1) ≥ 0` inside for all of them. Empty for no points.
 pub fn enclosing_planes(points: &[Vec3]) -> Vec<DVec4> {
     if points.is_empty() {
         return Vec::new();
@@ -328,8 +328,8 @@ mod tests {
         assert!(corners.iter().all(|p| p.abs().max_element() < 1.02), "{corners:?}");
     }
 
-    /// What is cut out of a body is what all planes leave, corner by corner and to the bit, whether a plane cuts it, misses it or
-    /// leaves nothing of it.
+    /// The corners of a body within further planes are those of all planes, in order and to the bit, whether a plane cuts the body,
+    /// misses it or leaves nothing of it.
     #[test]
     fn a_part_of_a_body_is_that_of_all_planes() {
         let unit = |i: u32| f64::from(crate::unit_f32(crate::hash_u32(i))) * 2.0 - 1.0;
@@ -353,7 +353,7 @@ mod tests {
         assert!(empty > 20 && cut > 100, "{empty} cases leave nothing, {cut} are cut");
     }
 
-    /// Whatever way one looks along, the points lie between the corners; a ball's are at most a tenth outside.
+    /// In every direction the points lie between the corners, which reach at most .2 beyond them, a tenth of a ball's diameter.
     #[test]
     fn points_lie_within_their_corners() {
         let unit = |i: u32| crate::unit_f32(crate::hash_u32(i)) * 2.0 - 1.0;

@@ -1,8 +1,7 @@
 //! Lights: shape, pose and sample points.
 //!
-//! The library that shades with soft shadows, the setup files that describe them and the ray tracer that judges
-//! them must agree on where a light lies and how its area is weighted. This crate is that agreement, with the box that
-//! frusta are fitted to, and nothing else: no GPU, no files.
+//! The library, the setup files and the reference ray tracer must agree on where a light lies and how its area is weighted. This
+//! crate defines that, with the box that frusta are fitted to, and nothing else: no GPU, no files.
 //!
 //! Conventions, for the whole project: metres, radians, right-handed, +Y up, linear colours.
 

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::emission::EmissionTexture;
 
-/// The shape of an emitter, and how its area is weighted.
+/// Shape of an emitter, and weighting of its area.
 ///
 /// The size is physical and the only setting of softness: the penumbra's width follows from geometry.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub enum LightShape {
 }
 
 impl LightShape {
-    /// The unit of what a light of this shape gives: `candela`, or `lux` of a sun.
+    /// Photometric unit of a light of this shape: `candela`, or `lux` for a sun.
     pub fn photometric_unit(&self) -> &'static str {
         if matches!(self, Self::Sun { .. }) { "lux" } else { "candela" }
     }
@@ -51,15 +51,15 @@ impl LightShape {
 /// A spot's cone about its axis: full strength within the inner angle, none beyond the outer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
-    /// Off the axis, radians.
+    /// Inner angle from the axis, radians.
     pub inner_rad: f32,
-    /// Off the axis, radians; larger than the inner, and below a right angle.
+    /// Outer angle from the axis, radians; larger than the inner, and below a right angle.
     pub outer_rad: f32,
 }
 
 impl Cone {
-    /// The strength in a direction from the light whose cosine with the axis this is, as KHR_lights_punctual has it:
-    /// the square of what falls linearly, in the cosine, from inner to outer angle.
+    /// Strength in a direction with this cosine to the axis, as in KHR_lights_punctual: the square of a linear falloff, in the
+    /// cosine, from inner to outer angle.
     pub fn strength(&self, cosine: f32) -> f32 {
         let (inner, outer) = (self.inner_rad.cos(), self.outer_rad.cos());
         let falloff = ((cosine - outer) / (inner - outer).max(1e-3)).clamp(0.0, 1.0);
@@ -74,22 +74,22 @@ pub struct Light {
     pub name: String,
     /// Shape and size of the emitter.
     pub shape: LightShape,
-    /// Centre in world space, metres. A sun's is where its frustum is anchored and has no effect on visibility.
+    /// Centre in world space, metres. A sun's centre anchors its frustum and has no effect on visibility.
     pub center: Vec3,
     /// Unit vector along which the light looks, from its centre towards its target.
     pub axis: Vec3,
     /// Up hint of the [`LightFrame`]; need be neither unit nor orthogonal to the axis.
     pub up: Vec3,
-    /// Full angle of the square frustum about its axis that the light is held to, radians. `None`: a sphere, an ellipsoid
-    /// and points shine in all directions, a rectangle and a disk into the half-space before them.
+    /// Full angle of the square frustum about the axis that limits the light, radians. `None`: a sphere, an ellipsoid and points
+    /// shine in all directions, a rectangle and a disk into the half-space in front of them.
     pub fov_rad: Option<f32>,
-    /// A spot's cone, from the light's centre: beyond it V = 0, and within it is for the host's shading to fall off.
+    /// Cone of a spot, from the light's centre: visibility is 0 outside. Inside, the host's shading applies the falloff.
     pub cone: Option<Cone>,
     /// Linear RGB.
     pub color: Vec3,
-    /// What it gives, in photometric units: luminous intensity along the axis, candela; of a sun the illuminance of what faces
-    /// it, lux. `None` where that is not known: as much as others of its kind. Ratios between lights are what it
-    /// sets; a picture's exposure goes by all of them.
+    /// Photometric strength: luminous intensity along the axis, candela; for a sun the illuminance of a surface that faces it, lux.
+    /// `None` if unknown: as much as others of its kind. It sets the ratios between lights; an image's exposure depends on all of
+    /// them.
     pub candela_or_lux: Option<f32>,
     /// Dimmer; at 1 all lights together expose sensibly.
     pub intensity: f32,
@@ -102,16 +102,16 @@ pub struct Light {
 pub struct LightFrame {
     /// World position of the light's centre.
     pub center: Vec3,
-    /// Unit, `axis × up hint`.
+    /// Right, unit: `axis × up hint`.
     pub right: Vec3,
-    /// Unit, `right × axis`.
+    /// Up, unit: `right × axis`.
     pub up: Vec3,
-    /// Unit, the direction in which the light looks.
+    /// Axis, unit: the direction in which the light looks.
     pub axis: Vec3,
 }
 
 impl Light {
-    /// A light of `shape` at `center` looking at `target`, white, with the default up hint.
+    /// Creates a light of `shape` at `center` looking at `target`, white, with the default up hint.
     pub fn new(shape: LightShape, center: Vec3, target: Vec3) -> Self {
         let axis = (target - center).normalize_or_zero();
         Self {
@@ -129,25 +129,25 @@ impl Light {
         }
     }
 
-    /// Copy of the light without what its shadows do not depend on: name, colour and brightness are defaults.
+    /// Copy of the light with default name, colour and brightness, on which its shadows do not depend.
     #[must_use]
     pub fn for_shadows(&self) -> Self {
         Self { name: String::new(), color: Vec3::ONE, candela_or_lux: None, intensity: 1.0, ..self.clone() }
     }
 
-    /// The default up hint: +Y, or +Z where the axis is within 8 degrees of vertical.
+    /// Default up hint: +Y, or +Z if the axis is within 8 degrees of vertical.
     pub fn default_up(axis: Vec3) -> Vec3 {
         Self::up_beside(axis, Vec3::Y)
     }
 
-    /// An up hint that can be used with this axis: `up`, or where the axis lies within 8 degrees of it +Z, or where it
-    /// lies within 8 degrees of that too, +Y.
+    /// Up hint that is valid for this axis: `up`, or +Z if the axis is within 8 degrees of `up`, or +Y if it is within 8 degrees of
+    /// +Z, too.
     pub fn up_beside(axis: Vec3, up: Vec3) -> Vec3 {
         let is_beside = |hint: &Vec3| axis.cross(*hint).length() > 8f32.to_radians().sin() * hint.length();
         if up == Vec3::ZERO { up } else { [up, Vec3::Z].into_iter().find(is_beside).unwrap_or(Vec3::Y) }
     }
 
-    /// The light's axes in world space.
+    /// Axes of the light in world space.
     pub fn frame(&self) -> LightFrame {
         let right = self.axis.cross(self.up).normalize();
         LightFrame { center: self.center, right, up: right.cross(self.axis), axis: self.axis }
@@ -158,8 +158,7 @@ impl Light {
         matches!(self.shape, LightShape::Sun { .. })
     }
 
-    /// The radius of the smallest sphere about the centre that holds the light, metres; for a sun the tangent of its
-    /// half-angle.
+    /// Radius of the smallest sphere about the centre that contains the light, metres; for a sun the tangent of its half-angle.
     pub fn bounding_radius(&self) -> f32 {
         match &self.shape {
             LightShape::Rectangle { size_m } => 0.5 * size_m.length(),
@@ -172,7 +171,7 @@ impl Light {
         }
     }
 
-    /// The same light in coordinates that begin at `anchor`.
+    /// Returns the light with positions relative to `anchor`.
     pub fn counted_from(&self, anchor: Vec3) -> Self {
         let mut light = Self { center: self.center - anchor, ..self.clone() };
         if let LightShape::Points { positions_m } = &mut light.shape {
@@ -181,7 +180,7 @@ impl Light {
         light
     }
 
-    /// The same light with its size multiplied by `factor`; points move away from the centre.
+    /// Returns the light with its size multiplied by `factor`; points move away from the centre.
     pub fn scaled(&self, factor: f32) -> Self {
         let shape = match &self.shape {
             LightShape::Rectangle { size_m } => LightShape::Rectangle { size_m: *size_m * factor },
@@ -198,7 +197,7 @@ impl Light {
         Self { shape, ..self.clone() }
     }
 
-    /// Whether the light shines in all directions: a shape with no front, held to no frustum.
+    /// Whether the light shines in all directions: a shape with no front, without frustum or cone.
     pub fn shines_all_around(&self) -> bool {
         self.fov_rad.is_none()
             && self.cone.is_none()
@@ -208,15 +207,15 @@ impl Light {
             }
     }
 
-    /// The tangent off the axis, along right and up, beyond which the light does not reach; `None` where there is no such.
+    /// Tangent of the angle from the axis, along right and up, beyond which the light does not reach; `None` if unlimited.
     pub fn reach_tangent(&self) -> Option<f32> {
         let frustum = self.fov_rad.map(|fov| (0.5 * fov).tan());
         let cone = self.cone.map(|cone| cone.outer_rad.tan());
         frustum.into_iter().chain(cone).reduce(f32::min)
     }
 
-    /// Whether the world position `x` can receive this light at all: inside the frustum and the cone that it is held to,
-    /// or of a rectangle and a disk before its plane. Elsewhere V = 0 (docs/formats.md).
+    /// Whether the light can reach the world position `x`: inside its frustum and cone; without a frustum, a rectangle and a disk
+    /// reach only what is in front of their plane. Elsewhere visibility is 0 (docs/formats.md).
     pub fn reaches(&self, frame: &LightFrame, x: Vec3) -> bool {
         if self.is_distant() {
             return true;

@@ -1,4 +1,4 @@
-//! Faults of a light: the numbers that it cannot have.
+//! Validation of a light's numbers.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -21,16 +21,16 @@ pub enum LightError {
         /// The light's name.
         light: String,
     },
-    /// A number is outside the range in which it means something.
+    /// A number is out of its valid range.
     #[error("light `{light}`: `{key}` is {value}, and must be {range}")]
     OutOfRange {
         /// The light's name.
         light: String,
-        /// Which quantity.
+        /// Name of the quantity.
         key: &'static str,
-        /// What it was.
+        /// Value found.
         value: String,
-        /// What would be right.
+        /// Valid range.
         range: &'static str,
     },
 }

@@ -9,7 +9,7 @@ use crate::light::{Light, LightFrame, LightShape};
 /// Sample point of a light in homogeneous form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightPoint {
-    /// A world position (`w = 1`), or a direction towards the light, not normalised (`w = 0`).
+    /// World position (`w = 1`), or direction towards the light, not normalised (`w = 0`).
     pub xyz: Vec3,
     /// 1 for a position, 0 for a direction.
     pub w: f32,
@@ -25,9 +25,9 @@ impl LightPoint {
 }
 
 impl Light {
-    /// The light's point for a point `u` of the unit cube, as seen from the world position `seen_from`.
+    /// Maps a point `u` of the unit cube to a point of the light, as seen from the world position `seen_from`.
     ///
-    /// The map keeps area (volume for an ellipsoid), so uniform `u` give uniform light points. Only an ellipsoid
+    /// The map preserves area (volume for an ellipsoid), so uniform `u` give uniform light points. Only an ellipsoid
     /// uses `u.z`; only a sphere uses `seen_from`. [`LightShape::Points`] picks by `u.x`.
     pub fn point(&self, frame: &LightFrame, u: Vec3, seen_from: Vec3) -> LightPoint {
         let at =
@@ -73,8 +73,8 @@ fn facing_axes(frame: &LightFrame, seen_from: Vec3) -> (Vec3, Vec3) {
     (right, towards.cross(right))
 }
 
-/// Shirley and Chiu 1997: the concentric map from the unit square to the unit disk. It keeps area and adjacency, so
-/// that strata stay compact.
+/// Concentric map from the unit square to the unit disk (Shirley and Chiu 1997). It preserves area and adjacency, so that strata
+/// stay compact.
 pub fn disk_from_square(u: Vec2) -> Vec2 {
     let p = 2.0 * u - 1.0;
     if p == Vec2::ZERO {
@@ -85,7 +85,7 @@ pub fn disk_from_square(u: Vec2) -> Vec2 {
     radius * Vec2::new(angle.cos(), angle.sin())
 }
 
-/// The volume-keeping map from the unit cube to the unit ball: cos θ and φ uniform, radius by the cube root.
+/// Volume-preserving map from the unit cube to the unit ball: cos θ and φ uniform, radius by the cube root.
 pub fn ball_from_cube(u: Vec3) -> Vec3 {
     let cos_theta = 1.0 - 2.0 * u.x;
     let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
@@ -103,7 +103,7 @@ mod tests {
         SampleSet::Stratified.points(n, 1).into_iter().map(|u| light.point(&frame, u, Vec3::ZERO).xyz).collect()
     }
 
-    /// The second moment along a direction through the centre, for which each shape has a closed form.
+    /// Second moment along a direction through the centre, for which each shape has a closed form.
     fn second_moment(points: &[Vec3], center: Vec3, direction: Vec3) -> f32 {
         points.iter().map(|p| (*p - center).dot(direction).powi(2)).sum::<f32>() / points.len() as f32
     }

@@ -1,40 +1,39 @@
-//! Extent and covariance of a light's points: once, for all that fit maps, margins and kernels to a
-//! light.
+//! Extent and covariance of a light's points, to which maps, margins and kernels are fitted.
 
 use glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
 
 use crate::{EmissionTexture, Light, LightFrame, LightShape};
 
-/// The moments of a light's points, weighted by emission, and bounds of what emits.
+/// Moments of a light's points, weighted by emission, and bounds of the emitting part.
 ///
-/// All along the light's own axes: right, up, axis of [`LightFrame`]. Lengths in metres; for a sun tangents of angles, for
-/// its points are directions on the tangent plane at distance 1, about the way to its middle.
+/// All are along the light's own axes: right, up, axis of [`LightFrame`]. Lengths are in metres. For a sun they are tangents of
+/// angles, because its points are directions on the tangent plane at distance 1, relative to the sun's middle.
 ///
-/// A sphere's points lie on a disc that faces whoever looks. Its covariance is what is the same from everywhere: along
-/// every axis a disc's, so that across any line of sight it is that disc's; and its bounds are the ball's.
+/// A sphere's points lie on a disc that faces the receiver. Its covariance is the same from everywhere: a disc's along every axis,
+/// so that across any line of sight it is that disc's. Its bounds are the ball's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightMoments {
-    /// The mean point, from the light's centre. Not zero where emission or a list of points leans to one side.
+    /// Mean point, relative to the light's centre. Not zero if emission or a list of points leans to one side.
     pub mean: Vec3,
     /// Variances along right, up and axis, about the mean.
     pub variance: Vec3,
     /// Covariances of right and up, of up and axis, of axis and right.
     pub covariance: Vec3,
-    /// Least box about the mean that holds what emits: its reach to either side, which for a texture or a list of points may
-    /// be more than the box needs on one of them.
+    /// Half sides of the smallest box centred on the mean that contains the emitting part. For a texture or a list of points, that
+    /// part may reach less far on one of two opposite sides.
     pub half_extent: Vec3,
-    /// The radius of the least sphere about the mean that holds what emits.
+    /// Radius of the smallest sphere centred on the mean that contains the emitting part.
     pub radius: f32,
 }
 
-/// A rectangle across the light's axis.
+/// Rectangle across the light's axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquivalentRectangle {
-    /// Its middle, along right and up from the light's centre.
+    /// Centre of the rectangle, along right and up from the light's centre.
     pub middle: Vec2,
-    /// Its full sides, the longer first.
+    /// Full sides, the longer first.
     pub size: Vec2,
-    /// From right towards up to the first side, radians, in −π/2 to π/2; 0 where both sides are equal.
+    /// Angle of the first side, from right towards up, radians, −π/2 to π/2; 0 if both sides are equal.
     pub angle_rad: f32,
 }
 
@@ -42,12 +41,11 @@ impl Light {
     /// Mean, covariance and bounds of this light's points: closed forms for uniform shapes, sums for a texture and for a
     /// list of points.
     ///
-    /// The light must be valid ([`Light::validate`]); of a texture that is dark everywhere and of an empty list all are
-    /// zero.
+    /// The light must be valid ([`Light::validate`]). All are zero for a texture that is dark everywhere and for an empty list.
     pub fn moments(&self) -> LightMoments {
         match (&self.shape, &self.emission) {
             (LightShape::Rectangle { size_m }, Some(texture)) => of_texture(*size_m, texture),
-            // A side's length squared over 12.
+            // Variance of a side: its length squared over 12.
             (LightShape::Rectangle { size_m }, None) => {
                 let half = 0.5 * *size_m;
                 LightMoments::centered((half * half / 3.0).extend(0.0), half.extend(0.0), half.length())
@@ -57,7 +55,7 @@ impl Light {
             (LightShape::Sphere { radius_m }, _) => {
                 LightMoments::centered(Vec3::splat(radius_m * radius_m / 4.0), Vec3::splat(*radius_m), *radius_m)
             }
-            // A ball's along each axis: r²/5.
+            // Variance of a ball along each axis: r²/5.
             (LightShape::Ellipsoid { radii_m }, _) => {
                 LightMoments::centered(*radii_m * *radii_m / 5.0, *radii_m, radii_m.max_element())
             }
@@ -71,28 +69,29 @@ impl LightMoments {
         Self { mean: Vec3::ZERO, variance, covariance: Vec3::ZERO, half_extent, radius }
     }
 
-    /// A disc's along each axis in its plane: r²/4.
+    /// Moments of a disc: variance r²/4 along each axis in its plane.
     fn of_disc(radius: f32) -> Self {
         let across = |v: f32| Vec3::new(v, v, 0.0);
         Self::centered(across(radius * radius / 4.0), across(radius), radius)
     }
 
-    /// The mean point in world space; not of a sun, which has none.
+    /// Mean point in world space; not defined for a sun.
     pub fn mean_in_world(&self, frame: &LightFrame) -> Vec3 {
         frame.center + frame.right * self.mean.x + frame.up * self.mean.y + frame.axis * self.mean.z
     }
 
-    /// The sides along right and up of the uniform rectangle with these variances: √12 σ. A rectangle light's own size.
+    /// Sides along right and up of the uniform rectangle with these variances: √12 σ. Equal to the size of a uniform rectangle
+    /// light.
     pub fn equivalent_size(&self) -> Vec2 {
         side_of(self.variance.truncate())
     }
 
-    /// The uniform rectangle across the axis with this mean and this covariance: along the covariance's own axes, so that
-    /// points in a slanted line are a slanted line.
+    /// Uniform rectangle across the axis with this mean and covariance, along the covariance's principal axes: points in a slanted
+    /// line give a slanted line.
     pub fn equivalent_rectangle(&self) -> EquivalentRectangle {
         let Vec3 { x: xx, y: yy, .. } = self.variance;
         let xy = self.covariance.x;
-        // Eigenvalues of [[xx, xy], [xy, yy]]: the mean of the variances, more and less by half the way between them.
+        // Eigenvalues of [[xx, xy], [xy, yy]]: the mean of the variances, plus and minus `half_way`.
         let (middle, half_way) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
         // Below rounding there is no direction.
         let is_even = half_way <= 1e-6 * middle;
@@ -104,12 +103,12 @@ impl LightMoments {
     }
 }
 
-/// A uniform line of length s has variance s²/12.
+/// Lengths of uniform lines with these variances: a line of length s has variance s²/12.
 fn side_of(variance: Vec2) -> Vec2 {
     Vec2::new((12.0 * variance.x).sqrt(), (12.0 * variance.y).sqrt())
 }
 
-/// Sums in double precision, about a point that is near to all of them.
+/// Weighted sums in double precision, relative to a point near all samples.
 #[derive(Default)]
 struct Sums {
     weight: f64,
@@ -138,7 +137,7 @@ impl Sums {
     }
 }
 
-/// A rectangle of texels, each uniform.
+/// Moments of a rectangle of texels, each uniform.
 fn of_texture(size_m: Vec2, texture: &EmissionTexture) -> LightMoments {
     let count = UVec2::new(texture.width, texture.height);
     let texel = size_m.as_dvec2() / count.as_dvec2();
@@ -161,7 +160,7 @@ fn of_texture(size_m: Vec2, texture: &EmissionTexture) -> LightMoments {
         half_extent = half_extent.max(reach);
         radius = radius.max(reach.length());
     }
-    // What lies within a texel, too.
+    // Add the variance within a texel.
     let variance = if sums.weight > 0.0 { variance + (texel * texel / 12.0).extend(0.0) } else { variance };
     LightMoments {
         mean: mean.as_vec3(),
@@ -172,12 +171,12 @@ fn of_texture(size_m: Vec2, texture: &EmissionTexture) -> LightMoments {
     }
 }
 
-/// Points of equal weight, wherever the light's centre is.
+/// Moments of points of equal weight, wherever the light's centre is.
 fn of_points(frame: &LightFrame, positions_m: &[Vec3]) -> LightMoments {
     let Some(first) = positions_m.first() else { return LightMoments::centered(Vec3::ZERO, Vec3::ZERO, 0.0) };
     let [right, up, axis] = [frame.right, frame.up, frame.axis].map(|v| v.as_dvec3());
     let along_axes = |offset: DVec3| DVec3::new(offset.dot(right), offset.dot(up), offset.dot(axis));
-    // From the first of them, so that points far from the origin lose nothing.
+    // Relative to the first point, so that points far from the origin lose no precision.
     let offsets = || positions_m.iter().map(|p| along_axes(p.as_dvec3() - first.as_dvec3()));
     let mut sums = Sums::default();
     offsets().for_each(|p| sums.add(p, 1.0));
@@ -270,7 +269,7 @@ mod tests {
         for light in lights {
             let what = format!("{:?}", light.shape);
             let (frame, moments) = (light.frame(), light.moments());
-            // On the axis, where a sphere's disc lies across it, so that its own variance along it is none.
+            // On the axis, so that a sphere's disc is perpendicular to it and has no variance along it.
             let seen_from = frame.center + 10.0 * frame.axis;
             let mut sums = Sums::default();
             for u in SampleSet::R2.points(3 * 4096, 1) {
@@ -316,7 +315,7 @@ mod tests {
         let leaning = with([1.0, 1.0, 3.0, 3.0, 1.0, 1.0, 3.0, 3.0]);
         assert_close(leaning.mean, Vec3::new(0.1, 0.0, 0.0), 1e-7, "leaning");
         assert_close(leaning.half_extent, Vec3::new(0.5, 0.2, 0.0), 1e-6, "leaning");
-        // Nothing at all: no light that validates, and no number that is none.
+        // All dark: the light is invalid, but no number is NaN.
         let dark = with([0.0; 8]);
         assert_eq!(dark, LightMoments::centered(Vec3::ZERO, Vec3::ZERO, 0.0));
     }
@@ -355,7 +354,7 @@ mod tests {
         let rectangle = upright.equivalent_rectangle();
         assert!((rectangle.size - Vec2::new(0.9, 0.3)).abs().max_element() < 1e-6, "{rectangle:?}");
         assert!((rectangle.angle_rad.abs() - std::f32::consts::FRAC_PI_2).abs() < 1e-6, "{rectangle:?}");
-        // A disc acts as a square of √3 radii a side, turned in no way.
+        // A disc is equivalent to a square with sides of √3 radii, not rotated.
         let disc = light(LightShape::Disk { radius_m: 1.0 }).moments().equivalent_rectangle();
         assert!((disc.size - Vec2::splat(3f32.sqrt())).abs().max_element() < 1e-5 && disc.angle_rad == 0.0, "{disc:?}");
         // A line of points at 30 degrees.

@@ -1,15 +1,15 @@
-//! Sets of points in the unit cube. The first two coordinates are the well-distributed ones; the third is for the
-//! one shape with volume.
+//! Sets of points in the unit cube. The first two coordinates are well distributed; the third serves the ellipsoid, the only shape
+//! with volume.
 
 use std::fmt;
 
 use glam::{IVec2, Vec2, Vec3};
 
-/// How a set of points is spread over the unit square.
+/// Distribution of a set of points over the unit square.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SampleSet {
-    /// One jittered point in each cell of the squarest grid that has `n` cells, and in each row and column of its cells
-    /// that are cut `n` ways: Kensler's correlated multi-jittered points (2013).
+    /// One jittered point in each cell of the squarest grid of `n` cells, and in each of `n` strips in both directions: Kensler's
+    /// correlated multi-jittered points (2013).
     Stratified,
     /// The additive recurrence on the plastic number (Roberts 2018), shifted by the seed.
     #[default]
@@ -18,8 +18,8 @@ pub enum SampleSet {
     Sobol,
     /// Mitchell's best-candidate points (1991) on the torus: no two are close.
     PoissonDisc,
-    /// Sobol's points, moved to the centres of what lies nearest to each (Lloyd 1982): the most even of all, and the
-    /// least error where a light is seen through leaves.
+    /// Sobol's points, moved to the centroids of their Voronoi cells (Lloyd 1982): the most even of all, and the least error where
+    /// a light is seen through leaves.
     Relaxed,
 }
 
@@ -27,7 +27,7 @@ impl SampleSet {
     /// Every set, in the order of the documentation.
     pub const ALL: [Self; 5] = [Self::Stratified, Self::R2, Self::Sobol, Self::PoissonDisc, Self::Relaxed];
 
-    /// The name in parameters and setup files.
+    /// Name in parameters and setup files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Stratified => "stratified",
@@ -38,19 +38,19 @@ impl SampleSet {
         }
     }
 
-    /// The set with this name, in any case.
+    /// Set of this name; case-insensitive.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|set| set.name().eq_ignore_ascii_case(name))
     }
 
-    /// `n` points in `[0, 1)³`, the same for the same seed on every machine.
+    /// Returns `n` points in `[0, 1)³`, the same for the same seed on every machine.
     pub fn points(self, n: u32, seed: u32) -> Vec<Vec3> {
         self.run(0, n, seed)
     }
 
-    /// The `run`-th of any number of sets of `n` points for one seed, to be used one after another; the first is
-    /// [`Self::points`]. Together they are as well spread as they can be: of R2 and Sobol they are runs of one sequence;
-    /// relaxed points go on with Sobol's; the others are drawn anew, or turned about on the torus.
+    /// Returns the `run`-th set of `n` points for one seed, for use one after another; the first is [`Self::points`]. Together the
+    /// sets are as well spread as possible: R2 and Sobol continue their sequence, relaxed points continue with Sobol's, stratified
+    /// points have a new seed, and Poisson-disc points are shifted on the torus.
     pub fn run(self, run: u32, n: u32, seed: u32) -> Vec<Vec3> {
         let first = run.wrapping_mul(n);
         let indices = || (0..n).map(|i| first.wrapping_add(i));
@@ -81,20 +81,20 @@ pub fn hash_u32(x: u32) -> u32 {
     (word >> 22) ^ word
 }
 
-/// The top 24 bits as a float in `[0, 1)`.
+/// Converts the top 24 bits to a float in `[0, 1)`.
 pub fn unit_f32(bits: u32) -> f32 {
     (bits >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// The grid of `n` cells whose sides are closest: the largest divisor not above √n, by its cofactor.
+/// Columns and rows of the grid of `n` cells whose sides are closest: the largest divisor not above √n, by its cofactor.
 fn squarest_grid(n: u32) -> (u32, u32) {
     let rows = (1..=n.isqrt()).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
     (n / rows, rows)
 }
 
-/// Kensler, "Correlated Multi-Jittered Sampling", Pixar technical memo 13-01, 2013: in its cell a point takes the strip of
-/// its row's place in x and of its column's place in y, both shuffled once for all rows and columns. So no two points
-/// share a strip, and neighbours keep apart.
+/// Kensler, "Correlated Multi-Jittered Sampling", Pixar technical memo 13-01, 2013: within its cell, a point's strip in x is given
+/// by its row and its strip in y by its column, both shuffled once for all rows and columns. So no two points share a strip, and
+/// neighbours keep apart.
 fn stratified(n: u32, seed: u32) -> Vec<Vec2> {
     let (columns, rows) = squarest_grid(n.max(1));
     let strips_of_rows = shuffled(rows, hash_u32(seed ^ 0x68bc_21eb));
@@ -111,21 +111,21 @@ fn stratified(n: u32, seed: u32) -> Vec<Vec2> {
         .collect()
 }
 
-/// The numbers below `n` in an order that the seed picks.
+/// Numbers below `n`, shuffled by the seed.
 fn shuffled(n: u32, seed: u32) -> Vec<u32> {
     let mut numbers: Vec<u32> = (0..n).collect();
     numbers.sort_by_key(|k| hash_u32(hash_u32(*k) ^ seed));
     numbers
 }
 
-/// On the torus every shift of a set is as good; these are far from each other.
+/// Shifts a set on the torus, where every shift is as good; the shifts of different runs are far from each other.
 fn turned_about(points: Vec<Vec2>, run: u32) -> Vec<Vec2> {
     let shift = R2_STEP.map(|step| step.wrapping_mul(run));
     let turned = |v: f32, shift: u32| unit_f32(((f64::from(v) * 4_294_967_296.0) as u32).wrapping_add(shift));
     points.into_iter().map(|p| Vec2::new(turned(p.x, shift[0]), turned(p.y, shift[1]))).collect()
 }
 
-/// 2³²/ρ and 2³²/ρ² for the plastic number ρ = 1.32471795724…: integer arithmetic wraps exactly.
+/// Steps of the R2 sequence, 2³²/ρ and 2³²/ρ² for the plastic number ρ = 1.32471795724…: integer arithmetic wraps exactly.
 const R2_STEP: [u32; 2] = [3_242_174_889, 2_447_445_414];
 
 fn r2(indices: impl Iterator<Item = u32>, seed: u32) -> Vec<Vec2> {
@@ -184,13 +184,12 @@ fn best_candidate(n: u32, seed: u32) -> Vec<Vec2> {
     points
 }
 
-/// Rounds of relaxation: after these no point moves by more than a few percent of its distance to the next.
+/// Number of relaxation rounds: after these no point moves by more than a few percent of its distance to the next.
 const RELAXATIONS: u32 = 24;
-/// Places along a cell's side at which the nearest point is asked for: 64 a point find its centroid to a percent.
+/// Number of probes along a bin's side: 64 per point find its centroid to a percent.
 const PROBES: u32 = 8;
 
-/// Lloyd 1982, "Least squares quantization in PCM": each point moves to the centroid of the part of the square that is
-/// nearer to it than to any other, again and again.
+/// Lloyd 1982, "Least squares quantization in PCM": each point moves repeatedly to the centroid of its Voronoi cell in the square.
 fn relaxed(mut points: Vec<Vec2>) -> Vec<Vec2> {
     let bins = (points.len() as f32).sqrt().ceil().max(1.0) as i32;
     let bin_of = |p: Vec2| (p * bins as f32).as_ivec2().min(IVec2::splat(bins - 1));
@@ -203,10 +202,10 @@ fn relaxed(mut points: Vec<Vec2>) -> Vec<Vec2> {
         }
         let nearest_to = |probe: Vec2| {
             let (middle, mut best) = (bin_of(probe), (f32::INFINITY, 0));
-            // What lies beyond a ring of bins is farther than that many bins' widths.
+            // Points beyond a ring of bins are farther than that many bins' widths.
             for ring in 0..=bins {
                 for y in (middle.y - ring).max(0)..=(middle.y + ring).min(bins - 1) {
-                    // Between the ring's first and last row, its first and last column alone.
+                    // Rows between the ring's first and last have only its first and last column.
                     let step = if (y - middle.y).abs() == ring { 1 } else { (2 * ring).max(1) };
                     for x in (middle.x - ring..=middle.x + ring).step_by(step as usize) {
                         let list = if (0..bins).contains(&x) { &lists[(y * bins + x) as usize][..] } else { &[] };
@@ -280,7 +279,7 @@ mod tests {
         }
     }
 
-    /// The mean square of the distance to the nearest point is what relaxing lowers; a hexagonal grid has 0.1604 / n.
+    /// Relaxation lowers the mean square of the distance to the nearest point; a hexagonal grid has 0.1604 / n.
     #[test]
     fn relaxed_points_are_the_most_even() {
         let mean_square = |set: SampleSet| {
@@ -304,7 +303,7 @@ mod tests {
             counts[((p.y * 8.0) as usize) * 8 + (p.x * 8.0) as usize] += 1;
         }
         assert!(counts.iter().all(|c| *c == 1));
-        // And one in each of as many strips either way.
+        // And one in each of as many strips in both directions.
         for axis in 0..2 {
             let mut strips: Vec<u32> =
                 SampleSet::Stratified.points(128, 9).iter().map(|p| (p[axis] * 128.0) as u32).collect();

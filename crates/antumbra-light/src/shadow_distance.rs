@@ -1,24 +1,24 @@
-//! Shadow distance: how far from a camera shadows are drawn.
+//! Shadow distance: the maximum distance of shadows from a camera.
 
-/// Receivers so far from the camera's eye are lit, with a fade before.
+/// Maximum distance of shadows from the camera's eye, with a fade before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowDistance {
-    /// From here on all is lit, metres.
+    /// Distance from which on all receivers are lit, metres.
     pub end_m: f32,
-    /// Shadows fade over so many metres before that; 0 ends them at once, [`end_m`](Self::end_m) is the most.
+    /// Length of the fade that ends there, metres: 0 (no fade) to [`end_m`](Self::end_m).
     pub fade_m: f32,
 }
 
 impl ShadowDistance {
-    /// The part of the distance over which shadows fade, where nothing is said.
+    /// Default length of the fade, as a fraction of the distance.
     const USUAL_FADE: f32 = 0.2;
 
-    /// Shadows up to a distance, which fade over its last fifth.
+    /// Creates a shadow distance whose last fifth is the fade.
     pub fn new(end_m: f32) -> Self {
         Self { end_m, fade_m: Self::USUAL_FADE * end_m }
     }
 
-    /// Which number is wrong: its name here and the range that it must lie in.
+    /// Name of the first invalid field, and its valid range; `None` if both are valid.
     pub fn problem(&self) -> Option<(&'static str, &'static str)> {
         if !(self.end_m > 0.0 && self.end_m.is_finite()) {
             return Some(("end_m", "positive and finite"));
@@ -27,17 +27,17 @@ impl ShadowDistance {
         (!is_good).then_some(("fade_m", "from 0 to the distance"))
     }
 
-    /// How much of what is dark is lit at a distance from the eye: a smooth step from 0, where the fade begins, to 1 at its
-    /// end. Visibility V becomes V + (1 − V) times this.
+    /// Fraction of shadow that is lit at a distance from the eye: a smooth step from 0, where the fade begins, to 1 at its end.
+    /// Visibility V becomes V + (1 − V) times this.
     pub fn lit_share(&self, distance_m: f32) -> f32 {
         let [begin_m, length_m] = self.fade_span_m();
         let s = ((distance_m - begin_m) / length_m).clamp(0.0, 1.0);
         s * s * (3.0 - 2.0 * s)
     }
 
-    /// Where the fade begins, and how long it is, metres; never of no length, so that it can be divided by.
+    /// Start and length of the fade, metres. The length is never 0, so that it can be divided by.
     pub fn fade_span_m(&self) -> [f32; 2] {
-        /// What is taken for none, as a part of the distance: no pixel.
+        /// Minimum length, as a fraction of the distance: less than a pixel.
         const LEAST_FADE: f32 = 1e-6;
         [self.end_m - self.fade_m, self.fade_m.max(LEAST_FADE * self.end_m)]
     }

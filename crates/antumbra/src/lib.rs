@@ -40,12 +40,12 @@
 //! - [`AnyShadow`] is a light's state with a technique chosen at run time, [`Shadow`] with one known at compile time.
 //! - [`Shadow::prepare_points`] takes a buffer of points in place of a depth buffer (`examples/anywhere.rs`);
 //!   [`Shadow::shader_function`] returns a function for your own shaders.
-//! - [`LightSet`] holds many lights of one view, of which each frame redraws what a budget allows.
+//! - [`LightSet`] holds many lights of one view; each frame redraws as many as a budget allows.
 //! - `examples/minimal.rs` is a complete small renderer around the lines above, `examples/many_lights` one with eight lights.
 //!
 //! Families of techniques are features of the crate, all on by default: `single_map`, `filterable`, `summed`, `multi_layer`,
 //! `light_views`, `ray_traced`, `receiver_lists`.
-// wgpu's interface of a device declares some functions unsafe; those of `gpu/plan` do nothing.
+// Not `forbid`: wgpu's device interface declares some functions unsafe, which `gpu/plan` implements without effect.
 #![deny(unsafe_code)]
 // Modules that families share contain code and shaders that only one family uses.
 #![cfg_attr(
@@ -111,7 +111,7 @@ pub use techniques::Technique;
 /// Crates whose types appear in this one's interface.
 pub use {glam, wgpu};
 
-/// The linked shaders, embedded.
+/// Linked shaders, embedded as text.
 pub(crate) mod shaders {
     macro_rules! shaders {
         ($(
@@ -132,7 +132,7 @@ pub(crate) mod shaders {
     #[cfg(feature = "mutants")]
     pub(crate) use crate::gpu::mutants::text_of;
 
-    /// What is compiled for a linked shader: itself.
+    /// Returns the text to compile for a linked shader: the text itself.
     #[cfg(not(feature = "mutants"))]
     pub(crate) fn text_of(linked: &'static str) -> std::borrow::Cow<'static, str> {
         linked.into()

@@ -1,11 +1,11 @@
-//! One light's shadow by one technique: its state, and the work of a frame as a value.
+//! Shadow of one light by one technique: its state, and a frame's work as a value.
 //!
-//! A state is cheap to make and drop: programs belong to the device, and every light shares them. It keeps maps and
-//! lists from frame to frame, so give each light one, and each of several views of a light one of its own.
+//! A state is cheap to create and drop: pipelines belong to the device and are shared by all lights. A state keeps maps and lists
+//! from frame to frame, so use one per light, and one per view of a light that has several views.
 //!
-//! [`Shadow::prepare`] gives [`Prepared`] work, and [`Prepared::record`] takes it. Between the two the state is borrowed, so
-//! that no other frame of it can come between; several lights are prepared and recorded in any order. Uploads travel with
-//! the work, so frames may be recorded one after the other and submitted together: submit in the order of recording.
+//! [`Shadow::prepare`] returns [`Prepared`] work, which [`Prepared::record`] records. In between the state is borrowed, so that it
+//! can prepare no other frame. Several lights are prepared and recorded in any order. Uploads are recorded with the work, so frames
+//! may be recorded one after the other and submitted together: submit in the order of recording.
 
 use std::fmt;
 
@@ -47,16 +47,16 @@ pub struct Shadow<T: Technique> {
     validator: Validator,
     /// Parameters of the next frame.
     pub params: T::Params,
-    /// How the next frame's mask is made smooth; `None`, the default, leaves it as the technique writes it. What the frames
-    /// before had is kept as long as there is one.
+    /// Denoiser settings of the next frame; `None`, the default, leaves the mask as the technique writes it, and discards the means
+    /// of earlier frames.
     pub denoise: Option<Denoise>,
-    /// Whether the next frame's technique writes a mask of half the width and height, which is then interpolated within surfaces: any
-    /// technique. What it does for each pixel takes a quarter of the time; contact shadows a pixel or two wide are lost in part. Mask,
-    /// denoising and receivers are of full size all the same. Points have no neighbours, and ignore it.
+    /// Whether the next frame's technique writes a mask of half the width and height, which is then interpolated within surfaces;
+    /// for any technique. Work per pixel takes a quarter of the time; contact shadows a pixel or two wide are lost in part. Mask,
+    /// denoising and receivers keep their full size. Ignored for points, which have no neighbours.
     pub half_resolution: bool,
-    /// Of the light as it is.
+    /// State if one view covers what the light reaches.
     technique: T,
-    /// Made where that does not cover what the light reaches, and kept.
+    /// State if several views are needed; created on demand and retained.
     parted: Option<Parted<T>>,
     ends: KeptEnds,
     denoiser: Option<Denoiser>,
@@ -65,9 +65,9 @@ pub struct Shadow<T: Technique> {
     fade: Option<Fade>,
     keep: Keep,
     functions: ShaderFunctions,
-    /// What the mask holds, where the last frame was recorded and no commands were dropped.
+    /// Key of the mask's content, valid if the last frame was recorded and no commands were dropped.
     mask: Content<FrameKey<T::Params>>,
-    /// A frame that failed or was never recorded leaves a state that is not to be relied on.
+    /// Whether the last frame was recorded; otherwise it failed or was dropped, and its state is discarded.
     is_recorded: bool,
     commands: Commands,
 }
@@ -82,7 +82,7 @@ impl<T: Technique> Shadow<T> {
     /// Creates a light's state with default parameters.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] where the device lacks something.
+    /// [`Error::Unsupported`] if the device lacks a feature or a limit is too low.
     pub fn new(gpu: &Gpu) -> Result<Self, Error> {
         Self::with_params(gpu, T::Params::default())
     }
@@ -116,15 +116,15 @@ impl<T: Technique> Shadow<T> {
     /// Prepares a frame: fits maps, allocates, collects uploads.
     ///
     /// # Errors
-    /// Where parameters, light or frame do not fit one another or the device. Nothing is left that draws.
+    /// If parameters, light or frame do not fit one another or the device. Then there is nothing to record.
     pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
         self.prepare_asked(Asked::Mask(*frame))
     }
 
-    /// Prepares a frame of points in place of a depth buffer. Give points a state of their own beside that of a light's mask: each
-    /// keeps what its last frame drew.
+    /// Prepares a frame of points in place of a depth buffer. Use one state for points and another for a light's mask, because each
+    /// caches what its last frame drew.
     ///
-    /// What needs neighbours has no meaning for points and is not done: `sub` and the smoothing of `smrt`; `denoise` is refused.
+    /// Points have no neighbours, so `sub` and the smoothing of `smrt` are skipped, and `denoise` is an error.
     ///
     /// # Errors
     /// As [`prepare`](Self::prepare).
@@ -169,7 +169,7 @@ impl<T: Technique> Shadow<T> {
         Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes }) })
     }
 
-    /// Whether the mask holds what a frame of casters with a key would draw, so that the frame would record nothing.
+    /// Whether the mask already holds this frame, whose casters have the key `casters`, so that the frame would record nothing.
     pub(crate) fn holds(&self, frame: &Frame<'_>, casters: Option<CastersKey>) -> bool {
         let key = self.key_of(&Asked::Mask(*frame), casters);
         self.is_intact() && self.mask.is_of(key.as_ref()) && self.is_settled()
@@ -184,13 +184,14 @@ impl<T: Technique> Shadow<T> {
         self.is_recorded && !self.commands.are_dropped()
     }
 
-    /// Texels of the depth maps of the frame prepared last.
+    /// Number of texels in the depth maps of the frame prepared last, layers behind included.
     pub(crate) fn map_texels(&self) -> u64 {
         let texels = |map: &DrawnMap| map.size_px.as_u64vec2().element_product() * (1 + map.layers_behind.len() as u64);
         self.drawn_maps().iter().map(texels).sum()
     }
 
-    /// Prepares a frame's stages, from the host's mask back to the light: each writes the mask that the one before it reads.
+    /// Prepares a frame's stages, from the host's mask back to the light: each writes the mask that the stage prepared before it
+    /// reads.
     fn prepare_passes<'a>(
         &mut self,
         stage: &Stage<'_>,
@@ -216,7 +217,7 @@ impl<T: Technique> Shadow<T> {
         });
         let full = PreparedFrame { mask: denoise.as_ref().map_or(wide.mask, |denoise| &denoise.noisy), ..wide };
 
-        // Points have no neighbours, to interpolate between or for means.
+        // Points have no neighbours to interpolate or average.
         let are_neighbours = full.receivers.have_neighbours();
         let is_half = self.half_resolution && are_neighbours;
         let half = is_half.then(|| self.half.get_or_insert_with(|| HalfResolution::new(stage)).prepare(stage, &full));
@@ -228,7 +229,7 @@ impl<T: Technique> Shadow<T> {
             .map(|distance| self.fade.get_or_insert_with(|| Fade::new(stage)).prepare(stage, &of_mask, &distance));
         let is_noisy = are_neighbours && T::is_noisy(&self.params, of_mask.light);
         if !is_noisy {
-            // It holds a texture of the receivers' size.
+            // Frees a texture of the receivers' size.
             self.smoothing = None;
         }
         let smoothing =
@@ -242,8 +243,8 @@ impl<T: Technique> Shadow<T> {
         Ok(Passes { casters, ends, light, smoothing, fade, half, denoise })
     }
 
-    /// Records a frame's stages, in the order of the data: reading of points, halving of the receivers, the technique, smoothing of what is
-    /// noisy, the fade, doubling of the mask, denoising, conversion of the mask.
+    /// Records a frame's stages, in the order of the data: reading of points, halving of the receivers, the technique, smoothing of
+    /// noisy visibility, the fade, upsampling of the mask, denoising, conversion of the mask.
     fn record_passes(&self, recorder: &mut Recorder<'_>, asked: &Asked<'_>, passes: Passes<'_, T::Prepared>) {
         let Passes { casters, ends, light, smoothing, fade, half, denoise } = passes;
         let (receivers, wide) = ends.inner();
@@ -292,20 +293,19 @@ impl<T: Technique> Shadow<T> {
         }
     }
 
-    /// The parts, where the last frame prepared was cut into such.
+    /// State of the light's parts; `None` if the frame prepared last has one view.
     fn parts_in_use(&self) -> Option<&Parted<T>> {
         self.parted.as_ref().filter(|parted| parted.is_in_use())
     }
 
-    /// The technique, for what it has besides a mask; idle where the light is covered in parts, which have states of their
-    /// own.
+    /// Technique, for outputs other than the mask; unused if the light is covered in parts, which have states of their own.
     pub fn technique(&self) -> &T {
         &self.technique
     }
 
-    /// GPU memory that the light retains, bytes: maps, lists, trees, buffers of its frames. What all lights share is in
-    /// [`Gpu::memory_bytes`]; masks, pipelines, the host's resources and uniforms of a few bytes are in neither. A
-    /// [`MemoryPlan`](crate::MemoryPlan) gives the number before anything is allocated.
+    /// GPU memory that the light retains, bytes: maps, lists, trees, buffers of its frames. [`Gpu::memory_bytes`] counts what all
+    /// lights share. Neither counts masks, pipelines, the host's resources and uniforms of a few bytes. A
+    /// [`MemoryPlan`](crate::MemoryPlan) returns the number before anything is allocated.
     pub fn memory_bytes(&self) -> u64 {
         self.keep.memory_bytes()
             + self.technique.memory_bytes()
@@ -314,7 +314,7 @@ impl<T: Technique> Shadow<T> {
     }
 
     /// Texels along a side of each map of the frame prepared last whose size is [`MapSize::Auto`](crate::contract::MapSize::Auto):
-    /// one for each part that the light is cut into. None where sizes are given, or the technique has no such map.
+    /// one per part of the light. Empty if sizes are fixed, or the technique has no such map.
     pub fn auto_map_sizes(&self) -> Vec<u32> {
         match self.parts_in_use() {
             Some(parted) => parted.auto_map_sizes().collect(),
@@ -322,9 +322,8 @@ impl<T: Technique> Shadow<T> {
         }
     }
 
-    /// The depth maps that the frame prepared last draws and its mask is read from, to be looked at once its commands have
-    /// run: those of each part that the light is cut into, with layers behind and levels. None of techniques that keep something
-    /// else than depths.
+    /// Depth maps of the frame prepared last, for inspection once its commands have run: those of each part of the light, with
+    /// layers behind and levels. Empty for techniques that store no depths.
     pub fn drawn_maps(&self) -> Vec<DrawnMap> {
         match self.parts_in_use() {
             Some(parted) => parted.drawn_maps().collect(),
@@ -332,8 +331,8 @@ impl<T: Technique> Shadow<T> {
         }
     }
 
-    /// The lists per texel that the frame prepared last makes and its mask is read from, to be looked at once its commands have
-    /// run: those of each part that the light is cut into. None of techniques that keep no lists.
+    /// Lists per texel of the frame prepared last, for inspection once its commands have run: those of each part of the light.
+    /// Empty for techniques without lists.
     pub fn drawn_lists(&self) -> Vec<DrawnLists> {
         match self.parts_in_use() {
             Some(parted) => parted.drawn_lists().collect(),
@@ -341,8 +340,7 @@ impl<T: Technique> Shadow<T> {
         }
     }
 
-    /// What the newest finished frame lacked room for, as far as the last [`prepare`](Self::prepare) has learnt, which
-    /// has made room.
+    /// Overflow of the newest finished frame that the last [`prepare`](Self::prepare) knew of. That call has made room for it.
     pub fn overflow(&self) -> Option<Overflow> {
         match self.parts_in_use() {
             Some(parted) => parted.overflow(),
@@ -351,18 +349,18 @@ impl<T: Technique> Shadow<T> {
     }
 }
 
-/// Passes of one frame; `P` is the technique's.
+/// Passes of one frame; `P` is the technique's prepared work.
 struct Passes<'a, P> {
     casters: FrameCasters<'a>,
     ends: Ends<'a>,
     light: LightPasses<'a, P>,
-    /// Where the technique's visibility is noisy.
+    /// `Some` if the technique's visibility is noisy.
     smoothing: Option<PreparedSmoothing>,
-    /// Where shadows end at a distance.
+    /// `Some` if there is a shadow distance.
     fade: Option<PreparedFade>,
-    /// Where the technique writes a mask of half the size.
+    /// `Some` if the technique writes a mask of half the size.
     half: Option<PreparedHalf>,
-    /// Where the mask is denoised.
+    /// `Some` if the mask is denoised.
     denoise: Option<PreparedDenoise>,
 }
 
@@ -370,7 +368,7 @@ struct Passes<'a, P> {
 enum LightPasses<'a, P> {
     /// One view covers what the light reaches.
     Whole(P),
-    /// Several do, each with a mask that is joined to the light's.
+    /// Several views cover it, each with a mask that is joined to the light's.
     Parts(Box<PartedPasses<'a, P>>),
 }
 
@@ -387,7 +385,7 @@ impl fmt::Debug for Prepared<'_> {
 }
 
 impl Prepared<'_> {
-    /// What the newest finished frame lacked room for, as far as is known; this one has room for as much.
+    /// Overflow of the newest finished frame, as far as known; this frame has room for as much.
     pub fn overflow(&self) -> Option<Overflow> {
         self.work.overflow()
     }
@@ -398,7 +396,7 @@ impl Prepared<'_> {
     }
 }
 
-/// A frame's work by whatever technique.
+/// Object-safe form of a frame's work.
 trait Work: wgpu::WasmNotSendSync {
     fn asked(&self) -> &dyn fmt::Debug;
     fn overflow(&self) -> Option<Overflow>;
@@ -409,7 +407,7 @@ trait Work: wgpu::WasmNotSendSync {
 struct FrameWork<'a, T: Technique> {
     shadow: &'a mut Shadow<T>,
     asked: Asked<'a>,
-    /// `None` where the mask holds the frame.
+    /// `None` if the mask already holds the frame.
     passes: Option<(StagedUploads, Passes<'a, T::Prepared>)>,
 }
 

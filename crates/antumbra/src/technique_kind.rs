@@ -56,7 +56,7 @@ pub struct TechniqueFacts {
     pub worst_case: &'static str,
 }
 
-/// Whether two texts are the same, while compiling.
+/// Whether two texts are equal, evaluated at compile time.
 const fn is_same(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     let mut i = 0;
@@ -133,19 +133,19 @@ macro_rules! techniques {
                 )+ }
             }
 
-            /// Checks a parameter's value as [`AnyShadow::set`] would, before there is a device.
+            /// Checks a parameter's value as [`AnyShadow::set`] would, without a device.
             ///
             /// # Errors
-            /// Names the keys there are, or what the key takes.
+            /// Lists the technique's keys, or the values that the key accepts.
             pub fn check(self, key: &str, text: &str) -> Result<(), ParamError> {
                 self.read(key, text).map(drop)
             }
 
-            /// A parameter and its value, read as [`AnyShadow::set`] would: keys and choices as they are declared, whatever the
-            /// text's case.
+            /// Parses a parameter and its value as [`AnyShadow::set`] would. Returns keys and choices as declared, regardless of
+            /// the text's case.
             ///
             /// # Errors
-            /// Names the keys there are, or what the key takes.
+            /// Lists the technique's keys, or the values that the key accepts.
             pub fn read(self, key: &str, text: &str) -> Result<(&'static ParamSpec, ParamValue), ParamError> {
                 match self { $(
                     #[cfg(feature = $family)]
@@ -161,7 +161,7 @@ macro_rules! techniques {
                 )+ }
             }
 
-            /// The technique as published, which [`Quality::Paper`] sets; `None` for techniques of other papers.
+            /// Departures from the paper, for [`Quality::Paper`]; `None` if the technique has no such quality.
             pub fn printed(self) -> Option<&'static Printed> {
                 match self { $(
                     #[cfg(feature = $family)]
@@ -433,12 +433,12 @@ impl TechniqueKind {
         self.facts().source
     }
 
-    /// Technique of this name, in any case.
+    /// Technique of this name; case-insensitive.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|kind| kind.name().eq_ignore_ascii_case(name))
     }
 
-    /// Whether the technique has this quality: all of the ladder, and [`Quality::Paper`] if it sets anything.
+    /// Whether the technique has this quality: every one of the ladder, and [`Quality::Paper`] if it sets anything.
     pub fn has_quality(self, quality: Quality) -> bool {
         quality != Quality::Paper || self.printed().is_some()
     }
@@ -448,7 +448,7 @@ impl AnyShadow {
     /// Technique.
     ///
     /// # Panics
-    /// By a technique of the caller's own, which is not listed.
+    /// If the technique is the caller's own, which is not listed.
     pub fn kind(&self) -> TechniqueKind {
         TechniqueKind::from_name(self.name()).expect("a technique of the library is listed")
     }

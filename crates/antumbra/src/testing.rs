@@ -1,4 +1,4 @@
-//! Helpers of the library's tests: one device, small meshes, a camera, cases with closed forms.
+//! Helpers of the library's tests: one device, small meshes, a camera, test scenes with closed forms.
 
 use std::f32::consts::FRAC_PI_4;
 use std::sync::OnceLock;
@@ -15,8 +15,8 @@ use crate::light_map::caster_depth::CasterDepth;
 use crate::shadow::AnyShadow;
 use crate::shadow::{Casters, Frame};
 
-/// One device for the whole test binary; `None` where there is no adapter and none is required. An adapter that gives no
-/// device is a failure.
+/// Returns the device of the whole test binary; `None` if there is no adapter and none is required. An adapter without a device is
+/// a failure.
 pub(crate) fn gpu() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     let gpu = GPU.get_or_init(|| gpu_with(|_| wgpu::Limits::default()));
@@ -26,12 +26,12 @@ pub(crate) fn gpu() -> Option<&'static Gpu> {
     gpu.as_ref()
 }
 
-/// A device whose storage bindings hold so many bytes at most.
+/// Creates a device whose storage bindings hold at most `bytes` bytes.
 pub(crate) fn gpu_with_bindings_of(bytes: u64) -> Option<Gpu> {
     gpu_with(|_| wgpu::Limits { max_storage_buffer_binding_size: bytes, ..wgpu::Limits::default() })
 }
 
-/// A device with such limits.
+/// Creates a device with the required limits; `None` if there is no adapter.
 pub(crate) fn gpu_with(required_limits: impl FnOnce(&wgpu::Adapter) -> wgpu::Limits) -> Option<Gpu> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let options = wgpu::RequestAdapterOptions::default();
@@ -50,12 +50,12 @@ pub(crate) fn gpu_with(required_limits: impl FnOnce(&wgpu::Adapter) -> wgpu::Lim
     Some(Gpu::new(&device, &queue))
 }
 
-/// Whether the device is a software renderer, whose arithmetic is that of the references on the processor to the last bit.
+/// Whether the device is a software renderer, whose arithmetic is that of the CPU references to the last bit.
 pub(crate) fn is_software(gpu: &Gpu) -> bool {
     gpu.device().adapter_info().device_type == wgpu::DeviceType::Cpu
 }
 
-/// A 16-bit float as a 32-bit one.
+/// Converts a 16-bit float to a 32-bit one.
 pub(crate) fn f32_of_half(half: u16) -> f32 {
     let (exponent, fraction) = (i32::from(half >> 10 & 31), f32::from(half & 1023) / 1024.0);
     let size = if exponent == 0 { fraction * 2.0f32.powi(-14) } else { (1.0 + fraction) * 2.0f32.powi(exponent - 15) };
@@ -102,7 +102,7 @@ impl Mesh {
         }
     }
 
-    /// A rectangle in a horizontal plane.
+    /// Creates a rectangle in a horizontal plane.
     pub(crate) fn horizontal(gpu: &Gpu, min: Vec2, max: Vec2, height: f32) -> Self {
         let corners =
             [Vec2::new(min.x, min.y), Vec2::new(min.x, max.y), Vec2::new(max.x, max.y), Vec2::new(max.x, min.y)];
@@ -126,7 +126,7 @@ impl Mesh {
     }
 }
 
-/// One instance, moved.
+/// Creates the buffer of one instance, translated by `away`.
 pub(crate) fn instances_at(gpu: &Gpu, away: Vec3) -> wgpu::Buffer {
     let instances = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("test instances"),
@@ -138,7 +138,7 @@ pub(crate) fn instances_at(gpu: &Gpu, away: Vec3) -> wgpu::Buffer {
     instances
 }
 
-/// The camera of the tests: above, to the side.
+/// Camera of a test.
 pub(crate) struct View {
     pub(crate) view_from_world: Mat4,
     pub(crate) clip_from_view: Mat4,
@@ -162,12 +162,12 @@ impl View {
     }
 }
 
-/// A texture of 32-bit floats that holds `texels`, row by row.
+/// Creates a texture of 32-bit floats that holds `texels`, row by row.
 pub(crate) fn float_texture(gpu: &Gpu, size: UVec2, texels: &[f32]) -> wgpu::Texture {
     texture_of(gpu, size, wgpu::TextureFormat::R32Float, texels)
 }
 
-/// A texture that holds `texels`, each of them one texel of the format, row by row.
+/// Creates a texture that holds `texels`, each of them one texel of the format, row by row.
 pub(crate) fn texture_of<T: bytemuck::NoUninit>(
     gpu: &Gpu,
     size: UVec2,
@@ -228,7 +228,7 @@ pub(crate) fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Vec<u
     copy
 }
 
-/// The values of a buffer with usage `COPY_SRC`, after all that was submitted.
+/// Reads the values of a buffer with usage `COPY_SRC`, after all that was submitted.
 pub(crate) fn read_storage<T: bytemuck::Pod>(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<T> {
     let readback = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("test readback"),
@@ -242,12 +242,12 @@ pub(crate) fn read_storage<T: bytemuck::Pod>(gpu: &Gpu, buffer: &wgpu::Buffer) -
     bytemuck::pod_collect_to_vec(&read_buffer(gpu, &readback, buffer.size()))
 }
 
-/// One mip level of a texture, its rows packed tightly.
+/// Reads one mip level of a texture, its rows packed tightly.
 pub(crate) fn read_texture(gpu: &Gpu, texture: &wgpu::Texture, level: u32, size: UVec2) -> Vec<u8> {
     read_slice(gpu, wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() }, size)
 }
 
-/// One layer of an array texture, its rows packed tightly.
+/// Reads one layer of an array texture, its rows packed tightly.
 pub(crate) fn read_layer(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Vec<u8> {
     let origin = wgpu::Origin3d { z: layer, ..wgpu::Origin3d::ZERO };
     let size = UVec2::new(texture.width(), texture.height());
@@ -292,7 +292,7 @@ pub(crate) fn run(gpu: &Gpu, technique: &mut AnyShadow, frame: &Frame<'_>) -> Re
     gpu.queue.submit([encoder.finish()]);
     if let Some(timer) = &timer {
         let times = timer.read(&read_buffer(gpu, timer.readback(), timer.readback_bytes()));
-        // Each within the wait for all, however long a driver compiles meanwhile.
+        // No pass takes longer than the wait for all, even if the driver compiles meanwhile.
         let waited_ms = 1e3 * submitted.elapsed().as_secs_f64();
         let is_within = |ms: f64| ms >= 0.0 && ms <= waited_ms + 1.0;
         assert!(!times.is_empty() && times.iter().all(|time| is_within(time.ms)), "{times:?} in {waited_ms} ms");
@@ -301,7 +301,7 @@ pub(crate) fn run(gpu: &Gpu, technique: &mut AnyShadow, frame: &Frame<'_>) -> Re
     Ok(bytemuck::pod_collect_to_vec(&bytes))
 }
 
-/// A depth buffer that sees nothing.
+/// Creates a depth buffer without geometry.
 pub(crate) fn empty_depth(gpu: &Gpu, size: UVec2) -> wgpu::TextureView {
     view_of(&draw_depth(gpu, size, Mat4::IDENTITY, &[]))
 }
@@ -325,7 +325,7 @@ pub(crate) fn test_receivers(size_px: UVec2, depth: &wgpu::TextureView) -> Recei
     }
 }
 
-/// Meshes, seen by a camera, under a light.
+/// Test scene: meshes under a light, seen by a camera.
 pub(crate) struct Case {
     pub(crate) light: Light,
     pub(crate) view: View,
@@ -341,7 +341,7 @@ impl Case {
         Self { light, view, meshes, depth, mask: Mask::new(gpu.device(), SIZE) }
     }
 
-    /// A 12 m ground and a half-plane (x < 0) at height 1.5 under a light at height 4.
+    /// Creates a 12 m ground and a half-plane (x < 0) at height 1.5 under a light at height 4.
     pub(crate) fn half_plane(gpu: &Gpu, shape: LightShape) -> Self {
         let light = Light::new(shape, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
         // The occluder lies outside of the camera's view of the ground x > −1.
@@ -370,7 +370,7 @@ impl Case {
         self.with_frame(casters, |frame| run(gpu, &mut technique, frame))
     }
 
-    /// Hands out the case as a frame.
+    /// Calls `run` with the scene as a frame.
     pub(crate) fn with_frame<T>(&self, casters: Casters<'_>, run: impl FnOnce(&Frame<'_>) -> T) -> T {
         let receivers = Receivers {
             size_px: SIZE,
@@ -389,7 +389,7 @@ impl Case {
         run(&Frame { light: &self.light, casters, receivers, mask: &self.mask })
     }
 
-    /// Hands out the case as techniques receive a frame.
+    /// Calls `run` with the scene as a frame that techniques receive.
     pub(crate) fn with_prepared<T>(&self, meshes: &[MeshCaster<'_>], run: impl FnOnce(&PreparedFrame<'_>) -> T) -> T {
         self.with_frame(Casters::Meshes(meshes), |&Frame { light, receivers, mask, .. }| {
             run(&PreparedFrame {
@@ -402,7 +402,7 @@ impl Case {
         })
     }
 
-    /// Pixels that see the ground, with the point they see.
+    /// Pixels that see the `visible` ground: index, and the point seen.
     pub(crate) fn ground_pixels(&self, visible: impl Fn(Vec3) -> bool) -> Vec<(usize, Vec3)> {
         (0..SIZE.y)
             .flat_map(|y| (0..SIZE.x).map(move |x| UVec2::new(x, y)))
@@ -419,7 +419,7 @@ pub(crate) fn rmse(pixels: &[(usize, Vec3)], visibility: &[f32], truth: impl Fn(
     (sum / pixels.len() as f32).sqrt()
 }
 
-/// V under a rectangle light of width `w` at height 4 behind the half-plane's edge at height 1.5: the segment to the
+/// Visibility under a rectangle light of width `w` at height 4 behind the half-plane's edge at height 1.5: the segment to the
 /// light point `o` crosses height 1.5 at x + (o − x) · 1.5/4, and is blocked where that is below 0.
 pub(crate) fn half_plane_visibility(x: f32, w: f32) -> f32 {
     let first_visible = -x * (1.0 - 0.375) / 0.375;
@@ -429,8 +429,8 @@ pub(crate) fn half_plane_visibility(x: f32, w: f32) -> f32 {
     ((0.5 * w - first_visible) / w).clamp(0.0, 1.0)
 }
 
-/// Irradiance of a point of the ground from a rectangle of unit radiance that looks straight down, by its edges: Lambert's
-/// formula, Σ θᵢ Γᵢ · n / 2π.
+/// Irradiance of a point of the ground from a rectangle of unit radiance that faces straight down, by Lambert's formula over its
+/// edges: Σ θᵢ Γᵢ · n / 2π.
 pub(crate) fn lambert_irradiance(p: DVec3, height: f64, [x0, x1]: [f64; 2], [z0, z1]: [f64; 2]) -> f64 {
     if x0 >= x1 {
         return 0.0;
@@ -443,8 +443,8 @@ pub(crate) fn lambert_irradiance(p: DVec3, height: f64, [x0, x1]: [f64; 2], [z0,
     ((0..4).map(edge).sum::<f64>() / std::f64::consts::TAU).abs()
 }
 
-/// How far a technique's masks are from the part of a wide light's irradiance that the half-plane leaves: weighted by irradiance, and by
-/// emission. Root mean squares; the light is as wide as it is high above the ground.
+/// Root-mean-square errors of a technique's masks, weighted by irradiance and by emission, against the fraction of a wide light's
+/// irradiance that the half-plane leaves. The light is as wide as it is high above the ground.
 pub(crate) fn half_plane_ratio_errors(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> [f64; 2] {
     let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::splat(4.0) });
     let pixels = case.ground_pixels(|p| p.x.abs() < 2.0 && p.z.abs() < 1.2);
@@ -462,7 +462,7 @@ pub(crate) fn half_plane_ratio_errors(gpu: &Gpu, kind: TechniqueKind, settings: 
 
 pub(crate) const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 1.0) };
 
-/// The ground in front of the occluder, far from its sides and from the ground's own edge.
+/// Whether a ground point is in front of the occluder, far from its sides and from the ground's own edge.
 pub(crate) fn test_ground(p: Vec3) -> bool {
     p.x.abs() < 2.0 && p.z.abs() < 1.5
 }

@@ -1,5 +1,4 @@
-//! What holds for the whole library: every shader is valid, every shared struct has one layout, every declaration is
-//! complete.
+//! Tests of the whole library: every shader is valid, every shared struct has one layout, every declaration is complete.
 
 use antumbra_light::LightShape;
 use glam::{Vec2, Vec3};
@@ -23,7 +22,7 @@ fn module(path: &str, wgsl: &str) -> naga::Module {
 fn every_shader_is_valid_without_native_features() {
     for (path, wgsl) in shaders::ALL {
         let module = module(path, &shaders::text_of(wgsl));
-        // 16-bit floats packed in words are core WGSL; naga asks, since OpenGL lacks them.
+        // 16-bit floats packed in words are core WGSL; naga asks for the capability because OpenGL lacks them.
         let core = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
         let validated = Validator::new(ValidationFlags::all(), core).validate(&module);
         assert!(validated.is_ok(), "{path}: {:?}", validated.err());
@@ -122,7 +121,7 @@ fn shared_structs_have_one_layout() {
     }
 }
 
-/// Every shader that has a constant of this name has this value of it, and one has it at the least.
+/// Asserts that at least one shader has a constant of this name, and that it has this value in each of them.
 fn assert_in_shaders(name: &str, value: u32) {
     let holders = shaders::ALL.iter().filter(|(_, wgsl)| wgsl.contains(name));
     let values: Vec<_> = holders.filter_map(|(path, wgsl)| Some((path, constant_of(wgsl, name)?))).collect();
@@ -175,8 +174,8 @@ fn every_declaration_is_complete_and_holds_its_own_default() {
     }
 }
 
-/// Qualities set what the declarations allow, and each step something else than the one below it; but for exact hard shadows,
-/// of which there is one quality.
+/// Qualities set what the declarations allow. Each step differs from the one below it, except for exact hard shadows, which have
+/// one quality.
 #[test]
 fn qualities_are_within_ranges_and_differ() {
     for kind in TechniqueKind::ALL {
@@ -190,7 +189,7 @@ fn qualities_are_within_ranges_and_differ() {
     }
 }
 
-/// What is printed is set by parameters that ours has otherwise, each with a word on what ours does.
+/// Published settings are valid and differ from the defaults, each with a text on what the default does instead.
 #[test]
 fn what_papers_print_is_within_ranges_and_differs() {
     let mut printed_count = 0;
@@ -213,7 +212,7 @@ fn what_papers_print_is_within_ranges_and_differs() {
         let texts = printed.departures.iter().map(|departure| departure.ours).chain(printed.kept.iter().copied());
         assert!(texts.clone().all(|text| text.ends_with('.')), "{kind}: {:?}", texts.collect::<Vec<_>>());
     }
-    // The papers' own techniques, and what they compare with: `vssm` and `cssm` among them.
+    // The papers' own techniques and those that they compare with, `vssm` and `cssm` among them.
     assert_eq!(printed_count, 12);
 }
 
@@ -241,14 +240,14 @@ fn parameters_say_what_they_take() {
     assert!(params.validate("pcf").is_err());
 }
 
-/// How many runs of casters a dispatch takes is said in shaders and in Rust.
+/// Shaders and Rust agree on the number of runs of casters in a dispatch.
 #[test]
 fn tables_of_runs_are_as_long_as_the_shaders_say() {
     for name in ["light_map/caster_triangles/gather", "techniques/receiver_lists/triangles/count"] {
         let (_, wgsl) = crate::shaders::ALL.iter().find(|(path, _)| *path == name).expect("a listed shader");
         let module = naga::front::wgsl::parse_str(&shaders::text_of(wgsl)).expect("valid");
         let runs = module.global_variables.iter().find(|(_, variable)| {
-            // Of another module, names have its path before them.
+            // The linker puts a module's path before names of another module.
             variable.name.as_deref().is_some_and(|name| name == "runs" || name.ends_with("_runs"))
         });
         let (_, runs) = runs.unwrap_or_else(|| panic!("{name} has no table `runs`"));

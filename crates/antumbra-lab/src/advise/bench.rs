@@ -1,4 +1,4 @@
-//! One configuration on every view, at one of several sizes: how far from the truth, how long, how much memory.
+//! Measurement of one configuration on every view, at one of several sizes: error, time and memory.
 
 use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
@@ -22,7 +22,7 @@ use crate::technique_run::{FrameCount, Timing, create};
 use crate::truth::{LightTruth, trace_lights};
 use crate::view::View;
 
-/// A picture of so many parts of the side, so many light points of its truth at most, and so many timed frames.
+/// Size of a measurement: fraction of the image's side (1 / `part`), maximum light samples of the ground truth, number of timed frames.
 #[derive(Clone, Copy, Debug)]
 struct Rung {
     part: u32,
@@ -30,34 +30,34 @@ struct Rung {
     frames: u32,
 }
 
-/// From small and rough to what is asked for.
+/// Sizes from small and coarse to the requested one.
 const RUNGS: [Rung; 3] = [
     Rung { part: 4, samples: 64, frames: 1 },
     Rung { part: 2, samples: 256, frames: 2 },
     Rung { part: 1, samples: u32::MAX, frames: 3 },
 ];
 
-/// The last rung, which is what is asked for.
+/// Index of the last rung: the requested size.
 pub(super) const FULL: usize = RUNGS.len() - 1;
 
-/// Once frames took so long together, no further one is timed: what a scheduler takes away is milliseconds, which matter where a
-/// frame is a few of them and not where it is a hundred.
+/// Time after which no further frame is timed. Scheduling noise is milliseconds: it matters for frames of a few
+/// milliseconds, not for frames of a hundred.
 const LONG_ENOUGH: Duration = Duration::from_millis(150);
 
-/// So many times the budget, no further frame of a configuration is begun.
+/// Multiple of the budget after which no further frame of a configuration is started.
 const PATIENCE: f64 = 5.0;
 
-/// No picture is made narrower or lower.
+/// Minimum width and height of an image, pixels.
 const LEAST_SIDE_PX: u32 = 24;
 
-/// A view with its truth, ready for techniques.
+/// A view with its ground truth, ready for techniques.
 struct Scene<'a> {
     view: View<'a>,
     truth: LightTruth,
     receivers: Receivers,
 }
 
-/// Every view at every size, made when first asked for.
+/// Every view at every size, created on first use.
 pub(super) struct Bench<'a> {
     lab: &'a LabDevice,
     pub(super) request: &'a AdviseRequest<'a>,
@@ -65,7 +65,7 @@ pub(super) struct Bench<'a> {
     uploaded: Vec<Rc<GpuScene>>,
     tracers: Vec<Tracer>,
     rungs: [OnceCell<Vec<Scene<'a>>>; RUNGS.len()],
-    /// The budget of the slowest view, once it is known: what keeps it has time for its frames; what does not is not looked at long.
+    /// Largest budget of all views, milliseconds; infinite until it is known. It bounds the time spent on a slow configuration.
     pub(super) most_ms: Cell<f64>,
 }
 
@@ -83,7 +83,7 @@ impl<'a> Bench<'a> {
         Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), most_ms })
     }
 
-    /// The size of a rung's pictures.
+    /// Returns the image size of a rung, pixels.
     pub(super) fn size_px(&self, rung: usize) -> UVec2 {
         let full = self.request.size_px;
         (full / RUNGS[rung].part).max(UVec2::splat(LEAST_SIDE_PX)).min(full)
@@ -93,7 +93,7 @@ impl<'a> Bench<'a> {
         RUNGS[rung].samples.min(self.request.samples)
     }
 
-    /// What a measurement of a rung depends on, for the store.
+    /// Returns the part of the store's key that describes a rung: image size and light samples.
     pub(super) fn place(&self, rung: usize) -> String {
         let size_px = self.size_px(rung);
         format!("{}x{}/{}", size_px.x, size_px.y, self.samples(rung))
@@ -120,17 +120,17 @@ impl<'a> Bench<'a> {
         Ok(Scene { view, truth, receivers })
     }
 
-    /// Whether there is a pixel to be judged by.
+    /// Returns whether every view has at least one judged pixel.
     pub(super) fn judges_something(&self) -> Result<bool, LabError> {
         Ok(self.scenes(FULL)?.iter().all(|scene| scene.truth.judged.contains(&true)))
     }
 
-    /// Runs a configuration.
+    /// Measures a configuration with the rung's number of frames.
     pub(super) fn measure(&self, config: &Config, rung: usize) -> Result<Measured, LabError> {
         self.measure_frames(config, rung, RUNGS[rung].frames)
     }
 
-    /// The same with so many timed frames.
+    /// Measures a configuration with the given number of timed frames.
     pub(super) fn measure_frames(&self, config: &Config, rung: usize, frames: u32) -> Result<Measured, LabError> {
         let scenes = self.scenes(rung)?;
         let began = Instant::now();
@@ -149,7 +149,7 @@ impl<'a> Bench<'a> {
                 Err(error @ LabError::Technique(antumbra::Error::Unsupported { .. })) => {
                     return Ok(refused(&error, began));
                 }
-                // Parameters that do not go together, or ask for more than there is.
+                // Parameters that contradict each other or exceed a limit.
                 Err(error @ LabError::Technique(_)) => return Ok(refused(&error, began)),
                 Err(error) => return Err(error),
             };
@@ -170,7 +170,7 @@ impl<'a> Bench<'a> {
         Ok(measured)
     }
 
-    /// What each view is like.
+    /// Returns the scene facts of each view, by name.
     pub(super) fn facts(&self) -> Result<Vec<(String, SceneFacts)>, LabError> {
         let facts = self.scenes(FULL)?.iter().zip(&self.request.views).map(|(made, asked)| {
             let (scene, setup) = (&self.request.scenes[asked.scene], &asked.setup);
@@ -182,14 +182,14 @@ impl<'a> Bench<'a> {
         facts.collect()
     }
 
-    /// A view's light traced, and by a technique; the second is shaded too, with the judged light alone.
+    /// Returns the ground truth and the technique's mask of a view's judged light.
     pub(super) fn masks(&self, config: &Config, view: usize) -> Result<(&LightTruth, Visibility), LabError> {
         let (scene, asked) = (&self.scenes(FULL)?[view], &self.request.views[view]);
         let drawn = scene.view.draw(&mut scene.view.create(&config.choice())?, asked.light, 1)?;
         Ok((&scene.truth, drawn.visibility))
     }
 
-    /// A view shaded by one visibility of the judged light; other lights are left out by being dark.
+    /// Shades a view with one mask of the judged light. Other lights are dark.
     pub(super) fn shade(&self, visibility: &Visibility, view: usize) -> Result<image::RgbImage, LabError> {
         let (scene, asked) = (&self.scenes(FULL)?[view], &self.request.views[view]);
         let dark = Visibility::one(visibility.size_px, vec![0.0; crate::picture::pixel_count(visibility.size_px)]);
@@ -200,7 +200,7 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// Fingerprint of a mask: equal where every pixel is.
+/// Fingerprint of a mask. Equal masks have equal fingerprints.
 fn fingerprint_of(visibility: &Visibility) -> String {
     let pixels = 0..crate::picture::pixel_count(visibility.size_px);
     let values = pixels.flat_map(|i| (0..visibility.channel_count()).map(move |channel| visibility.at(i, channel)));

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::{Candidate, Config, Measured};
 
-/// A configuration as it was measured, once.
+/// Returns the candidate of a configuration that was timed once.
 pub(super) fn candidate(config: &Config, measured: &Measured, budget_ms: &[f64]) -> Candidate {
     let choice = config.choice();
     let parameters: Map<String, Value> = choice

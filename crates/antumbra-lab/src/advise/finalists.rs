@@ -1,4 +1,4 @@
-//! The last few: timed in turns, looked at in motion where that is asked for, and one of them chosen.
+//! Final selection: times the finalists in turns, measures their flicker on request, and chooses one.
 
 use super::bench::FULL;
 use super::candidate::candidate;
@@ -15,24 +15,24 @@ use crate::error::LabError;
 use crate::motion::{Motion, MotionOptions, MovingScene};
 use crate::technique_run::create;
 
-/// So many of those that may keep the budget are timed in turns at once.
+/// Number of finalists timed in turns at once.
 const FINALISTS: usize = 5;
-/// Group after group until one does: of what took up to such parts of the budget when it was timed once.
+/// Maximum loads of the groups of finalists, in order, by the first timing. Groups are timed until one keeps the budget.
 const WITHIN: [f64; 5] = [1.15, 1.15, 1.0, 0.7, 0.45];
-/// What kept the budget in every turn is taken before what did in most, where it errs by no more than so many times as much.
+/// Maximum error ratio at which a candidate that keeps the budget in every turn is preferred to one that keeps it in most.
 const SURE: f64 = 1.05;
-/// A step up errs less by so much.
+/// Error ratio below which a more expensive candidate is a step up.
 const STEP_UP: f64 = 0.95;
-/// A step up that is found to keep the budget is a finalist, and another one is looked for, so many times.
+/// Maximum number of steps up that are timed. One that keeps the budget becomes a finalist, and the next is looked for.
 const STEPS_UP: usize = 3;
-/// The next best are so many.
+/// Number of runners-up.
 const RUNNERS_UP: usize = 4;
-/// Frames and metres a frame of the camera's motion, and light points of its truth.
+/// Camera motion: frames, metres per frame, and light samples of its ground truth.
 const MOTION_FRAMES: u32 = 8;
 const MOTION_STEP_M: f32 = 0.05;
 const MOTION_SAMPLES: u32 = 256;
 
-/// Chooses among what a search has measured at the full size. `pcf_ms` is what `pcf` took at first, by view.
+/// Chooses among the configurations measured at full size. `pcf_ms` is the first time of `pcf`, by view.
 pub(super) fn choose(
     lab: &LabDevice,
     search: &mut Search<'_, '_>,
@@ -52,7 +52,7 @@ pub(super) fn choose(
     let keeps_budget = best.load <= 1.0 && is_within_limits(search, &best);
     let settings = simplified(search, &mut best)?;
 
-    // As they were timed last, and none twice.
+    // Finalists carry their latest times, so they replace their earlier entries.
     candidates.retain(|one| finalists.iter().all(|other| other.config != one.config));
     let others: Vec<Candidate> = finalists.iter().chain(&candidates).cloned().collect();
     let runners_up = runners_up(search, &best, &others)?;
@@ -96,11 +96,11 @@ pub(super) fn choose(
     Ok(advice)
 }
 
-/// All that was measured at the full size and asked for, by error.
+/// Returns all requested candidates measured at full size, by increasing error.
 fn candidates(search: &Search<'_, '_>) -> Result<Vec<Candidate>, LabError> {
     let of = |config: &Config| Some(candidate(config, search.known(config, FULL)?, &search.budget_ms));
     let mut candidates: Vec<Candidate> = search.tried[FULL].iter().filter_map(of).collect();
-    // pcf is the measure of budgets, and a candidate only where it was asked for.
+    // `pcf` is measured for the budget; it is a candidate only if it was requested.
     candidates.retain(|one| search.bench.request.kinds.contains(&one.config.kind));
     if candidates.is_empty() {
         let why = "none of these techniques runs here; `antumbra doctor` says what each lacks";
@@ -114,8 +114,9 @@ fn is_within_limits(search: &Search<'_, '_>, one: &Candidate) -> bool {
     search.limits.keep(one.memory_bytes, one.roughness)
 }
 
-/// Those that may keep the budget, timed in turns group after group until one does; by error, so that whatever errs less than the
-/// recommendation was timed in turns and found too slow. Where nothing may, what is nearest to it.
+/// Times candidates in turns, group after group, until one keeps the budget. Groups are in order of error, so every
+/// candidate that errs less than the recommendation was timed in turns and found too slow. If no candidate is within any
+/// group's load, the nearest one is timed.
 fn time_finalists(search: &mut Search<'_, '_>, candidates: &[Candidate]) -> Result<Vec<Candidate>, LabError> {
     let mut finalists: Vec<Candidate> = Vec::new();
     let mut looked_at: Vec<Config> = Vec::new();
@@ -154,8 +155,8 @@ fn time_finalists(search: &mut Search<'_, '_>, candidates: &[Candidate]) -> Resu
     Ok(finalists)
 }
 
-/// Times what errs clearly less than the best of the finalists and costs more, in turns too: it is a finalist itself where it turns out
-/// to keep the budget, and else known to be a step up.
+/// Times candidates that err clearly less than the best finalist and cost more, also in turns. One that keeps the budget becomes a
+/// finalist; otherwise it is the step up.
 fn time_steps_up(
     search: &mut Search<'_, '_>,
     candidates: &[Candidate],
@@ -181,7 +182,7 @@ fn time_steps_up(
     Ok(())
 }
 
-/// The best of those that keep the budget, or what comes nearest.
+/// Returns the best finalist that keeps the budget, or else the one nearest to it.
 fn best_of(search: &Search<'_, '_>, finalists: &[Candidate]) -> Candidate {
     let fitting: Vec<&Candidate> =
         finalists.iter().filter(|one| one.load <= 1.0 && is_within_limits(search, one)).collect();
@@ -189,7 +190,7 @@ fn best_of(search: &Search<'_, '_>, finalists: &[Candidate]) -> Candidate {
     surest(&fitting).or_else(nearest).expect("there are finalists").clone()
 }
 
-/// The cheapest of what errs clearly less than `best` and costs more than may be spent.
+/// Returns the cheapest candidate that errs clearly less than `best` and exceeds the budget.
 fn step_up<'c>(
     search: &Search<'_, '_>,
     among: impl Iterator<Item = &'c Candidate>,
@@ -201,7 +202,7 @@ fn step_up<'c>(
     among.filter(is_step).min_by(|a, b| a.load.total_cmp(&b.load)).cloned()
 }
 
-/// Times candidates in turns.
+/// Times candidates in turns and stores the times in them.
 fn time(search: &Search<'_, '_>, candidates: &mut [Candidate]) -> Result<(), LabError> {
     let configs: Vec<Config> = candidates.iter().map(|one| one.config.clone()).collect();
     let times = in_turns(search, &configs.iter().collect::<Vec<_>>())?;
@@ -211,7 +212,7 @@ fn time(search: &Search<'_, '_>, candidates: &mut [Candidate]) -> Result<(), Lab
     Ok(())
 }
 
-/// The best of each other technique that keeps the budget.
+/// Returns the best candidate of each other technique that keeps the budget.
 fn runners_up(search: &mut Search<'_, '_>, best: &Candidate, others: &[Candidate]) -> Result<Vec<Candidate>, LabError> {
     let mut runners_up: Vec<Candidate> = Vec::new();
     for one in others.iter().filter(|one| one.load <= 1.0 && is_within_limits(search, one)) {
@@ -223,11 +224,11 @@ fn runners_up(search: &mut Search<'_, '_>, best: &Candidate, others: &[Candidate
     }
     runners_up.sort_by(|a, b| a.objective().total_cmp(&b.objective()));
     runners_up.truncate(RUNNERS_UP);
-    // Those that were no finalists have settings as the search left them.
+    // Candidates that were no finalists still have the settings that the search gave them.
     runners_up.iter().map(|one| simplest_candidate(search, one)).collect()
 }
 
-/// Those that none beats in both error and time, the cheapest first.
+/// Returns the Pareto front of error and time, without idle settings, cheapest first.
 fn plain_front(
     search: &mut Search<'_, '_>,
     best: &Candidate,
@@ -244,7 +245,7 @@ fn plain_front(
     Ok(front(plain))
 }
 
-/// Of what keeps the budget, what errs least; what surely keeps it, where that is nearly as good.
+/// Returns the candidate with the least error, or one nearly as good that keeps the budget in every turn.
 fn surest<'c>(fitting: &[&'c Candidate]) -> Option<&'c Candidate> {
     let least = |among: &[&'c Candidate]| among.iter().copied().min_by(|a, b| a.objective().total_cmp(&b.objective()));
     let first = least(fitting)?;
@@ -252,7 +253,7 @@ fn surest<'c>(fitting: &[&'c Candidate]) -> Option<&'c Candidate> {
     Some(least(&sure).filter(|one| one.objective() <= SURE * first.objective()).unwrap_or(first))
 }
 
-/// Measures at the full size the cheapest of what, on smaller pictures, errs clearly less than what keeps the budget.
+/// Measures at full size the cheapest configuration that, on smaller images, errs clearly less than those within the budget.
 fn look_above(search: &mut Search<'_, '_>) -> Result<(), LabError> {
     for rung in (0..FULL).rev() {
         let known: Vec<(Config, f64, f64)> = search.tried[rung]
@@ -272,7 +273,7 @@ fn look_above(search: &mut Search<'_, '_>) -> Result<(), LabError> {
     Ok(())
 }
 
-/// Holds finalists against the truth while the camera moves, on every view.
+/// Measures the finalists' flicker against the ground truth while the camera moves, on every view.
 fn look_in_motion(lab: &LabDevice, search: &Search<'_, '_>, finalists: &mut [Candidate]) -> Result<(), LabError> {
     let request = search.bench.request;
     let options = MotionOptions {
@@ -302,7 +303,7 @@ fn look_in_motion(lab: &LabDevice, search: &Search<'_, '_>, finalists: &mut [Can
     Ok(())
 }
 
-/// The first view by truth and by the recommendation, and the error.
+/// Returns the first view shaded with the ground truth and with the recommendation, and its error map.
 fn pictures(
     search: &Search<'_, '_>,
     config: &Config,
@@ -312,7 +313,7 @@ fn pictures(
     Ok((search.bench.shade(&truth.visibility, 0)?, search.bench.shade(&mask, 0)?, error))
 }
 
-/// Those that none beats in both error and time, the cheapest first.
+/// Returns the Pareto front of error and time, cheapest first.
 fn front(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     candidates.sort_by(|a, b| a.load.total_cmp(&b.load).then(a.rmse.total_cmp(&b.rmse)));
     let mut least = f64::INFINITY;
@@ -337,7 +338,7 @@ mod tests {
         Candidate { highest_load, ..one }
     }
 
-    /// What keeps the budget in every turn goes before what does in most, but not at any price.
+    /// A candidate that keeps the budget in every turn is preferred unless its error is much larger.
     #[test]
     fn what_surely_fits_is_taken_where_it_is_nearly_as_good() {
         let (noisy, near, far) = (timed(0.100, 1.1), timed(0.104, 0.9), timed(0.2, 0.5));

@@ -1,8 +1,8 @@
 //! Exhaustive grid of settings, against which the search is tested.
 //!
-//! The grid is over the parameters that a technique's qualities set, each with the values that they set, the default, its half and
-//! its double. A combination is left out where one that is less or equal in every number, and the same in all else, took more than
-//! twice the budget: more of a number takes longer.
+//! The grid covers the parameters that a technique's qualities set. Each takes the values that qualities set, the default, its half and
+//! its double. A combination is skipped if another one with no larger number and otherwise equal values took more than twice the budget,
+//! because time grows with every number.
 
 use antumbra::TechniqueKind;
 use antumbra::contract::ParamSpec;
@@ -12,11 +12,11 @@ use super::search::Search;
 use super::space::{Config, ladder, set_by_qualities};
 use crate::error::LabError;
 
-/// Times the budget beyond which nothing dearer is looked at.
+/// Multiple of the budget beyond which larger combinations are skipped.
 const BEYOND: f64 = 2.0;
 
 impl Search<'_, '_> {
-    /// Measures every combination at the full size; how many were left out.
+    /// Measures every combination at full size. Returns the number of skipped combinations.
     pub(super) fn run_grid(&mut self, kinds: &[TechniqueKind]) -> Result<usize, LabError> {
         let grids: Vec<(TechniqueKind, Vec<Config>)> = kinds.iter().map(|kind| (*kind, grid_of(*kind))).collect();
         let count: usize = grids.iter().map(|(_, grid)| grid.len()).sum();
@@ -42,7 +42,7 @@ impl Search<'_, '_> {
     }
 }
 
-/// A technique's grid, small numbers before large ones.
+/// Returns a technique's grid, small numbers first.
 pub(super) fn grid_of(kind: TechniqueKind) -> Vec<Config> {
     let mut grid = vec![Config::default_of(kind)];
     for (spec, set) in set_by_qualities(kind) {
@@ -52,7 +52,7 @@ pub(super) fn grid_of(kind: TechniqueKind) -> Vec<Config> {
             .flat_map(|config| values.iter().map(|value| config.with(spec.key, value)).collect::<Vec<_>>())
             .collect();
     }
-    // By the logarithms of the numbers' sum, so that what is less in all of them comes first.
+    // The sort key is the sum of logarithms, so a combination that is smaller in all numbers comes first.
     let size = |config: &Config| -> f64 {
         let numbers = kind.param_specs().iter().filter_map(|spec| number(config, spec));
         numbers.map(|v| (v + 1.0).ln()).sum()
@@ -66,7 +66,7 @@ fn number(config: &Config, spec: &ParamSpec) -> Option<f64> {
     config.value(spec).parse().ok()
 }
 
-/// Whether `a` has no larger number than `b`, and is the same in all else.
+/// Returns whether no number of `a` is larger than in `b` and all other values are equal.
 fn is_at_most(a: &Config, b: &Config) -> bool {
     a.kind == b.kind
         && a.kind.param_specs().iter().all(|spec| match (number(a, spec), number(b, spec)) {

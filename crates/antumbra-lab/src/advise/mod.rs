@@ -2,13 +2,12 @@
 //!
 //! ```text
 //! declarations ─► space ─┐
-//! scene, light ─► bench ─┴─► search ─► a few at full size ─► timed in turns ─► advice, words, preset
+//! scene, light ─► bench ─┴─► search ─► finalists at full size ─► timed in turns ─► advice, reasons, preset
 //! ```
 //!
-//! Errors are deterministic: light points and parameters' seeds are fixed. Times are medians, and those on which the advice rests are
-//! taken in turns with one another and with `pcf`, so that a machine that slows down slows all of them. Where the budget is counted in
-//! what `pcf` takes, all times are stated as they would be if `pcf` always took what it took at first: so times, budget and the part
-//! of it that is taken are one statement.
+//! Errors are deterministic: light samples and parameters' seeds are fixed. Times are medians. The times behind the recommendation are
+//! measured in turns with one another and with `pcf`, so that a machine that slows down slows all of them. If the budget is a multiple of
+//! `pcf`'s time, all times are scaled to the first measurement of `pcf`, so times, budget and load are consistent.
 
 mod bench;
 mod candidate;
@@ -46,144 +45,144 @@ use bench::Bench;
 use search::Search;
 use store::Store;
 
-/// What may be spent on a frame's shadows of the judged light.
+/// Time budget of the judged light's shadows per frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Budget {
     /// Milliseconds, on every view.
     Ms(f64),
-    /// So many times what `pcf` takes at its defaults, on each view.
+    /// Multiple of the time of `pcf` with default parameters, on each view.
     TimesPcf(f64),
 }
 
-/// What must be kept besides the budget.
+/// Limits besides the time budget.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
     /// GPU memory that a technique may hold, bytes.
     pub memory_bytes: Option<u64>,
-    /// Visible artefacts, as [`Metrics::roughness`](crate::metrics::Metrics::roughness), over all views.
+    /// Visible artefacts over all views, see [`Metrics::roughness`](crate::metrics::Metrics::roughness).
     pub roughness: Option<f64>,
 }
 
 impl Limits {
-    /// How many times the most that is allowed; at most 1 where both limits are kept.
+    /// Returns the largest ratio of a value to its limit: at most 1 if both limits are kept.
     pub fn excess(&self, memory_bytes: u64, roughness: f64) -> f64 {
         let memory = self.memory_bytes.map_or(0.0, |most| memory_bytes as f64 / most as f64);
         memory.max(self.roughness.map_or(0.0, |most| roughness / most))
     }
 
-    /// Whether both are kept.
+    /// Returns whether both limits are kept.
     pub fn keep(&self, memory_bytes: u64, roughness: f64) -> bool {
         self.excess(memory_bytes, roughness) <= 1.0
     }
 }
 
-/// What the error is of.
+/// Error that the search minimises.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Prefer {
-    /// The picture as it stands.
+    /// Error of still images.
     #[default]
     Still,
-    /// The picture and its flicker while the camera moves, as the root of the sum of their squares. Looked at for
-    /// the last few alone.
+    /// Error of still images and flicker under a moving camera: root of the sum of their squares.
+    /// Flicker is measured for the finalists only.
     Motion,
 }
 
-/// One of the views that an advice holds for.
+/// A view for which the advice holds.
 #[derive(Clone, Debug)]
 pub struct AdviseView {
-    /// For readers.
+    /// Name for display.
     pub name: String,
     /// Index into the request's scenes.
     pub scene: usize,
     /// Camera and lights.
     pub setup: Setup,
-    /// Which light is judged.
+    /// Index of the judged light in the setup.
     pub light: usize,
 }
 
-/// What is asked.
+/// Request for advice.
 #[derive(Clone, Debug)]
 pub struct AdviseRequest<'a> {
-    /// How the scene was named.
+    /// Scene as named on the command line.
     pub spec: &'a str,
-    /// The scene, at one time or several.
+    /// The scene at one or several times.
     pub scenes: Vec<Scene>,
     /// The views.
     pub views: Vec<AdviseView>,
-    /// Width and height of the pictures, pixels.
+    /// Width and height of the images, pixels.
     pub size_px: UVec2,
-    /// Light points of the truth.
+    /// Light samples of the ground truth.
     pub samples: u32,
-    /// The techniques among which to choose.
+    /// Techniques to choose among.
     pub kinds: &'a [TechniqueKind],
-    /// What a frame may take.
+    /// Time budget per frame.
     pub budget: Budget,
-    /// What a technique may hold, and how rough its picture may be.
+    /// Limits of memory and roughness.
     pub limits: Limits,
-    /// What the error is of.
+    /// Error to minimise.
     pub prefer: Prefer,
-    /// Every combination of a grid in place of the search.
+    /// Whether to measure every combination of a grid instead of searching.
     pub exhaustive: bool,
     /// The command line.
     pub command: String,
-    /// The arguments that say what is seen, for commands that use the result.
+    /// Arguments that select scene, camera and light, for commands that use the result.
     pub scene_arguments: String,
-    /// The commit of the program.
+    /// Commit of the program.
     pub commit: &'a str,
 }
 
-/// A configuration at the full size.
+/// A configuration measured at full size.
 #[derive(Clone, Debug, Serialize)]
 pub struct Candidate {
-    /// As people read it: `pcss map_size=512`.
+    /// Name for display: `pcss map_size=512`.
     pub name: String,
     /// The technique.
     pub technique: &'static str,
-    /// What differs from its defaults.
+    /// Parameters that differ from their defaults.
     pub parameters: Map<String, Value>,
-    /// The root of the mean square over the views.
+    /// Error: root of the mean square over the views.
     pub rmse: f64,
-    /// By view.
+    /// Error of each view.
     pub rmse_of_views: Vec<f64>,
-    /// Visible artefacts: the root of the mean square over the views.
+    /// Visible artefacts: root of the mean square over the views.
     pub roughness: f64,
-    /// Median milliseconds, by view.
+    /// Median time of each view, milliseconds.
     pub ms: Vec<f64>,
-    /// The least and the most that was seen of those medians, or of frames where it was timed once.
+    /// Minimum and maximum over the turns of those medians; 10th and 90th percentile of frames if timed once.
     pub spread_ms: Vec<[f64; 2]>,
-    /// Turns in which it was timed, and of each the median was taken; 1 where it was timed once.
+    /// Number of turns, each with its own median; 1 if timed once.
     pub turns: u32,
-    /// Frames of each turn, and those before them; of the turn that had fewest.
+    /// Number of timed and warm-up frames of the turn that has fewest.
     #[serde(flatten)]
     pub count: FrameCount,
-    /// The largest part of its budget that a view takes.
+    /// Largest fraction of the budget over all views.
     pub load: f64,
-    /// The most that was seen of that.
+    /// Largest observed fraction of the budget.
     pub highest_load: f64,
-    /// The view that takes it.
+    /// Index of the view with the largest fraction.
     pub heaviest_view: usize,
     /// GPU memory, bytes.
     pub memory_bytes: u64,
-    /// Flicker under a moving camera, where it was asked for.
+    /// Flicker under a moving camera; `None` if not measured.
     pub flicker: Option<f64>,
-    /// Itself.
+    /// Configuration.
     #[serde(skip)]
     pub config: Config,
 }
 
 impl Candidate {
-    /// Milliseconds of the view that takes the largest part of its budget.
+    /// Returns the median time of the heaviest view, milliseconds.
     pub fn worst_ms(&self) -> f64 {
         self.ms.get(self.heaviest_view).copied().unwrap_or(0.0)
     }
 
-    /// The spread of that view.
+    /// Returns the time spread of the heaviest view, milliseconds.
     pub fn worst_spread_ms(&self) -> [f64; 2] {
         self.spread_ms.get(self.heaviest_view).copied().unwrap_or_default()
     }
 
-    /// `median of 9 frames after 1`, or of 5 turns of them.
+    /// Describes the number of frames: `median of 9 frames after 1`, or `median of 5 turns, each …`.
     pub fn counted(&self) -> String {
         match self.turns {
             0 | 1 => self.count.to_string(),
@@ -191,7 +190,7 @@ impl Candidate {
         }
     }
 
-    /// The same for a table: `5 turns of 9 frames`.
+    /// Describes the number of frames for a table: `5 turns of 9 frames`.
     pub fn counted_briefly(&self) -> String {
         let frames = match self.count.frames {
             1 => "1 frame".to_owned(),
@@ -200,7 +199,7 @@ impl Candidate {
         if self.turns > 1 { format!("{} turns of {frames}", self.turns) } else { frames }
     }
 
-    /// Holds its times against the budget, by view.
+    /// Updates the loads from times and budget, both by view.
     fn weigh(&mut self, budget_ms: &[f64]) {
         let loads = self.ms.iter().zip(budget_ms).map(|(ms, budget)| ms / budget).enumerate();
         let heaviest = loads.max_by(|a, b| a.1.total_cmp(&b.1));
@@ -209,85 +208,85 @@ impl Candidate {
         self.highest_load = highest.fold(0.0, f64::max);
     }
 
-    /// What is to be small.
+    /// Returns the value to minimise.
     pub fn objective(&self) -> f64 {
         self.rmse.hypot(self.flicker.unwrap_or(0.0))
     }
 }
 
-/// What an advice cost.
+/// Cost of the advice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spent {
-    /// Configurations measured, at any size, by this call or those that it goes on from.
+    /// Number of measured configurations at any size, in this run and in those that it resumes.
     pub measurements: usize,
-    /// Seconds that techniques ran for, truth not counted.
+    /// Run time of techniques, seconds, without the ground truth.
     pub seconds: f64,
-    /// Configurations of a grid that were left out: some cheaper one of them took more than twice the budget.
+    /// Number of skipped grid combinations: a cheaper one took more than twice the budget.
     pub left_out: usize,
 }
 
-/// The answer.
+/// Advice: the recommendation, its reasons and alternatives.
 #[derive(Clone, Debug, Serialize)]
 pub struct Advice {
-    /// How the scene was named.
+    /// Scene as named on the command line.
     pub scene: String,
-    /// The views' names.
+    /// Names of the views.
     pub views: Vec<String>,
     /// The command line.
     pub command: String,
-    /// The adapter whose times these are.
+    /// Adapter on which times were measured.
     pub adapter: AdapterInfo,
-    /// The program's.
+    /// Commit of the program.
     pub commit: String,
-    /// When.
+    /// Date and time, UTC.
     pub date: String,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// Light points of the truth.
+    /// Light samples of the ground truth.
     pub samples: u32,
-    /// The budget, milliseconds, by view.
+    /// Budget of each view, milliseconds.
     pub budget_ms: Vec<f64>,
-    /// What `pcf` takes, milliseconds, by view; none where it does not run here.
+    /// Time of `pcf` on each view, milliseconds; empty if it does not run here.
     pub pcf_ms: Vec<f64>,
-    /// GPU memory that it may hold, bytes.
+    /// Limit of GPU memory, bytes.
     pub memory_limit_bytes: Option<u64>,
-    /// How rough its picture may be.
+    /// Limit of roughness.
     pub roughness_limit: Option<f64>,
-    /// What the error is of.
+    /// Error that was minimised.
     pub prefer: Prefer,
-    /// What each view is like.
+    /// Scene facts of each view.
     pub facts: Vec<SceneFacts>,
-    /// The recommendation, or what comes nearest.
+    /// Recommendation, or the nearest candidate if none keeps budget and limits.
     pub best: Candidate,
-    /// Whether that keeps the budget and the limits.
+    /// Whether the recommendation keeps budget and limits.
     pub keeps_budget: bool,
     /// Whether the spread of its times crosses the budget.
     pub is_too_noisy_to_tell: bool,
-    /// Why.
+    /// Reasons of the recommendation.
     pub reasons: Vec<Reason>,
-    /// The next best, one for each other technique.
+    /// Best candidate of each other technique.
     pub runners_up: Vec<Candidate>,
-    /// The cheapest that errs less and costs more than may be spent.
+    /// Cheapest candidate that errs less and exceeds the budget.
     pub next_step: Option<Candidate>,
-    /// All that was measured at the full size and that none beats in both error and time.
+    /// Pareto front of error and time among all candidates measured at full size.
     pub front: Vec<Candidate>,
-    /// What it cost.
+    /// Cost of the search.
     pub spent: Spent,
-    /// The first view, shaded with the truth.
+    /// First view, shaded with the ground truth.
     #[serde(skip)]
     pub true_picture: RgbImage,
-    /// The first view, shaded with the recommendation.
+    /// First view, shaded with the recommendation.
     #[serde(skip)]
     pub picture: RgbImage,
-    /// The recommendation's error on the first view.
+    /// Error map of the recommendation on the first view.
     #[serde(skip)]
     pub error_picture: RgbImage,
 }
 
-/// Searches, and writes measurements into `dir` as it goes, where there is one; what stands there is not measured again.
+/// Searches for the best technique and settings. With `dir`, measurements are stored there, and stored ones are reused.
 ///
 /// # Errors
-/// Where a scene cannot be traced, the folder is of something else, no technique can run, or the device fails.
+/// If a scene cannot be traced, the folder belongs to another run, no technique can run, or the device fails.
 pub fn advise(
     lab: &LabDevice,
     request: &AdviseRequest<'_>,
@@ -324,7 +323,7 @@ pub fn advise(
     Ok(advice)
 }
 
-/// What measurements depend on: all but budget and techniques.
+/// Returns everything that measurements depend on: the request without budget and techniques.
 fn about(lab: &LabDevice, request: &AdviseRequest<'_>) -> Value {
     let views = request.views.iter().map(|view| {
         json!({

@@ -1,4 +1,4 @@
-//! Reasons of a recommendation, from measurements of the scene and of the techniques.
+//! Reasons of a recommendation, from measurements of the scene and the techniques.
 
 use std::fmt;
 
@@ -9,23 +9,23 @@ use super::simplify::Setting;
 use super::{Advice, Config};
 use crate::scene_facts::{DEFAULT_MAP_TEXELS, PenumbraFacts, percent};
 
-/// What a technique assumes of the occluders between a receiver and the light.
+/// Assumption of a technique about the blockers between a receiver and the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Assumes {
-    /// That they cast no penumbra.
+    /// Blockers cast no penumbra.
     NoWidth,
-    /// That all penumbrae are as wide as its kernel.
+    /// All penumbrae are as wide as the kernel.
     OneWidth,
-    /// One mean depth.
+    /// Blockers have one mean depth.
     OneDepth,
-    /// A few depths.
+    /// Blockers have a few depths.
     SeveralDepths,
-    /// Nothing: the light's points are asked one by one.
+    /// No assumption: light samples are tested one by one.
     Nothing,
 }
 
 impl Assumes {
-    /// `None` of a technique of which nothing is known here: nothing is said of it.
+    /// Returns the assumption of a configuration; `None` for a technique that is not listed here, which gets no reasons of this kind.
     fn of(config: &Config) -> Option<Self> {
         use TechniqueKind as Kind;
         let has = |key: &str, value: &str| config.settings.iter().any(|(set, to)| *set == key && to == value);
@@ -52,55 +52,55 @@ impl Assumes {
     }
 }
 
-/// Whether a technique looks occluders up in texels of a map.
+/// Returns whether a technique looks up blockers in texels of a shadow map.
 fn looks_into_a_map(kind: TechniqueKind) -> bool {
     !matches!(kind, TechniqueKind::RayTraced | TechniqueKind::AliasFree | TechniqueKind::SampleBased)
 }
 
-/// Above such a share several depths count as a feature of the scene.
+/// Share of the penumbra above which several depths count as a feature of the scene.
 const MANY: f64 = 0.15;
-/// Penumbrae whose upper end is so many times their middle vary.
+/// Ratio of 90th percentile to median width above which penumbrae vary.
 const VARIES: f64 = 1.6;
-/// And below so many pixels nobody sees by how much.
+/// Width in pixels below which penumbrae are too narrow for their variation to be visible.
 const NARROW_PX: f64 = 2.5;
-/// A setting is worth words from this change of error or time on.
+/// Minimum change of error or time for a setting to be mentioned.
 const WORTH: f64 = 0.03;
 
-/// A reason, as facts; it reads as a line.
+/// A reason with its figures. Its `Display` is one line of text.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the lines say what they are")]
 pub enum Reason {
-    /// Nothing that was measured keeps the budget.
+    /// No measured candidate keeps the budget.
     OverBudget,
-    /// The light's points are asked one by one, where a share of the penumbra has several depths.
+    /// Light samples are tested one by one, and a share of the penumbra has several depths.
     PointsForDepths { several: f64 },
-    /// The light's points are asked one by one, since there is time.
+    /// Light samples are tested one by one, because the budget allows it.
     Points,
-    /// Several depths are kept, which a share of the penumbra has.
+    /// Several depths are used, and a share of the penumbra has them.
     SeveralDepths { several: f64 },
     /// One mean depth is enough for a share of the penumbra.
     OneDepthIsEnough { one: f64 },
-    /// One mean depth misses what a share of the penumbra has.
+    /// One mean depth ignores the several depths of a share of the penumbra.
     OneDepthMisses { several: f64 },
-    /// One width of blur fits penumbrae that are alike.
+    /// One blur width fits, because penumbrae are alike.
     OneWidthFits { median_px: f64, p90_px: f64 },
-    /// One width of blur does not fit, and what does is out of reach.
+    /// One blur width does not fit, but techniques with variable width exceed the budget.
     OneWidthAnyway { median_px: f64, p90_px: f64 },
-    /// One width of blur would miss widths that vary, and the technique follows them.
+    /// Penumbra widths vary, and the technique follows them.
     WidthsAreFollowed { median_px: f64, p90_px: f64 },
-    /// Sharp edges, where penumbrae are too narrow to be seen.
+    /// Sharp edges fit, because penumbrae are too narrow to be visible.
     SharpFits { p90_px: f64 },
-    /// Sharp edges, since what draws penumbrae is out of reach.
+    /// Sharp edges, because techniques with penumbrae exceed the budget.
     SharpAnyway { median_px: f64, p90_px: f64 },
-    /// A share of what blocks is narrower than a texel.
+    /// A share of the blockers is narrower than a texel.
     Thin { share: f64 },
-    /// A share of what blocks lets some light through.
+    /// A share of the blockers lets some light through.
     Tinted { share: f64 },
-    /// The next technique errs more.
+    /// The next best technique has a larger error.
     NextBest { name: String, errs: f64, best_errs: f64 },
-    /// What a setting does, as parts of the error and of the time; what does not change, or cannot be told, is `None`.
+    /// Effect of a setting as ratios of error and of time; `None` if unchanged or not distinguishable.
     Pays { key: &'static str, value: String, default: String, error: Option<f64>, time: Option<f64> },
-    /// Its times run across the budget.
+    /// The spread of the recommendation's times crosses the budget.
     TooNoisyToTell { low_ms: f64, high_ms: f64 },
 }
 
@@ -179,14 +179,14 @@ impl fmt::Display for Reason {
     }
 }
 
-/// As the line that it reads as.
+/// Serialises as the line of text.
 impl Serialize for Reason {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
 }
 
-/// The reasons, the weightiest first.
+/// Returns the reasons, most important first.
 pub(super) fn reasons(advice: &Advice, settings: &[Setting]) -> Vec<Reason> {
     let mut reasons = Vec::new();
     let best = &advice.best;
@@ -197,7 +197,7 @@ pub(super) fn reasons(advice: &Advice, settings: &[Setting]) -> Vec<Reason> {
         reasons.extend(of_penumbra(assumes, looks_into_a_map(best.config.kind), &penumbra));
     }
     let next_best = |name: &str, errs: f64, best_errs: f64| {
-        // What reads alike is no reason.
+        // Errors that print alike are no reason.
         (format!("{errs:.4}") != format!("{best_errs:.4}")).then(|| Reason::NextBest {
             name: name.to_owned(),
             errs,
@@ -214,7 +214,7 @@ pub(super) fn reasons(advice: &Advice, settings: &[Setting]) -> Vec<Reason> {
     reasons
 }
 
-/// What the penumbra has to do with what a technique assumes.
+/// Returns the reasons that follow from the penumbra and the technique's assumption.
 fn of_penumbra(assumes: Assumes, looks_into_a_map: bool, penumbra: &PenumbraFacts) -> Vec<Reason> {
     let several = penumbra.two_depths + penumbra.more_depths;
     let (median_px, p90_px) = (penumbra.width_px.median, penumbra.width_px.p90);
@@ -245,13 +245,13 @@ fn of_penumbra(assumes: Assumes, looks_into_a_map: bool, penumbra: &PenumbraFact
     reasons
 }
 
-/// The penumbra of the view with most depths.
+/// Returns the penumbra of the view with the smallest share of single-depth pixels.
 fn worst_penumbra(advice: &Advice) -> Option<PenumbraFacts> {
     let penumbrae = advice.facts.iter().filter_map(|facts| facts.penumbra);
     penumbrae.min_by(|a, b| a.one_depth.total_cmp(&b.one_depth))
 }
 
-/// What a setting changes, as far as that is worth words.
+/// Returns the effect of a setting, if large enough to mention.
 fn of_setting(setting: &Setting) -> Option<Reason> {
     let worth = |ratio: f64| ((ratio - 1.0).abs() >= WORTH).then_some(ratio);
     let (error, time) = (worth(setting.error), setting.time.and_then(worth));
@@ -265,7 +265,7 @@ mod tests {
     use super::*;
     use crate::scene_facts::Spread;
 
-    /// What is said of a technique is what it declares.
+    /// The assumptions listed here agree with the techniques' declared facts.
     #[test]
     fn what_is_assumed_is_what_techniques_declare() {
         for kind in TechniqueKind::ALL.iter().copied() {
@@ -295,7 +295,7 @@ mod tests {
     const ALL: [Assumes; 5] =
         [Assumes::NoWidth, Assumes::OneWidth, Assumes::OneDepth, Assumes::SeveralDepths, Assumes::Nothing];
 
-    /// No technique is praised for what it does not do, whatever the scene is like.
+    /// Reasons match technique and scene: no technique is credited with something it does not do.
     #[test]
     fn reasons_fit_techniques_and_scenes() {
         for (median, p90) in [(0.5, 1.0), (4.0, 5.0), (4.0, 12.0)] {
@@ -334,7 +334,7 @@ mod tests {
         Setting { key: "samples", value: "128".into(), default: "64".into(), error, time }
     }
 
-    /// What cannot be told from noise, or is too little to be seen, is no reason; what is one has the figures that were measured.
+    /// Effects that are noise or invisibly small are no reason; the others state the measured figures.
     #[test]
     fn settings_are_reasons_by_what_they_measurably_do() {
         assert_eq!(of_setting(&setting(0.99, None)), None);

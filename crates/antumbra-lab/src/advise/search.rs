@@ -1,20 +1,18 @@
-//! The search: from all techniques on small pictures to a few on those that are asked for.
+//! Search from all techniques on small images to a few on images of the requested size.
 //!
-//! **Halving.** In each round every technique that is left has about as many measurements, on pictures of twice the side of the
-//! round before, and the worse half goes: sequential halving (Karnin, Koren and Somekh, *Almost Optimal Exploration in
-//! Multi-Armed Bandits*, ICML 2013), with fidelity for a resource as Jamieson and Talwalkar have it (*Non-stochastic Best Arm
-//! Identification and Hyperparameter Optimization*, AISTATS 2016). Here an arm is a technique and its pulls are not
-//! random but chosen.
+//! **Halving.** In each round every remaining technique gets about as many measurements, on images of twice the side of the previous
+//! round, and the worse half is dropped: sequential halving (Karnin, Koren and Somekh, *Almost Optimal Exploration in Multi-Armed
+//! Bandits*, ICML 2013), with fidelity for a resource as in Jamieson and Talwalkar (*Non-stochastic Best Arm Identification and
+//! Hyperparameter Optimization*, AISTATS 2016). Here an arm is a technique, and its pulls are chosen, not random.
 //!
-//! **Choosing.** About a technique's best configuration so far, every parameter is moved by one step of its declaration. With e the error
-//! and t the time, move m has a ratio e_m / e and a difference t_m − t. Where moves did not bear on one another, errors would multiply
-//! and times add: passes follow one another. Under that assumption all sets of moves on different parameters that none beats in both are found
-//! parameter by parameter, and those that promise least error within the budget are measured, which makes up for what
-//! the assumption leaves out.
+//! **Choosing.** From a technique's best configuration so far, every parameter is moved by one step of its declaration. With error e and
+//! time t, move m has a ratio e_m / e and a difference t_m − t. The search assumes that moves are independent: errors multiply and times
+//! add, because passes follow one another. Under this assumption it builds the Pareto front of all sets of moves on different parameters,
+//! parameter by parameter. It then measures the sets that promise least error within the budget, which corrects for the assumption.
 //!
-//! **Time on small pictures** is a lower bound of what is asked for: a technique's best configuration is timed there at the full
-//! size too, pass by pass, and the passes of its others are taken for longer in the same ratios: a light map takes as long
-//! for any picture.
+//! **Time on small images** is a lower bound of the time at full size. A technique's best configuration is therefore
+//! timed at full size too, pass by pass, and the passes of its other configurations are scaled by the same ratios: a
+//! light map takes as long for any image size.
 
 mod combinations;
 mod growth;
@@ -33,33 +31,33 @@ use crate::error::LabError;
 use crate::progress::Progress;
 use growth::Growth;
 
-/// So many measurements after one another are taken for of one pace.
+/// Number of consecutive measurements that share one pace.
 const PACE_EVERY: usize = 12;
-/// Frames by which `pcf` is timed then: every load is divided by it, and three frames of a few milliseconds are a fifth off.
+/// Timed frames of `pcf` for the pace. Every load is divided by it, and three frames of a few milliseconds are off by up to a fifth.
 const PACE_FRAMES: u32 = 9;
-/// The pace is the median of so many looks.
+/// Number of pace measurements of which the median is used.
 const PACES: usize = 3;
-/// Turns of so many frames for the budget itself.
+/// Number of turns with which the budget itself is measured.
 const BASE_TURNS: usize = 5;
 
-/// A search under way.
+/// State of a search.
 pub(super) struct Search<'s, 'a> {
     pub(super) bench: &'s Bench<'a>,
     pub(super) store: &'s mut Store,
     pub(super) progress: &'s dyn Progress,
-    /// By view, at the full size.
+    /// Budget of each view at full size, milliseconds.
     pub(super) budget_ms: Vec<f64>,
     pub(super) limits: Limits,
-    /// How much longer a technique's passes take at the full size than on a rung.
+    /// Ratio of a technique's pass times at full size to those on a rung.
     scale: HashMap<(TechniqueKind, usize), Growth>,
-    /// What `pcf` took at first, by view, where the budget is counted in it: the pace that all times are stated at.
+    /// First time of `pcf`, by view, if the budget is a multiple of it. All times are scaled to it.
     pub(super) pcf_ms: Option<Vec<f64>>,
-    /// How much slower the machine is now: the median of the last few looks, as a short frame of `pcf` is easily a fifth off.
+    /// Current slowdown of the machine: median of the last few measurements, because a short frame of `pcf` is easily a fifth off.
     pace: f64,
     paces: Vec<f64>,
-    /// Measurements until that is looked at again.
+    /// Measurements left until the pace is measured again.
     until_pace: usize,
-    /// All that was measured, by rung.
+    /// All measured configurations, by rung.
     pub(super) tried: [Vec<Config>; FULL + 1],
 }
 
@@ -86,7 +84,7 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    /// A measurement, made or known.
+    /// Returns a measurement from the store, or makes it.
     pub(super) fn measure(&mut self, config: &Config, rung: usize) -> Result<Measured, LabError> {
         let place = self.bench.place(rung);
         if !self.tried[rung].contains(config) {
@@ -101,7 +99,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(measured)
     }
 
-    /// `pcf` at its defaults at the full size, which budgets are counted in: the median of several turns of more frames than others have.
+    /// Measures `pcf` with its defaults at full size, the unit of budgets: the median of several turns with more frames than usual.
     pub(super) fn measure_base(&mut self) -> Result<Measured, LabError> {
         let (pcf, place) = (Config::default_of(TechniqueKind::Pcf), self.bench.place(FULL));
         if let Some(known) = self.store.get(&pcf, &place) {
@@ -121,7 +119,7 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(base)
     }
 
-    /// Times `pcf` now and then where the budget is counted in it: a machine that others use too is not always as fast.
+    /// Measures `pcf` at intervals if the budget is a multiple of its time, because a shared machine varies in speed.
     fn look_at_pace(&mut self) -> Result<(), LabError> {
         let Some(base_ms) = self.pcf_ms.as_ref().map(|of_views| of_views.iter().sum::<f64>()) else { return Ok(()) };
         if self.until_pace > 0 {
@@ -139,20 +137,20 @@ impl<'s, 'a> Search<'s, 'a> {
         self.store.get(config, &self.bench.place(rung)).filter(|measured| measured.refused.is_none())
     }
 
-    /// The part of the budget that a configuration is expected to take at the full size.
+    /// Returns the expected load (fraction of the budget) of a configuration at full size.
     pub(super) fn load(&self, kind: TechniqueKind, rung: usize, measured: &Measured) -> f64 {
         let growth = self.scale.get(&(kind, rung)).map_or(1.0, |growth| growth.of(measured));
         measured.load(&self.budget_ms) * growth
     }
 
-    /// Error, raised in the ratio in which it is beyond budget and limits. (Samples buy error by the root of their number; what has to come
-    /// down far seldom pays.)
+    /// Returns the error times the excesses over budget and limits. (Error falls with the root of the number of samples, so a
+    /// configuration far beyond the budget seldom pays.)
     fn score(&self, kind: TechniqueKind, rung: usize, measured: &Measured) -> f64 {
         let excess = self.limits.excess(measured.memory_bytes, measured.roughness());
         measured.error() * self.load(kind, rung, measured).max(1.0) * excess.max(1.0)
     }
 
-    /// Of what was tried of a technique on a rung, the best so many.
+    /// Returns the best `count` configurations of a technique on a rung, with their scores.
     pub(super) fn best(&self, kind: TechniqueKind, rung: usize, count: usize) -> Vec<(Config, f64)> {
         let scored = self.tried[rung].iter().filter(|config| config.kind == kind);
         let mut scored: Vec<(Config, f64)> = scored
@@ -164,7 +162,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 }
 
-/// The pace after so many looks, of which there is at least one.
+/// Returns the median of the last few paces; needs at least one.
 fn median_of_last(paces: &[f64]) -> f64 {
     let mut last = paces[paces.len().saturating_sub(PACES)..].to_vec();
     last.sort_by(f64::total_cmp);

@@ -1,8 +1,8 @@
 //! Removal of settings that change nothing in this scene, found by rendering with and without them.
 //!
 //! A parameter may depend on another one (`layers` of `pcss` on `attach_contacts`), on the light, on the casters, or on what the camera
-//! happens to see. No declaration says which, so that none can go stale: a setting that leaves every pixel of every view as it
-//! is, and saves no time that could be told from a machine's noise, is dropped.
+//! happens to see. Such dependencies are measured, not declared, so they cannot become outdated. A setting that leaves every pixel of
+//! every view unchanged, and saves no time above noise, is dropped.
 
 use super::bench::FULL;
 use super::candidate::candidate;
@@ -11,19 +11,19 @@ use super::turns::in_turns;
 use super::{Candidate, Config, Prefer};
 use crate::error::LabError;
 
-/// A setting that changes the mask is kept where it takes off such a part of the error at least, or of the time.
+/// Minimum relative gain in error or in time for a setting that changes the mask to be kept.
 const GAINS_ERROR: f64 = 0.005;
 const GAINS_TIME: f64 = 0.08;
 
-/// What a setting of the recommendation does here, beside the parameter's default.
+/// Effect of one of the recommendation's settings in this scene, relative to the parameter's default.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Setting {
     pub(super) key: &'static str,
     pub(super) value: String,
     pub(super) default: String,
-    /// The recommendation's error over that with the default.
+    /// Ratio of the recommendation's error to the error with the default.
     pub(super) error: f64,
-    /// And its time, where the two can be told apart.
+    /// Ratio of the times; `None` if they cannot be told apart.
     pub(super) time: Option<f64>,
 }
 
@@ -33,12 +33,12 @@ impl Setting {
     }
 }
 
-/// A configuration without the settings that change no mask and save no time. Where a mask on small pictures differs, so does the mask.
+/// Returns a configuration without the settings that change no mask and save no time. Small images are compared first.
 pub(super) fn simplest(search: &mut Search<'_, '_>, config: &Config) -> Result<Config, LabError> {
     without_idle(search, config, &[0, FULL])
 }
 
-/// The same, looked at on the pictures of some sizes.
+/// Drops idle settings, comparing masks on the given rungs.
 fn without_idle(search: &mut Search<'_, '_>, config: &Config, rungs: &[usize]) -> Result<Config, LabError> {
     let mut plain = config.clone();
     loop {
@@ -49,7 +49,7 @@ fn without_idle(search: &mut Search<'_, '_>, config: &Config, rungs: &[usize]) -
                 plain = other;
             }
         }
-        // What one setting hung on may have been another that is gone now.
+        // Repeat, because a setting may have depended on another that is gone.
         if plain == before {
             return Ok(plain);
         }
@@ -72,7 +72,7 @@ fn saves_time(search: &Search<'_, '_>, config: &Config, other: &Config) -> Resul
     Ok(times[0].saves(&times[1]))
 }
 
-/// The same work by another name: its times and its error stand.
+/// Returns a candidate with another name for the same work: times and error stay.
 fn renamed(one: &Candidate, plain: &Candidate) -> Candidate {
     Candidate {
         name: plain.name.clone(),
@@ -83,7 +83,7 @@ fn renamed(one: &Candidate, plain: &Candidate) -> Candidate {
     }
 }
 
-/// A candidate without the settings that do nothing here.
+/// Returns a candidate without idle settings.
 pub(super) fn simplest_candidate(search: &mut Search<'_, '_>, one: &Candidate) -> Result<Candidate, LabError> {
     let config = simplest(search, &one.config)?;
     as_config(search, one, &config)
@@ -97,14 +97,13 @@ fn as_config(search: &mut Search<'_, '_>, one: &Candidate, config: &Config) -> R
     Ok(renamed(one, &candidate(config, &measured, &search.budget_ms)))
 }
 
-/// Takes back those of the recommendation's settings that change nothing, then those that hardly pay for being written down, and says
-/// what the others do.
+/// Drops the recommendation's settings that change nothing, then those that gain too little, and returns the effects of the others.
 pub(super) fn simplified(search: &mut Search<'_, '_>, best: &mut Candidate) -> Result<Vec<Setting>, LabError> {
     let plain = without_idle(search, &best.config, &[FULL])?;
     *best = as_config(search, best, &plain)?;
     loop {
         let settings = what_settings_do(search, &best.config)?;
-        // What the mask does in motion was looked at with these settings alone.
+        // Flicker was measured with these settings only.
         if search.bench.request.prefer == Prefer::Motion {
             return Ok(settings);
         }
@@ -125,7 +124,7 @@ pub(super) fn simplified(search: &mut Search<'_, '_>, best: &mut Candidate) -> R
     }
 }
 
-/// A plainer configuration, where it is as good as the best: its error, and how it keeps budget and memory.
+/// Returns a simpler configuration if it is as good as the best in error, budget and memory.
 fn as_good(search: &mut Search<'_, '_>, best: &Candidate, config: &Config) -> Result<Option<Candidate>, LabError> {
     let measured = search.measure(config, FULL)?;
     let is_within = search.limits.keep(measured.memory_bytes, measured.roughness());
@@ -173,7 +172,7 @@ mod tests {
     use crate::progress::Silent;
     use crate::test_support::lab_or_skip;
 
-    /// Without its second look `pcss` has one layer, however many are asked for; with it, it has those.
+    /// Without contact attachment, `pcss` has one layer whatever is requested; with it, `layers` takes effect.
     #[test]
     fn a_setting_that_hangs_on_another_is_dropped() {
         let Some(lab) = lab_or_skip() else { return };
@@ -187,7 +186,7 @@ mod tests {
         assert_eq!(simplest(&mut search, &idle).unwrap(), detached);
         let layered = small.with("layers", "1");
         assert_eq!(simplest(&mut search, &layered).unwrap(), layered);
-        // The recommendation is written without them, and says what it said.
+        // The recommendation omits idle settings and stays consistent.
         let measured = search.measure(&idle, FULL).unwrap();
         let mut best = candidate(&idle, &measured, &[1e3]);
         let settings = simplified(&mut search, &mut best).unwrap();
@@ -197,14 +196,14 @@ mod tests {
         assert_eq!(keys, best.config.settings.iter().map(|(key, _)| *key).collect::<Vec<_>>());
     }
 
-    /// Masks are compared by every bit, so they must be the same each time they are drawn.
+    /// Masks are compared bit by bit, so every technique must reproduce its mask.
     #[test]
     fn every_technique_draws_the_same_mask_again() {
         let Some(lab) = lab_or_skip() else { return };
         let request = request("builtin:overlap", TechniqueKind::ALL, Budget::Ms(1e3));
         let bench = Bench::new(lab, &request, &Silent).unwrap();
         for kind in TechniqueKind::ALL.iter().copied() {
-            // Small maps are as steady as large ones.
+            // Small maps suffice.
             let has = |key: &str| kind.param_specs().iter().any(|spec| spec.key == key);
             let small = [("map_size", "256"), ("view_size", "128")].into_iter().filter(|(key, _)| has(key));
             let config = small.fold(Config::default_of(kind), |config, (key, value)| config.with(key, value));

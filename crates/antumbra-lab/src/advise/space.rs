@@ -1,5 +1,4 @@
-//! Search space: a technique with values for its parameters, and the steps from one value to the next. All of it comes from
-//! the parameters' declarations.
+//! Search space: techniques with parameter values, and the steps between values. It is derived entirely from the parameters' declarations.
 
 use std::fmt;
 
@@ -8,12 +7,12 @@ use antumbra::{Quality, TechniqueKind};
 
 use crate::technique_run::TechniqueChoice;
 
-/// The steps of quality, the cheapest first.
+/// Qualities, cheapest first.
 pub(super) const QUALITIES: [Quality; 4] = [Quality::Fast, Quality::Balanced, Quality::High, Quality::Best];
 
-/// Not searched: what is for hosts or debugging (`show`, `resolve`, `keep_bits`, `count_tests`), what picks among equals
-/// (`seed`), what gives another mask in each frame (`jitter`, `accumulate`, `splits_per_frame`) or on each run (`synchronized`), and
-/// what makes masks something else than visibility, by which they are judged (`weights`).
+/// Parameters that are not searched: options for hosts or debugging (`show`, `resolve`, `keep_bits`, `count_tests`), choices among equals
+/// (`seed`), those with another mask in each frame (`jitter`, `accumulate`, `splits_per_frame`) or on each run (`synchronized`), and those
+/// whose masks are not visibility, by which masks are judged (`weights`).
 const LEFT_ALONE: [&str; 10] = [
     "show",
     "resolve",
@@ -27,28 +26,28 @@ const LEFT_ALONE: [&str; 10] = [
     "weights",
 ];
 
-/// A technique with the parameters that differ from its defaults, in the order of their declarations.
+/// A technique with the parameters that differ from its defaults, in the order of declaration.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Config {
-    /// The technique.
+    /// Technique.
     pub kind: TechniqueKind,
-    /// Keys and values.
+    /// Keys and values of the parameters.
     pub settings: Vec<(&'static str, String)>,
 }
 
 impl Config {
-    /// As it comes.
+    /// Returns a technique with default parameters.
     pub fn default_of(kind: TechniqueKind) -> Self {
         Self { kind, settings: Vec::new() }
     }
 
-    /// What a quality is.
+    /// Returns a technique with the parameters of a quality.
     pub fn of_quality(kind: TechniqueKind, quality: Quality) -> Self {
         let settings = kind.quality_settings(quality);
         settings.into_iter().fold(Self::default_of(kind), |config, (key, value)| config.with(key, &value.to_string()))
     }
 
-    /// The same with another value.
+    /// Returns the configuration with a parameter set to a value.
     pub fn with(&self, key: &str, value: &str) -> Self {
         let specs = self.kind.param_specs();
         let settings = specs.iter().filter_map(|spec| {
@@ -58,12 +57,12 @@ impl Config {
         Self { kind: self.kind, settings: settings.collect() }
     }
 
-    /// The same with a parameter at its default.
+    /// Returns the configuration with a parameter at its default.
     pub(super) fn without(&self, key: &str) -> Self {
         Self { kind: self.kind, settings: self.settings.iter().filter(|(set, _)| *set != key).cloned().collect() }
     }
 
-    /// A parameter's default, as text.
+    /// Returns a parameter's default as text.
     pub(super) fn default_of_key(&self, key: &str) -> String {
         let spec = self.kind.param_specs().iter().find(|spec| spec.key == key);
         spec.map_or_else(String::new, |spec| spec.default.to_string())
@@ -73,24 +72,24 @@ impl Config {
         self.settings.iter().find(|(set, _)| *set == key).map(|(_, value)| value.as_str())
     }
 
-    /// A parameter's value.
+    /// Returns a parameter's value as text.
     pub fn value(&self, spec: &ParamSpec) -> String {
         self.get(spec.key).map_or_else(|| spec.default.to_string(), str::to_owned)
     }
 
-    /// The quality that this is, where it is one.
+    /// Returns the quality with these parameters, if there is one.
     pub fn quality(&self) -> Option<Quality> {
         let is = |quality: &Quality| Self::of_quality(self.kind, *quality) == *self;
         std::iter::once(Quality::Balanced).chain(QUALITIES).find(is)
     }
 
-    /// As it is run.
+    /// Returns the technique choice to run.
     pub fn choice(&self) -> TechniqueChoice {
         let settings = self.settings.iter().map(|(key, value)| ((*key).to_owned(), value.clone()));
         TechniqueChoice::with_settings(self.kind, settings.collect())
     }
 
-    /// The arguments that choose it: `--technique pcss --set map_size=2048`.
+    /// Returns the command-line arguments: `--technique pcss --set map_size=2048`.
     pub fn arguments(&self) -> String {
         let settings: String = self.settings.iter().map(|(key, value)| format!(" --set {key}={value}")).collect();
         format!("--technique {}{settings}", self.kind)
@@ -98,7 +97,7 @@ impl Config {
 }
 
 impl fmt::Display for Config {
-    /// `pcss map_size=2048`, or `pcss:high` where it is that.
+    /// Writes `pcss map_size=2048`, or `pcss:high` if the parameters are those of a quality.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(quality) = self.quality() {
             return f.write_str(&TechniqueChoice::of_quality(self.kind, quality).name());
@@ -108,14 +107,14 @@ impl fmt::Display for Config {
     }
 }
 
-/// The parameters of a technique that are searched.
+/// Returns the searched parameters of a technique.
 pub(super) fn axes(kind: TechniqueKind) -> impl Iterator<Item = &'static ParamSpec> {
     let is_searched =
         |spec: &&ParamSpec| !LEFT_ALONE.contains(&spec.key) && !matches!(spec.default, ParamValue::List(_));
     kind.param_specs().iter().filter(is_searched)
 }
 
-/// The parameters that a technique's qualities set, by which its makers trade time for error, each with what they set it to.
+/// Returns the parameters that a technique's qualities set to trade time for error, each with the values set.
 pub(super) fn set_by_qualities(kind: TechniqueKind) -> Vec<(&'static ParamSpec, Vec<String>)> {
     let set = QUALITIES.map(|quality| kind.quality_settings(quality));
     let values_of = |spec: &ParamSpec| {
@@ -125,16 +124,16 @@ pub(super) fn set_by_qualities(kind: TechniqueKind) -> Vec<(&'static ParamSpec, 
     axes(kind).map(|spec| (spec, values_of(spec))).filter(|(_, values)| !values.is_empty()).collect()
 }
 
-/// How far a step goes.
+/// Size of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stride {
     Whole,
-    /// Half as far, of numbers alone: a choice has no half.
+    /// Half a step, for numbers only: a choice has no half.
     Half,
 }
 
-/// The values next to one: half and double where the scale is of ratios, two thirds and half as much again where it is not; all
-/// others of a choice; of a name in a number's place numbers about the middle of the range.
+/// Returns the neighbours of a value. For whole numbers on a logarithmic scale: half and double. For other numbers: two thirds and 1.5
+/// times. For a choice: all other values. For a name in place of a number: numbers around the middle of the range.
 pub(super) fn steps(spec: &ParamSpec, value: &str, stride: Stride) -> Vec<String> {
     let Some((low, high)) = spec.range else {
         return match spec.default {
@@ -156,11 +155,11 @@ pub(super) fn steps(spec: &ParamSpec, value: &str, stride: Stride) -> Vec<String
     numbers(spec, &[down, up], value)
 }
 
-/// The steps of a fine grid about a number.
+/// Factors of a fine grid around a number.
 const FACTORS: [f64; 4] = [0.25, 0.5, 2.0, 4.0];
 
-/// The values of a parameter in a grid: of numbers the default, the half and the double, and their next steps where `fine`; of
-/// all, what qualities set.
+/// Returns the grid values of a parameter: those of the qualities, and for numbers also the default, half and double of it, and with
+/// `fine` a quarter and four times.
 pub(super) fn ladder(spec: &ParamSpec, of_qualities: &[String], fine: bool) -> Vec<String> {
     let default = spec.default.to_string();
     let mut values = match (spec.range, default.parse::<f64>()) {
@@ -181,7 +180,7 @@ fn others(spec: &ParamSpec, value: &str) -> Vec<String> {
     spec.choices.iter().filter(|choice| **choice != value).map(|choice| (*choice).to_owned()).collect()
 }
 
-/// Numbers as text, within the range, to three figures, and without `but`.
+/// Formats numbers to three figures, clamped to the range, without `but`.
 fn numbers(spec: &ParamSpec, numbers: &[f64], but: &str) -> Vec<String> {
     let (low, high) = spec.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let text = |v: f64| match spec.is_whole() {
@@ -233,7 +232,7 @@ mod tests {
         assert_eq!(steps(spec(TechniqueKind::Vsm, "bleeding_reduction"), "0", Stride::Whole), ["0.0594"]);
     }
 
-    /// Every step of every technique's every parameter is one that the technique takes.
+    /// Techniques accept every step of every parameter.
     #[test]
     fn all_steps_are_taken() {
         let mut taken = 0;

@@ -1,4 +1,4 @@
-//! Measurements of a search in a file, from which interrupted work is resumed.
+//! Measurements of a search in a file, from which interrupted searches resume.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::error::LabError;
 use crate::stopwatch::FrameCount;
 use crate::store;
 
-/// The file in the folder of an advice.
+/// Name of the file in an advice's folder.
 pub const MEASUREMENTS_NAME: &str = "measurements.json";
 
 const KIND: store::Kind = store::Kind { format: "antumbra-measurements", version: 3 };
@@ -19,49 +19,49 @@ const KIND: store::Kind = store::Kind { format: "antumbra-measurements", version
 /// A configuration measured at one size, on every view.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Why it could not be; the rest is empty then.
+    /// Reason why the measurement failed; all other fields are empty then.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub refused: Option<String>,
-    /// Root mean square error against the truth, by view.
+    /// Root mean square error of each view.
     pub rmse: Vec<f64>,
-    /// Visible artefacts, by view.
+    /// Visible artefacts (roughness) of each view.
     pub roughness: Vec<f64>,
-    /// Median milliseconds a frame, by view.
+    /// Median time per frame of each view, milliseconds.
     pub ms: Vec<f64>,
-    /// Their 10th and 90th percentiles.
+    /// 10th and 90th percentiles of the times, by view.
     pub spread_ms: Vec<[f64; 2]>,
-    /// Of how many frames these are, and after how many; of the view that had fewest.
+    /// Number of timed and warm-up frames of the view that has fewest.
     pub count: FrameCount,
-    /// Fingerprint of the mask by view: equal where every pixel is.
+    /// Fingerprint of each view's mask. Equal masks have equal fingerprints.
     pub masks: Vec<String>,
-    /// Median milliseconds of each pass, over all views together, by label; where the device has timestamps.
+    /// Median milliseconds of each pass by label, summed over views; empty without timestamps.
     #[serde(default)]
     pub pass_ms: BTreeMap<String, f64>,
-    /// How much slower than at first the machine was, by `pcf`'s time; 1 where the budget is in milliseconds.
+    /// Slowdown of the machine since the start, measured with `pcf`; 1 if the budget is in milliseconds.
     pub pace: f64,
-    /// GPU memory, bytes, at the most.
+    /// Maximum GPU memory over the views, bytes.
     pub memory_bytes: u64,
-    /// What measuring it took, seconds.
+    /// Duration of the measurement, seconds.
     pub spent_s: f64,
 }
 
 impl Measured {
-    /// Over all views: the root of the mean square.
+    /// Returns the error over all views: root of the mean square.
     pub fn error(&self) -> f64 {
         root_mean_square(&self.rmse)
     }
 
-    /// Visible artefacts over all views: the root of the mean square.
+    /// Returns the roughness over all views: root of the mean square.
     pub fn roughness(&self) -> f64 {
         root_mean_square(&self.roughness)
     }
 
-    /// How many times as long as at the machine's first pace its times are.
+    /// Returns the slowdown of the machine; 1 if it was not measured.
     pub(super) fn pace(&self) -> f64 {
         if self.pace > 0.0 { self.pace } else { 1.0 }
     }
 
-    /// The largest part of the budget that a view takes.
+    /// Returns the largest fraction of the budget over all views.
     pub fn load(&self, budget_ms: &[f64]) -> f64 {
         self.ms.iter().zip(budget_ms).map(|(ms, budget)| ms / budget / self.pace()).fold(0.0, f64::max)
     }
@@ -72,15 +72,15 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (squares / values.len().max(1) as f64).sqrt()
 }
 
-/// All measurements.
+/// All measurements of a search.
 #[derive(Debug)]
 pub(super) struct Store(store::Store<Measured>);
 
 impl Store {
-    /// That of a folder, with what stands there from before; without one, of memory alone. `about` is what measurements depend on.
+    /// Opens the store of a folder with its earlier measurements, or a store in memory. `about` is what measurements depend on.
     ///
     /// # Errors
-    /// Where the folder's file is of something else, or cannot be read or written.
+    /// If the folder's file belongs to another request, or cannot be read or written.
     pub(super) fn open(dir: Option<&Path>, about: Value) -> Result<Self, LabError> {
         Ok(Self(store::Store::open(dir.map(|dir| dir.join(MEASUREMENTS_NAME)), KIND, about)?))
     }
@@ -97,7 +97,7 @@ impl Store {
         self.0.rows()
     }
 
-    /// How many this run has measured itself.
+    /// Returns the number of measurements made in this run.
     #[cfg(test)]
     pub(super) fn fresh(&self) -> usize {
         self.0.fresh

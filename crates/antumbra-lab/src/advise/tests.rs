@@ -1,4 +1,4 @@
-//! The whole of it on small pictures.
+//! Tests of the whole search on small images.
 
 use antumbra_scene::{LoadOptions, load};
 
@@ -35,7 +35,7 @@ fn limits_are_kept_where_nothing_exceeds_its_own() {
     assert!(Limits::default().keep(u64::MAX, 1.0));
 }
 
-/// Whether what an advice says is one statement: times, budget and parts of it; and reasons that its figures bear out.
+/// Checks that an advice is consistent: times, budget and loads agree, and its figures support its reasons.
 #[track_caller]
 fn holds_together(advice: &Advice) {
     let all = std::iter::once(&advice.best).chain(&advice.runners_up).chain(&advice.next_step).chain(&advice.front);
@@ -48,10 +48,10 @@ fn holds_together(advice: &Advice) {
         assert_eq!(one.highest_load, loads(&mut one.spread_ms.iter().map(|[_, most]| *most)), "{one:?}");
         let [low, high] = one.worst_spread_ms();
         assert!(low <= one.worst_ms() && one.worst_ms() <= high, "{one:?}");
-        // No time is of a first frame, and each says of how many it is.
+        // Times exclude warm-up frames, and each states its number of frames.
         assert!(one.turns >= 1 && one.count.frames >= 1 && one.count.warm_up >= 1, "{one:?}");
         assert!(one.counted().contains(&one.count.frames.to_string()) || one.count.frames == 1, "{}", one.counted());
-        // What it is called is what it is.
+        // Name and parameters match the configuration.
         assert_eq!((&one.name, one.parameters.len()), (&one.config.to_string(), one.config.settings.len()));
     }
     let best = &advice.best;
@@ -91,14 +91,14 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
     assert!(advice.reasons.iter().any(|reason| reason.to_string().contains("penumbra")), "{:?}", advice.reasons);
     assert!(advice.spent.measurements > 10 && advice.facts[0].penumbra.is_some());
 
-    // What is known is not measured again.
+    // Known measurements are not repeated.
     let mut store = Store::open(Some(dir.path()), about(lab, &request)).unwrap();
     assert_eq!(store.rows().count(), advice.spent.measurements);
     let bench = Bench::new(lab, &request, &Silent).unwrap();
     let mut search = Search::new(&bench, &mut store, &Silent, vec![f64::INFINITY], Limits::default());
     let known = search.measure(&advice.best.config, FULL).unwrap();
     assert_eq!((search.store.fresh(), known.error()), (0, advice.best.rmse));
-    // And errors are the same when it is.
+    // Repeated measurements have the same errors.
     assert_eq!(bench.measure(&advice.best.config, FULL).unwrap().error(), advice.best.rmse);
 
     let other = AdviseRequest { samples: 32, ..request };
@@ -115,7 +115,7 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
     }
 }
 
-/// Nothing fits into a thousandth of a millisecond: what is nearest is named, and that it does not keep the budget.
+/// If nothing keeps a budget of a thousandth of a millisecond, the nearest is named, with the fact that it exceeds the budget.
 #[test]
 fn what_nothing_keeps_is_said() {
     let Some(lab) = lab_or_skip() else { return };
@@ -125,7 +125,7 @@ fn what_nothing_keeps_is_said() {
     assert!(!advice.keeps_budget && advice.reasons[0] == Reason::OverBudget, "{:?}", advice.reasons);
 }
 
-/// A technique that is rougher than is allowed is no recommendation, however little it errs and takes.
+/// A technique beyond the roughness limit is not recommended, whatever its error and time.
 #[test]
 fn what_is_too_rough_is_not_taken() {
     let Some(lab) = lab_or_skip() else { return };
@@ -143,7 +143,7 @@ fn what_is_too_rough_is_not_taken() {
     assert!(!none.keeps_budget && none.reasons[0] == Reason::OverBudget, "{:?}", none.reasons);
 }
 
-/// With time for everything, the search finds what a grid finds.
+/// With ample time, the search is about as good as a grid.
 #[test]
 fn the_search_keeps_up_with_a_grid() {
     let Some(lab) = lab_or_skip() else { return };

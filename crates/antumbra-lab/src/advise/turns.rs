@@ -1,4 +1,4 @@
-//! Interleaved timing: configurations one after the other, several times over, with `pcf` among them.
+//! Interleaved timing: configurations in turns, several times over, with `pcf` among them.
 
 use antumbra::TechniqueKind;
 
@@ -8,14 +8,14 @@ use super::{Candidate, Config};
 use crate::error::LabError;
 use crate::stopwatch::FrameCount;
 
-/// Turns, and frames in each.
+/// Number of turns, and timed frames of each.
 pub(super) const TURNS: usize = 5;
 const FRAMES: u32 = 9;
 
-/// What one time is less than another has to be beyond what is seen of each, and at least this part.
+/// Minimum relative difference of two times whose ranges are disjoint.
 const CLEARLY: f64 = 0.03;
 
-/// The times of one configuration: by turn, and there by view, milliseconds. A turn in which it could not run has none.
+/// Times of one configuration by turn and view, milliseconds. A turn is empty if the configuration could not run.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Times {
     by_turn: Vec<Vec<f64>>,
@@ -23,18 +23,18 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// Its view's times over the turns, the least first.
+    /// Returns the times of a view over the turns, sorted.
     fn of_view(&self, view: usize) -> Vec<f64> {
         sorted(self.by_turn.iter().filter_map(|turn| turn.get(view).copied()).collect())
     }
 
-    /// Over all views, by turn, the least first.
+    /// Returns the times summed over all views, by turn, sorted.
     fn sums(&self) -> Vec<f64> {
         sorted(self.by_turn.iter().filter(|turn| !turn.is_empty()).map(|turn| turn.iter().sum()).collect())
     }
 
-    /// Its time over another's, where what was seen of the one and of the other do not meet; `None` where the difference lies within
-    /// what a machine's times differ by anyway.
+    /// Returns the ratio of median times to another configuration's, or `None` if the ranges of times overlap or the
+    /// difference is within the machine's noise.
     pub(super) fn over(&self, other: &Self) -> Option<f64> {
         let (here, there) = (self.sums(), other.sums());
         let ([first, .., last], [other_first, .., other_last]) = (here.as_slice(), there.as_slice()) else {
@@ -45,12 +45,12 @@ impl Times {
         (is_apart && (ratio - 1.0).abs() >= CLEARLY).then_some(ratio)
     }
 
-    /// Whether it takes clearly less than another.
+    /// Returns whether it takes clearly less time than another configuration.
     pub(super) fn saves(&self, other: &Self) -> bool {
         self.over(other).is_some_and(|ratio| ratio < 1.0)
     }
 
-    /// States a candidate's times by these, against a budget by view.
+    /// Stores these times and the resulting loads in a candidate.
     pub(super) fn give(&self, one: &mut Candidate, budget_ms: &[f64]) {
         for view in 0..one.ms.len() {
             let times = self.of_view(view);
@@ -63,8 +63,8 @@ impl Times {
     }
 }
 
-/// Times configurations and `pcf` one after the other, several times over. Where the budget is counted in `pcf`'s time, each turn's
-/// times are scaled by how much longer `pcf` took in it than at first: the machine was slower then by as much.
+/// Times configurations and `pcf` in turns, several times over. If the budget is a multiple of `pcf`'s time, each turn's times are divided
+/// by the slowdown of `pcf` in it since the first measurement, which cancels the machine's slowdown.
 pub(super) fn in_turns(search: &Search<'_, '_>, configs: &[&Config]) -> Result<Vec<Times>, LabError> {
     let pcf = Config::default_of(TechniqueKind::Pcf);
     let mut times: Vec<Times> =
@@ -107,23 +107,23 @@ fn median(sorted: &[f64]) -> f64 {
 pub(super) mod tests {
     use super::*;
 
-    /// Times of one view.
+    /// Returns times of one view.
     pub(in super::super) fn times(ms: &[f64]) -> Times {
         Times { by_turn: ms.iter().map(|ms| vec![*ms]).collect(), count: FrameCount { frames: 9, warm_up: 1 } }
     }
 
-    /// What differs by less than it varies does not differ.
+    /// A difference within the spread is no difference.
     #[test]
     fn noise_is_no_difference() {
         let base = times(&[10.0, 10.2, 9.8, 10.1, 12.0]);
-        // The median is 18 % less, and one turn is as long as the others' least.
+        // The median is 18 % less, but one turn takes as long as the other's fastest.
         assert_eq!(times(&[8.2, 8.1, 8.2, 8.3, 9.9]).over(&base), None);
         let apart = times(&[8.2, 8.1, 8.2, 8.3, 8.9]);
         assert_eq!(apart.over(&base), Some(8.2 / 10.1));
         assert!(apart.saves(&base) && !base.saves(&apart) && base.over(&apart).is_some_and(|ratio| ratio > 1.2));
-        // Apart, and hardly.
+        // Disjoint ranges, but hardly different.
         assert_eq!(times(&[9.7, 9.6, 9.7]).over(&times(&[9.8, 9.85, 9.9])), None);
-        // What could not run has no time.
+        // A configuration that could not run has no ratio.
         assert_eq!(Times { by_turn: vec![Vec::new(); 3], count: FrameCount::default() }.over(&base), None);
     }
 }

@@ -1,4 +1,4 @@
-//! The file of `bench --json`: complete after each measurement, and resumed by a later run.
+//! File of `bench --json`: complete after each measurement, and resumable.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -11,13 +11,13 @@ use crate::error::LabError;
 use crate::identity::{Identity, read_to_resume};
 use crate::output_files::FileError;
 
-/// The file's format.
+/// Format name of the file.
 pub const FORMAT: &str = "antumbra-bench";
-/// Its version, which rises when a key changes its meaning or goes.
+/// Format version. It rises when a key changes its meaning or is removed.
 const VERSION: u32 = 1;
 
-/// The file's content: whose it is, rows, and names of what is missing. While the run goes on, rows are those with a result; at its end,
-/// every planned one, of which the missing ones say that there was no time.
+/// Returns the file's content: identity, rows, and names of missing rows. During the run, it lists only rows with a result. At the end, it
+/// lists every planned row; missing ones state that no time was left.
 pub fn file_json(
     identity: &Identity,
     adapter: &AdapterReport,
@@ -37,10 +37,10 @@ pub fn file_json(
     Value::Object(json)
 }
 
-/// Rows of a file that have a result, for a run of the same identity; none if there is no file.
+/// Reads the rows with a result from a file of the same run; empty if there is no file.
 ///
 /// # Errors
-/// Where the file cannot be read, is of another run, or holds something else.
+/// If the file cannot be read, belongs to another run, or has other content.
 pub fn rows_to_resume(path: &Path, identity: &Identity) -> Result<Vec<BenchRow>, LabError> {
     let Some(json) = read_to_resume(path, FORMAT)? else { return Ok(Vec::new()) };
     identity.check(path, &json)?;
@@ -48,10 +48,10 @@ pub fn rows_to_resume(path: &Path, identity: &Identity) -> Result<Vec<BenchRow>,
     Ok(rows_in(path, &json)?.into_iter().filter(|row| !missing.contains(&row.name)).collect())
 }
 
-/// Rows of a file of `bench --json` or `bench --share`.
+/// Returns the rows of a file of `bench --json` or `bench --share`.
 ///
 /// # Errors
-/// Where it holds no such rows.
+/// If the file has no such rows.
 pub fn rows_in(path: &Path, json: &Value) -> Result<Vec<BenchRow>, FileError> {
     let remedy = "give a file that `antumbra bench` wrote";
     serde_json::from_value(json["rows"].clone())

@@ -1,4 +1,4 @@
-//! The techniques of a comparison in motion.
+//! Motion measurements of a comparison's techniques.
 
 use std::time::Instant;
 
@@ -11,10 +11,10 @@ use crate::progress::Progress;
 use crate::report::{MotionInfo, Outcome, Report, Row};
 use crate::technique_run::{TechniqueChoice, create};
 
-/// Runs the techniques that were measured through every motion, each with a new state, and adds the figures to their rows.
+/// Runs the measured techniques through every motion, each with new state, and adds the results to their rows.
 ///
 /// # Errors
-/// Where the scene cannot be traced, the device fails, and those of `each`.
+/// If the scene cannot be traced, the device fails, or `each` fails.
 pub(super) fn measure(
     lab: &LabDevice,
     moving: &mut MovingScene<'_>,
@@ -63,7 +63,7 @@ pub(super) fn measure(
     Ok(())
 }
 
-/// One technique through one motion.
+/// Runs one technique through one motion.
 fn run(
     lab: &LabDevice,
     moving: &mut MovingScene<'_>,
@@ -95,19 +95,19 @@ fn run(
     }
 }
 
-/// Whether a row has neither figures of a motion nor a reason why not.
+/// Returns whether a row has neither results of a motion nor a reason for their absence.
 fn is_open(row: &Row, motion: Motion) -> bool {
     let Outcome::Measured(measured) = &row.outcome else { return false };
     let has_figures = measured.motions.iter().any(|figures| figures.motion == motion);
     !has_figures && !row.notes.iter().any(|note| note.starts_with(&note_of(motion)))
 }
 
-/// How the note begins that says why there are no figures.
+/// Returns the beginning of the note that gives that reason.
 fn note_of(motion: Motion) -> String {
     format!("Not measured while the {} moves: ", motion.name())
 }
 
-/// Names of what a motion lacks.
+/// Returns the names of the missing measurements of a motion.
 pub(super) fn open_names(rows: &[Row], motion: Motion) -> impl Iterator<Item = String> {
     let open = rows.iter().filter(move |row| is_open(row, motion));
     open.map(move |row| format!("{}, {} in motion", row.technique, motion.name()))

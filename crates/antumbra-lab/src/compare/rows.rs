@@ -1,4 +1,4 @@
-//! The rows of a comparison: one technique against the truth.
+//! Rows of a comparison: one technique against the reference.
 
 use antumbra::AnyShadow;
 use image::RgbImage;
@@ -14,7 +14,7 @@ use crate::technique_run::{Clock, TechniqueChoice, TechniqueRun, Timing, paramet
 use crate::truth::LightTruth;
 use crate::view::View;
 
-/// Row of a technique that was not measured yet.
+/// Returns the row of a technique that is not measured yet.
 pub(super) fn planned(request: &CompareRequest<'_>, choice: &TechniqueChoice, made: Option<&AnyShadow>) -> Row {
     Row {
         technique: choice.name(),
@@ -36,10 +36,10 @@ pub(super) fn planned(request: &CompareRequest<'_>, choice: &TechniqueChoice, ma
     }
 }
 
-/// Measures a technique, until `end` at the most, and completes its row.
+/// Measures a technique until `end` at most, and completes its row.
 ///
 /// # Errors
-/// Where the device fails, or the run's deadline comes first. A technique that cannot run is a row that says so.
+/// If the device fails, or the run's deadline passes. A technique that cannot run is a row with the reason.
 pub(super) fn measure_row(
     view: &View<'_>,
     request: &CompareRequest<'_>,
@@ -84,7 +84,7 @@ pub(super) fn measure_row(
     Ok(row)
 }
 
-/// What a reader has to know of its times.
+/// Adds notes about the clock and about a time limit.
 fn note_clock(row: &mut Row, run: &TechniqueRun) {
     let timings = &run.timings;
     if timings.clock == Clock::SubmitToDone {
@@ -99,7 +99,7 @@ fn note_clock(row: &mut Row, run: &TechniqueRun) {
     }
 }
 
-/// The light that is judged, timed; of the others the masks, which are drawn once.
+/// Times the judged light, and draws the masks of the other lights once.
 fn run_all_lights(
     view: &View<'_>,
     request: &CompareRequest<'_>,
@@ -120,15 +120,15 @@ fn run_all_lights(
     Ok(Runs { judged, others })
 }
 
-/// What came of a technique's lights.
+/// Results of a technique for all lights.
 struct Runs {
     judged: TechniqueRun,
-    /// Masks of the lights before and after it.
+    /// Masks of the other lights, in the setup's order.
     others: Vec<Visibility>,
 }
 
 impl Runs {
-    /// Every light's mask, in the setup's order, of which the judged one is `light`.
+    /// Returns every light's mask in the setup's order; `light` is the judged one.
     fn visibilities(&self, light: usize) -> Vec<&Visibility> {
         let (before, after) = self.others.split_at(light);
         before.iter().chain([&self.judged.visibility]).chain(after).collect()

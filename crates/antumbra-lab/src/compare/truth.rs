@@ -1,4 +1,4 @@
-//! What the techniques of a comparison are held against: traced, or filtered exactly.
+//! Reference of a comparison: traced, or filtered exactly.
 
 use std::time::Instant;
 
@@ -15,11 +15,11 @@ use crate::technique_run::TechniqueChoice;
 use crate::truth::{LightTruth, trace_lights_until};
 use crate::view::View;
 
-/// The truth of every light, and what came to light with it.
+/// Reference of every light, with scene facts and warnings.
 pub(super) struct Judge {
-    /// In the setup's order; of a report that is resumed the judged light's in every place, since the others only shade its picture.
+    /// References in the setup's order. A resumed report has the judged light's in every place, because others only shade its image.
     pub(super) truths: Vec<LightTruth>,
-    /// Shaded with all of them.
+    /// Image shaded with all of them.
     pub(super) picture: RgbImage,
     pub(super) facts: Option<SceneFacts>,
     pub(super) warnings: Vec<String>,
@@ -34,7 +34,7 @@ impl Judge {
         deadline: Option<Instant>,
         progress: &dyn Progress,
     ) -> Result<Self, LabError> {
-        // Of a filtered truth the tracer tells no more than which pixels are judged.
+        // For a filtered reference, the tracer only determines which pixels are judged.
         let samples = if request.truth == Truth::Traced { request.samples } else { 1 };
         let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
         progress.begin("building the ray tracer's tree", 0);
@@ -52,7 +52,7 @@ impl Judge {
                 others[request.light]
             ));
         }
-        // A truth of one ray knows no penumbra.
+        // Scene facts need more than the single ray of a filtered reference.
         let facts = (request.truth == Truth::Traced).then(|| {
             let truth = &truths[request.light];
             SceneFacts::measure(request.scene, &tracer, &receivers, camera, &lights[request.light], truth)
@@ -69,7 +69,7 @@ impl Judge {
         Ok(Self { info: ReferenceInfo { samples, rays, seconds }, truths, picture, facts, warnings })
     }
 
-    /// That of an earlier report.
+    /// Returns the reference of an earlier report.
     pub(super) fn of_report(report: &Report, lights: usize) -> Self {
         let Reference { visibility, shaded, judged, info } = &report.reference;
         let truth = LightTruth {
@@ -88,7 +88,7 @@ impl Judge {
         }
     }
 
-    /// What a report has of it.
+    /// Returns the report's part of the reference.
     pub(super) fn reference(&self, light: usize) -> Reference {
         let truth = &self.truths[light];
         Reference {
@@ -100,7 +100,7 @@ impl Judge {
     }
 }
 
-/// The truths of the first technique that has a kernel of fixed width, and what a reader has to know of them.
+/// Returns the filtered references of the first technique with a kernel of fixed width, and a warning for the reader.
 fn filtered(
     request: &CompareRequest<'_>,
     view: &View<'_>,
@@ -121,7 +121,7 @@ fn filtered(
     Ok((filtered_truths(view, &exact, judged)?, warning))
 }
 
-/// The truths of a technique's own kernel, over the pixels that are judged anyway.
+/// Returns the references of a technique's own kernel, for the same judged pixels.
 pub(super) fn filtered_truths(
     view: &View<'_>,
     exact: &TechniqueChoice,

@@ -13,7 +13,7 @@ use glam::{UVec2, Vec3};
 use crate::output_files::{AtomicFile, FileError, one_line};
 use crate::picture::{Visibility, VisibilityValues};
 
-/// Writes visibility, losslessly compressed.
+/// Writes visibility with lossless compression.
 pub fn write_visibility_exr(path: &Path, visibility: &Visibility) -> Result<(), FileError> {
     let channel = |name: &str, samples: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(samples));
     let channels: SmallVec<[AnyChannel<FlatSamples>; 4]> = match &visibility.values {
@@ -34,7 +34,7 @@ pub fn write_visibility_exr(path: &Path, visibility: &Visibility) -> Result<(), 
     file.finish()
 }
 
-/// Reads visibility: the channel `V`, or the channels `V.R`, `V.G` and `V.B`; half floats are widened, others ignored.
+/// Reads visibility from the channel `V`, or `V.R`, `V.G` and `V.B`. Half floats are widened; other channels are ignored.
 pub fn read_visibility_exr(path: &Path) -> Result<Visibility, FileError> {
     const REMEDY: &str = "give an OpenEXR file with the channel V, or V.R, V.G and V.B";
     let file = File::open(path).map_err(|error| FileError::from_read(path, &error))?;
@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
-    /// The names that other programs look for stand in the file's header, in the order that the format asks for.
+    /// Channel names in the file's header are those that other programs expect, in the order of the format.
     #[test]
     fn channels_are_named_as_agreed() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Pictures as PNG or JPEG, visibility as OpenEXR: written whole or not at all, and read back.
+//! Images as PNG or JPEG, visibility as OpenEXR. Files are written completely or not at all.
 
 mod exr_file;
 mod picture_file;

@@ -1,4 +1,4 @@
-//! Files that a user names: what kind they are, their names say.
+//! Image files named by the user. The extension determines the format.
 
 use std::io::Write;
 use std::path::Path;
@@ -9,17 +9,17 @@ use image::codecs::jpeg::JpegEncoder;
 use super::write_png;
 use crate::output_files::{AtomicFile, FileError, check_ending, check_writable, one_line};
 
-/// Of 100; at 92 no block shows beside a PNG of the same picture.
+/// JPEG quality, out of 100. At 92, no blocks are visible beside a PNG of the same image.
 const JPEG_QUALITY: u8 = 92;
 
-/// What a picture is written as.
+/// Format of an image file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Png,
     Jpeg,
 }
 
-/// By the ending of a name.
+/// Returns the format of a file extension.
 fn kind_of(path: &Path) -> Result<Kind, FileError> {
     Ok(match check_ending(path, "a picture", &["png", "jpg", "jpeg"])? {
         "png" => Kind::Png,
@@ -27,28 +27,28 @@ fn kind_of(path: &Path) -> Result<Kind, FileError> {
     })
 }
 
-/// Whether a picture can be written there, to be asked before long work. Nothing is left there.
+/// Checks that an image can be written to a path, before long work. Leaves no file.
 ///
 /// # Errors
-/// Where the name is that of another kind of file, or the place takes none.
+/// If the extension is not that of an image, or the path is not writable.
 pub fn check_picture_path(path: &Path) -> Result<(), FileError> {
     kind_of(path)?;
     check_writable(path)
 }
 
-/// Whether visibility can be written there, to be asked before long work. Nothing is left there.
+/// Checks that visibility can be written to a path, before long work. Leaves no file.
 ///
 /// # Errors
-/// Where the name is not one of OpenEXR, or the place takes none.
+/// If the extension is not that of OpenEXR, or the path is not writable.
 pub fn check_visibility_path(path: &Path) -> Result<(), FileError> {
     check_ending(path, "visibility, 32-bit float OpenEXR,", &["exr"])?;
     check_writable(path)
 }
 
-/// Writes an 8-bit sRGB picture as its name says: `.png`, or `.jpg` and `.jpeg`.
+/// Writes an 8-bit sRGB image in the format of its extension: `.png`, `.jpg` or `.jpeg`.
 ///
 /// # Errors
-/// As [`check_picture_path`], or where writing fails.
+/// As [`check_picture_path`], or if writing fails.
 pub fn write_picture(path: &Path, picture: &RgbImage) -> Result<(), FileError> {
     if kind_of(path)? == Kind::Png {
         return write_png(path, picture);

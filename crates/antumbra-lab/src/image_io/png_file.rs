@@ -8,7 +8,7 @@ use image::{ExtendedColorType, ImageEncoder, ImageReader, RgbImage};
 
 use crate::output_files::{AtomicFile, FileError};
 
-/// Writes an 8-bit sRGB picture. [`Picture::to_srgb8`](crate::picture::Picture::to_srgb8) makes one of linear colours.
+/// Writes an 8-bit sRGB image. [`Picture::to_srgb8`](crate::picture::Picture::to_srgb8) creates one from linear colours.
 pub fn write_png(path: &Path, picture: &RgbImage) -> Result<(), FileError> {
     let mut file = AtomicFile::create(path)?;
     let png = encode_png(picture).map_err(|why| FileError::bad_path("write", path, why, "render at another size"))?;
@@ -16,7 +16,7 @@ pub fn write_png(path: &Path, picture: &RgbImage) -> Result<(), FileError> {
     file.finish()
 }
 
-/// The bytes of a PNG file: grey where every pixel is, else RGB. Fails, saying why, on a picture without pixels.
+/// Returns the bytes of a PNG file: grey if every pixel is, else RGB. Fails with a message on an image without pixels.
 pub fn encode_png(picture: &RgbImage) -> Result<Vec<u8>, String> {
     let is_gray = picture.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);
     let (samples, color) = if is_gray {

@@ -1,4 +1,4 @@
-//! FLIP of two pictures, by pixel.
+//! FLIP of two images, per pixel.
 
 use glam::UVec2;
 use image::RgbImage;
@@ -6,17 +6,17 @@ use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8};
 
 use super::{Mean, Metrics, MetricsError, TILE_PX};
 
-/// FLIP of two 8-bit sRGB pictures by pixel, background included, at 67 pixels per degree (Andersson et al., *FLIP: A
-/// Difference Evaluator for Alternating Images*, HPG 2020).
+/// FLIP of two 8-bit sRGB images per pixel, background included, at 67 pixels per degree (Andersson et al., *FLIP: A Difference Evaluator
+/// for Alternating Images*, HPG 2020).
 #[derive(Clone, Debug)]
 pub struct FlipMap {
     size_px: UVec2,
-    /// Row by row from the top, 0 to 1.
+    /// Values from 0 to 1, row by row from the top.
     values: Vec<f32>,
 }
 
 impl FlipMap {
-    /// Holds a picture against another one of its size.
+    /// Compares two images of equal size.
     pub fn new(reference: &RgbImage, tested: &RgbImage) -> Result<Self, MetricsError> {
         if reference.dimensions() != tested.dimensions() {
             return Err(MetricsError::Sizes {
@@ -34,12 +34,12 @@ impl FlipMap {
         Ok(Self { size_px, values: error.to_vec() })
     }
 
-    /// The mean over the picture; `None` where it has no pixels.
+    /// Returns the mean over the image; `None` if it has no pixels.
     pub fn mean(&self) -> Option<f64> {
         self.mean_within(UVec2::ZERO, self.size_px)
     }
 
-    /// The mean over the tile of [`TILE_PX`] whose upper left pixel this is, as far as the picture has it.
+    /// Returns the mean over the tile of [`TILE_PX`] with this upper left pixel, clipped to the image.
     pub fn tile_mean(&self, at_px: [u32; 2]) -> Option<f64> {
         let at_px = UVec2::from(at_px).min(self.size_px);
         self.mean_within(at_px, (at_px + TILE_PX).min(self.size_px))
@@ -56,7 +56,7 @@ impl FlipMap {
 }
 
 impl Metrics {
-    /// Adds what FLIP tells of the shaded pictures: over the whole, and over the worst tile.
+    /// Adds the FLIP values of the shaded images: over the whole, and over the worst tile.
     pub fn add_flip(&mut self, map: &FlipMap) {
         self.flip = map.mean();
         self.worst_tile_flip = self.worst_tile_at.and_then(|at_px| map.tile_mean(at_px));
@@ -73,7 +73,7 @@ mod tests {
         let flat = |v: u8| RgbImage::from_pixel(40, 30, Rgb([v; 3]));
         let mean = |a: &RgbImage, b: &RgbImage| FlipMap::new(a, b).unwrap().mean();
         assert_eq!(mean(&flat(90), &flat(90)), Some(0.0));
-        // Black against white is the largest difference that FLIP's colour metric knows (its section 4.1.2 maps it to 1).
+        // Black against white is the largest difference of FLIP's colour metric (its section 4.1.2 maps it to 1).
         let opposite = mean(&flat(0), &flat(255)).unwrap();
         assert!(opposite > 0.9 && opposite <= 1.0, "{opposite}");
         assert_eq!(mean(&RgbImage::new(0, 0), &RgbImage::new(0, 0)), None);
@@ -81,7 +81,7 @@ mod tests {
         assert!(mean(&RgbImage::new(1, 1), &RgbImage::new(1, 1)).is_some());
     }
 
-    /// Over the worst tile alone, as far as the picture has it.
+    /// FLIP of a tile covers that tile only, clipped to the image.
     #[test]
     fn flip_of_a_tile_is_of_that_tile() {
         let flat = RgbImage::from_pixel(100, 60, Rgb([90; 3]));

@@ -2,9 +2,9 @@
 
 use glam::UVec2;
 
-/// A Gaussian, cut off at a radius, whose taps sum to one.
+/// Truncated Gaussian whose taps sum to one.
 pub(super) struct Gaussian {
-    /// At offsets of −radius to radius.
+    /// Weights at offsets from −radius to radius.
     pub(super) taps: Vec<f64>,
 }
 
@@ -16,7 +16,7 @@ impl Gaussian {
         Self { taps: taps.into_iter().map(|tap| tap / total).collect() }
     }
 
-    /// Sums under the window about each pixel, rows then columns; outside the image lies zero.
+    /// Returns the sum under the window at each pixel, by rows and then columns; zero outside the image.
     pub(super) fn window_sums(&self, size_px: UVec2, plane: &[f64]) -> Vec<f64> {
         let (width, height) = (size_px.x as usize, size_px.y as usize);
         let radius = self.taps.len() / 2;
@@ -28,7 +28,7 @@ impl Gaussian {
                 *sum = window(column, width).map(|k| self.taps[k + radius - column] * line[k]).sum();
             }
         }
-        // Line by line, so that memory is read in its order.
+        // Row by row for contiguous memory access.
         let mut both = vec![0.0; plane.len()];
         for (row, sums) in both.chunks_exact_mut(width.max(1)).enumerate() {
             for k in window(row, height) {

@@ -1,52 +1,51 @@
-//! Roughness: high-frequency error where the truth is smooth, which is what an eye takes for an artefact: torn edges,
-//! specks, acne, seams, noise.
+//! Roughness: high-frequency error where the ground truth is smooth, which the eye perceives as artefacts:
+//! torn edges, specks, acne, seams, noise.
 //!
 //! ```text
 //! D = V − V_ref             over judged pixels
 //! H = D − (G ∗ D) / (G ∗ 1)  over judged pixels, with G a Gaussian of σ = 2 px
 //! ```
 //!
-//! `roughness` is the rms of H over *smooth* pixels: judged ones about which, within 3 px, V_ref changes by less than .02
-//! from each judged pixel to the next one in its row or column. A penumbra of the wrong width or depth has a D that varies
-//! slowly, which the blur takes away; an edge of the truth that lies half a pixel off is masked by the edge itself, and its
-//! neighbourhood is not smooth.
+//! `roughness` is the rms of H over *smooth* pixels: judged ones around which, within 3 px, V_ref changes by less than .02 between judged
+//! neighbours in a row or column. A penumbra of the wrong width or depth has a D that varies slowly, which the high-pass filter removes. A
+//! truth edge that is off by half a pixel is masked by the edge itself, because its neighbourhood is not smooth.
 //!
-//! The worst tile is the window of 32 × 32 pixels, anywhere in the image, with the largest rms of H, which counts as 0 at
-//! pixels that are not smooth: the sum of squares is divided by all 1024, so that slivers of a few pixels do not decide.
+//! The worst tile is the window of 32 × 32 pixels, anywhere in the image, with the largest rms of H. Pixels that are not smooth count as
+//! 0: the sum of squares is divided by all 1024, so slivers of a few pixels do not decide.
 //!
-//! With coloured visibility each channel of each pixel is one sample, and smooth by itself.
+//! With coloured visibility, each channel of each pixel is one sample with its own smoothness.
 
 use glam::UVec2;
 use serde::{Deserialize, Serialize};
 
 use super::gaussian::Gaussian;
 
-/// Detail is what a Gaussian of this width takes away.
+/// Standard deviation of the Gaussian, pixels. Detail is the part that its blur removes.
 const DETAIL_SIGMA_PX: f64 = 2.0;
-/// Three standard deviations.
+/// Radius of the Gaussian: three standard deviations.
 const DETAIL_RADIUS_PX: usize = 6;
-/// The truth is smooth where it changes by less than this from pixel to pixel: 50 pixels from umbra to light.
+/// Maximum change between neighbouring pixels where the truth is smooth: 50 pixels from umbra to light.
 const SMOOTH_STEP: f64 = 0.02;
-/// And does so within such a distance.
+/// Radius within which the truth must be smooth.
 const SMOOTH_RADIUS_PX: usize = 3;
-/// Side of the tiles of which the worst is looked for, pixels.
+/// Side of the worst tile, pixels.
 pub const TILE_PX: u32 = 32;
 
-/// The tile with the largest roughness.
+/// Tile with the largest roughness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WorstTile {
-    /// Column and row of its upper left pixel.
+    /// Column and row of the upper left pixel.
     pub at_px: [u32; 2],
-    /// Rms of H over its 32 × 32 pixels, 0 where they are not smooth.
+    /// Rms of H over the 32 × 32 pixels; pixels that are not smooth count as 0.
     pub rms: f64,
 }
 
-/// Squares of H, collected channel by channel.
+/// Sums of H² over the channels.
 pub(super) struct Roughness<'a> {
     size_px: UVec2,
     judged: &'a [bool],
     gaussian: Gaussian,
-    /// G ∗ 1 over judged pixels.
+    /// Values of G ∗ 1 over judged pixels.
     weights: Vec<f64>,
     /// Sum over the channels of H² at smooth pixels.
     squares: Vec<f64>,
@@ -62,7 +61,7 @@ impl<'a> Roughness<'a> {
         Self { size_px, judged, gaussian, weights, squares: vec![0.0; judged.len()], smooth: 0, channels: 0 }
     }
 
-    /// Adds a channel. Both planes must be 0 where not judged.
+    /// Adds a channel. Both planes must be 0 at pixels that are not judged.
     pub(super) fn add(&mut self, truth: &[f64], value: &[f64]) {
         let errors: Vec<f64> = truth.iter().zip(value).map(|(truth, value)| value - truth).collect();
         let sums = self.gaussian.window_sums(self.size_px, &errors);
@@ -74,12 +73,12 @@ impl<'a> Roughness<'a> {
         self.channels += 1;
     }
 
-    /// Rms over the smooth pixels; `None` where none is.
+    /// Returns the rms over the smooth pixels; `None` if there are none.
     pub(super) fn rms(&self) -> Option<f64> {
         (self.smooth > 0).then(|| (self.squares.iter().sum::<f64>() / self.smooth as f64).sqrt())
     }
 
-    /// The worst tile, the first of equals; `None` where no pixel is smooth. An image that is smaller than a tile is one tile.
+    /// Returns the worst tile, the first of equals; `None` without smooth pixels. An image smaller than a tile is one tile.
     pub(super) fn worst_tile(&self) -> Option<WorstTile> {
         let (width, height) = (self.size_px.x as usize, self.size_px.y as usize);
         let side = TILE_PX as usize;
@@ -100,7 +99,7 @@ impl<'a> Roughness<'a> {
     }
 }
 
-/// Judged pixels about which the truth is smooth.
+/// Returns, for each pixel, whether it is judged and the truth around it is smooth.
 fn smooth(size_px: UVec2, truth: &[f64], judged: &[bool]) -> Vec<bool> {
     let (width, height) = (size_px.x as usize, size_px.y as usize);
     let is_step = |a: usize, b: usize| judged[a] && judged[b] && (truth[a] - truth[b]).abs() >= SMOOTH_STEP;
@@ -112,7 +111,7 @@ fn smooth(size_px: UVec2, truth: &[f64], judged: &[bool]) -> Vec<bool> {
             (steps[i], steps[next]) = (true, true);
         }
     }
-    // A square of side 7, rows then columns.
+    // A square with side 7, by rows and then columns.
     let near = |steps: &[bool], length: usize, at: usize, index: &dyn Fn(usize) -> usize| {
         (at.saturating_sub(SMOOTH_RADIUS_PX)..(at + SMOOTH_RADIUS_PX + 1).min(length)).any(|k| steps[index(k)])
     };
@@ -139,7 +138,7 @@ mod tests {
         (roughness.rms(), roughness.worst_tile())
     }
 
-    /// Sum of squares of an impulse's detail, δ − G, far from all borders.
+    /// Returns the sum of squares of an impulse's detail, δ − G, far from all borders.
     fn impulse_squares() -> f64 {
         let taps = Gaussian::new(DETAIL_SIGMA_PX, DETAIL_RADIUS_PX).taps;
         let middle = taps[DETAIL_RADIUS_PX].powi(2);
@@ -162,7 +161,7 @@ mod tests {
         assert!((left..left + 32).contains(&40) && (top..top + 32).contains(&30), "{worst:?}");
     }
 
-    /// Over an image that is judged in pieces the blur is normalised, and an error that is the same everywhere has no detail.
+    /// The blur is normalised over judged pixels, so a constant error has no detail.
     #[test]
     fn a_shift_in_brightness_is_not_rough() {
         let judged: Vec<bool> = (0..PIXELS).map(|i| (i * 7919) % 11 > 2).collect();
@@ -171,7 +170,7 @@ mod tests {
         assert!(worst.is_some_and(|worst| worst.rms < 1e-9));
     }
 
-    /// Where a slope is not cut off, a symmetrical blur changes nothing of it.
+    /// A symmetric blur does not change a slope, except where the image border truncates it.
     #[test]
     fn a_slow_error_is_rough_at_the_border_alone() {
         let slope = |x: usize, _: usize| 0.01 * x as f64;
@@ -185,7 +184,7 @@ mod tests {
         }
     }
 
-    /// A chequered error has nothing but detail: the blur leaves the square of the taps' alternating sum of it.
+    /// A chequered error is pure detail; the blur multiplies it by the squared alternating sum of the taps.
     #[test]
     fn a_chequered_error_is_rough_by_its_size() {
         let sign = |x: usize, y: usize| if (x + y).is_multiple_of(2) { 0.1 } else { -0.1 };
@@ -199,16 +198,16 @@ mod tests {
         assert!((inside - expected).abs() < 1e-12, "{inside}, in closed form {expected}");
     }
 
-    /// An edge of the truth hides what happens within three pixels of it; a slope of less than .02 a pixel hides nothing.
+    /// An edge of the truth masks pixels within three pixels; a slope of less than .02 per pixel masks none.
     #[test]
     fn edges_of_the_truth_hide_and_slopes_do_not() {
         let count = |truth: Vec<f64>| smooth(SIZE, &truth, &[true; PIXELS]).iter().filter(|smooth| **smooth).count();
         let by_column = |f: &dyn Fn(usize) -> f64| (0..PIXELS).map(|i| f(i % WIDTH)).collect::<Vec<_>>();
-        // The two columns of the step, and three on either side of them.
+        // The two columns of the step, and three on either side.
         assert_eq!(count(by_column(&|x| f64::from(u8::from(x >= 40)))), PIXELS - 8 * 64);
         assert_eq!(count(by_column(&|x| 0.019 * (x % 50) as f64).into_iter().take(PIXELS).collect()), PIXELS - 8 * 64);
         assert_eq!(count(by_column(&|x| 0.021 * (x % 48) as f64)), 0);
-        // A step to what is not judged is none.
+        // A step to a pixel that is not judged does not count.
         let truth = by_column(&|x| f64::from(u8::from(x >= 40)));
         let judged: Vec<bool> = (0..PIXELS).map(|i| i % WIDTH < 40).collect();
         assert_eq!(smooth(SIZE, &truth, &judged), judged);
@@ -223,7 +222,7 @@ mod tests {
         assert_eq!((none.rms(), none.worst_tile()), (None, None));
     }
 
-    /// An image that is smaller than a tile is held against a whole one.
+    /// An image smaller than a tile is divided by the pixels of a whole tile.
     #[test]
     fn small_images_are_one_tile() {
         let size_px = UVec2::new(20, 17);
@@ -238,7 +237,7 @@ mod tests {
         assert!((worst.rms - rms * (340.0_f64 / 1024.0).sqrt()).abs() < 1e-12);
     }
 
-    /// Channels are samples: an error in one of three is a third of the squares.
+    /// Channels are samples: an error in one of three contributes a third of the mean square.
     #[test]
     fn channels_are_samples() {
         let zeros = vec![0.5; PIXELS];

@@ -5,14 +5,14 @@ use glam::UVec2;
 use super::Mean;
 use super::gaussian::Gaussian;
 
-/// Half the side of the window of Wang et al., without its centre: 11 = 2 · 5 + 1.
+/// Radius of the window of Wang et al.: side 11 = 2 · 5 + 1.
 const SSIM_RADIUS: usize = 5;
 const SSIM_SIGMA_PX: f64 = 1.5;
-/// (K₁ L)² and (K₂ L)² with L = 1.
+/// Constants (K₁ L)² and (K₂ L)² with L = 1.
 const SSIM_C1: f64 = 0.01 * 0.01;
 const SSIM_C2: f64 = 0.03 * 0.03;
 
-/// Adds the structural similarity at every judged pixel. `x` and `y` must be 0 where not judged.
+/// Adds the structural similarity at every judged pixel. `x` and `y` must be 0 at pixels that are not judged.
 ///
 /// With m the mask and G the Gaussian, the masked window mean of f is (G ∗ m f) / (G ∗ m).
 pub(super) fn add_ssim(mean: &mut Mean, size_px: UVec2, x: &[f64], y: &[f64], judged: &[bool]) {
@@ -25,7 +25,7 @@ pub(super) fn add_ssim(mean: &mut Mean, size_px: UVec2, x: &[f64], y: &[f64], ju
     for i in (0..x.len()).filter(|&i| judged[i]) {
         let [mean_x, mean_y, mean_xx, mean_yy, mean_xy] =
             [&sum_x, &sum_y, &sum_xx, &sum_yy, &sum_xy].map(|sum| sum[i] / weight[i]);
-        // Differences of moments can fall a rounding error below zero.
+        // Rounding errors can make differences of moments negative.
         let variance_x = (mean_xx - mean_x * mean_x).max(0.0);
         let variance_y = (mean_yy - mean_y * mean_y).max(0.0);
         let covariance = mean_xy - mean_x * mean_y;
@@ -42,7 +42,7 @@ mod tests {
     use crate::metrics::tests::assert_close;
     use crate::picture::Visibility;
 
-    /// Flat images have no structure: SSIM is its luminance term alone.
+    /// Flat images have no structure, so SSIM is its luminance term.
     #[test]
     fn ssim_of_flat_images_is_the_luminance_term() {
         let size = UVec2::new(17, 13);
@@ -53,7 +53,7 @@ mod tests {
         assert_close("ssim", compare_visibility(&flat(0.3), &flat(0.3), &judged).unwrap().ssim, 1.0);
     }
 
-    /// Against the definition, window by window, with a ragged mask and junk outside it.
+    /// SSIM equals its definition at every window, with a ragged mask and invalid values outside it.
     #[test]
     fn ssim_matches_its_definition_window_by_window() {
         let (width, height) = (19_usize, 14_usize);

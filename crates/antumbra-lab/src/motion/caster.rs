@@ -6,22 +6,22 @@ use glam::Vec3;
 
 use crate::error::LabError;
 
-/// What spans at least so much of the scene is ground, wall or hall: what moves stands in it.
+/// Fraction of the scene's extent from which an instance counts as ground, wall or hall, not as a movable object.
 const SURROUNDINGS: f32 = 0.75;
 
-/// The instances that move together, and their name for readers.
+/// Instances that move together, and their name for display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingCaster {
-    /// The mesh's name.
+    /// Name of the mesh.
     pub name: String,
     /// Indices into [`Scene::instances`].
     pub instances: Vec<usize>,
 }
 
-/// All instances of the mesh called `name`, or of its parts `name.0`, `name.1`, … where a glTF mesh has several primitives.
+/// Returns all instances of the mesh called `name`, or of its parts `name.0`, `name.1`, … if a glTF mesh has several primitives.
 ///
 /// # Errors
-/// Where there is none: one line with the names that there are.
+/// If there is none: one line with the available names.
 pub fn named_caster(scene: &Scene, name: &str) -> Result<MovingCaster, LabError> {
     let is_part = |mesh: &str, name: &str| {
         let number = mesh.strip_prefix(name).and_then(|rest| rest.strip_prefix('.'));
@@ -31,7 +31,7 @@ pub fn named_caster(scene: &Scene, name: &str) -> Result<MovingCaster, LabError>
         let instances = scene.instances.iter().enumerate();
         instances.filter(|(_, one)| is_named(&scene.meshes[one.mesh].name)).map(|(index, _)| index).collect()
     };
-    // A file may have names that differ in case alone.
+    // A file may have names that differ only in case, so an exact match takes precedence.
     let mut instances = named(&|mesh| is_part(mesh, name));
     if instances.is_empty() {
         let name = name.to_lowercase();
@@ -43,14 +43,14 @@ pub fn named_caster(scene: &Scene, name: &str) -> Result<MovingCaster, LabError>
             names(scene)
         )));
     }
-    // As the scene has it.
+    // The spelling of the scene.
     let own = scene.meshes[scene.instances[instances[0]].mesh].name.get(..name.len());
     Ok(MovingCaster { name: own.unwrap_or(name).to_owned(), instances })
 }
 
-/// The one instance that is largest in the picture, and is no ground and no wall: its box spans less than three quarters of
-/// the scene's along x and along z, or, where there is none, along one of them. `receivers` are what the camera sees.
-/// `None` where every one in the picture spans too much.
+/// Returns the instance with most pixels in the image that is neither ground nor wall: its box spans less than three quarters of
+/// the scene's along both x and z, or, if there is none, along one of them. `receivers` are what the camera sees. `None` if
+/// every visible instance spans too much.
 pub fn largest_caster(scene: &Scene, receivers: &Receivers) -> Option<MovingCaster> {
     let mut pixels = vec![0_usize; scene.instances.len()];
     for point in receivers.points.iter().flatten() {
@@ -66,7 +66,7 @@ pub fn largest_caster(scene: &Scene, receivers: &Receivers) -> Option<MovingCast
             usize::from(spans.x) + usize::from(spans.z)
         })
         .collect();
-    // The first of equals, so that the same scene always moves the same thing.
+    // The first of equals, so that the choice is deterministic.
     let largest = |most_spans: usize| {
         let free = (0..pixels.len()).filter(|i| pixels[*i] > 0 && spans_along[*i] <= most_spans);
         free.max_by_key(|i| (pixels[*i], std::cmp::Reverse(*i)))
@@ -75,7 +75,7 @@ pub fn largest_caster(scene: &Scene, receivers: &Receivers) -> Option<MovingCast
     Some(MovingCaster { name: scene.meshes[scene.instances[index].mesh].name.clone(), instances: vec![index] })
 }
 
-/// The first names of meshes, each once.
+/// Returns the first names of meshes, each once.
 pub(super) fn names(scene: &Scene) -> String {
     const SHOWN: usize = 12;
     let mut names: Vec<&str> = Vec::new();

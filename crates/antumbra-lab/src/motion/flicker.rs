@@ -1,6 +1,6 @@
-//! Flicker: changes of masks from frame to frame, against those of the truth at the same pixels.
+//! Flicker: changes of masks between frames, compared with those of the ground truth at the same pixels.
 //!
-//! With M_i the mask and V_i the truth of frame i, over the pixels that are judged in both frames:
+//! M_i is the mask and V_i the truth of frame i, over the pixels that are judged in both frames:
 //!
 //! ```text
 //! flicker      = rms over frames and pixels of (M_i − M_{i−1}) − (V_i − V_{i−1})
@@ -8,50 +8,50 @@
 //! ratio        = flicker / truth change
 //! ```
 //!
-//! A mask that is wrong by the same amount at the same pixel in every frame does not flicker; one that stands still while
-//! the truth moves has a ratio of one.
+//! A mask with the same error at the same pixel in every frame does not flicker. A mask that stays constant while
+//! the truth changes has a ratio of one.
 //!
-//! **After the stop**, M_N, M_{N+1}, … are held against the last of them, the settled mask, over the pixels that the motion
-//! touched: those at which some frame's truth is farther than [`SETTLED`] from the last one's. The lag is the number of
-//! frames until they stay within [`SETTLED`] of it.
+//! **After the stop**, M_N, M_{N+1}, … are compared with the last of them, the settled mask, over the pixels that the motion touched:
+//! those at which some frame's truth differs from the last frame's by more than [`SETTLED`]. The lag is the number of frames until the
+//! masks stay within [`SETTLED`] of the settled one.
 //!
 //! Channels are samples, and values that are not finite count as the wrong end of [0, 1], as in [`crate::metrics`].
 
 use crate::picture::{Visibility, pixel_count};
 
-/// A mask this near to the settled one, as an rms, has settled; and what a motion changes by no more it has not touched.
+/// Threshold of settling: maximum rms distance to the settled mask, and maximum change of a pixel that a motion has not touched.
 pub const SETTLED: f64 = 0.02;
 
-/// A frame's truth, as far as motion is judged by it.
+/// Ground truth of one frame.
 #[derive(Clone, Debug)]
 pub struct TrueFrame {
     /// Visibility of every pixel.
     pub visibility: Visibility,
-    /// The pixels that are judged in this frame.
+    /// Whether each pixel is judged in this frame.
     pub judged: Vec<bool>,
 }
 
-/// What is known of a technique's changes so far.
+/// Sums over the frames of a technique.
 #[derive(Clone, Debug)]
 pub struct FlickerSums {
-    /// Squared differences of change by pixel, summed over frames and channels, and their number.
+    /// Squared differences of change, summed over frames and channels, and their number, for each pixel.
     by_pixel: Vec<(f64, u32)>,
     truth_squared: f64,
 }
 
-/// A finite value as it is, another as the wrong end of [0, 1].
+/// Returns a finite value unchanged, and the wrong end of [0, 1] for any other.
 fn finite_or_wrong(value: f32, truth: f32) -> f64 {
     let wrong = if truth > 0.5 { 0.0 } else { 1.0 };
     if value.is_finite() { f64::from(value) } else { wrong }
 }
 
 impl FlickerSums {
-    /// Of pictures with so many pixels.
+    /// Creates empty sums for images with `pixels` pixels.
     pub fn new(pixels: usize) -> Self {
         Self { by_pixel: vec![(0.0, 0); pixels], truth_squared: 0.0 }
     }
 
-    /// Takes in a frame: truths and masks of the frame before and of this one, all of one size.
+    /// Adds a frame: truths and masks of the previous and the current frame, all of one size.
     pub fn add(&mut self, truths: [&TrueFrame; 2], masks: [&Visibility; 2]) {
         for (i, (squared, count)) in self.by_pixel.iter_mut().enumerate() {
             if truths.iter().any(|truth| !truth.judged[i]) {
@@ -73,26 +73,26 @@ impl FlickerSums {
         self.by_pixel.iter().map(|(_, count)| u64::from(*count)).sum()
     }
 
-    /// The flicker; `None` where no pixel was judged in two frames.
+    /// Returns the flicker; `None` if no pixel was judged in two consecutive frames.
     pub fn flicker(&self) -> Option<f64> {
         let samples = self.samples();
         let squared: f64 = self.by_pixel.iter().map(|(squared, _)| squared).sum();
         (samples > 0).then(|| (squared / samples as f64).sqrt())
     }
 
-    /// The truth's own change; `None` where no pixel was judged in two frames.
+    /// Returns the truth's own change; `None` if no pixel was judged in two consecutive frames.
     pub fn truth_change(&self) -> Option<f64> {
         let samples = self.samples();
         (samples > 0).then(|| (self.truth_squared / samples as f64).sqrt())
     }
 
-    /// The flicker over the truth's change; `None` where the truth does not change.
+    /// Returns the ratio of flicker to the truth's change; `None` if the truth does not change.
     pub fn ratio(&self) -> Option<f64> {
         let change = self.truth_change().filter(|change| *change > 0.0)?;
         Some(self.flicker()? / change)
     }
 
-    /// Each pixel's own flicker; 0 where it was never judged.
+    /// Returns each pixel's flicker; 0 if it was never judged.
     pub fn by_pixel(&self) -> Vec<f32> {
         self.by_pixel.iter().map(|(squared, count)| (squared / f64::from((*count).max(1))).sqrt() as f32).collect()
     }
@@ -102,10 +102,10 @@ fn channels(truth: &TrueFrame, mask: &Visibility) -> usize {
     truth.visibility.channel_count().max(mask.channel_count())
 }
 
-/// The judged pixels that a motion touched: where some frame's truth is farther than [`SETTLED`] from the last frame's.
+/// Returns the judged pixels that a motion touched: some frame's truth differs from the last frame's by more than [`SETTLED`].
 ///
 /// # Panics
-/// Where there is no frame.
+/// If there is no frame.
 pub fn touched_pixels(truths: &[TrueFrame]) -> Vec<usize> {
     let last = truths.last().expect("a motion has a frame at least");
     let differs = |frame: &TrueFrame, i: usize| {
@@ -116,8 +116,7 @@ pub fn touched_pixels(truths: &[TrueFrame]) -> Vec<usize> {
     (0..pixel_count(last.visibility.size_px)).filter(is_touched).collect()
 }
 
-/// How far the masks after the stop are from the last of them, as an rms over `pixels`, for each of them but the last;
-/// empty where there is no pixel.
+/// Returns the rms distance over `pixels` of each mask after the stop, except the last, to the last one; empty if there are no pixels.
 pub fn distances_to_settled(masks: &[Visibility], truth: &TrueFrame, pixels: &[usize]) -> Vec<f64> {
     let Some((settled, before)) = masks.split_last().filter(|_| !pixels.is_empty()) else { return Vec::new() };
     let channels = channels(truth, settled);
@@ -131,9 +130,9 @@ pub fn distances_to_settled(masks: &[Visibility], truth: &TrueFrame, pixels: &[u
     before.iter().map(distance).collect()
 }
 
-/// Frames after the stop until the mask stays within [`SETTLED`] of the settled one, of the distances of
-/// [`distances_to_settled`]: 0 where it is there in the very frame that stops, `None` where there are no distances or the
-/// last of them is still too large, so that nothing says that the last mask is settled.
+/// Returns the number of frames after the stop until the mask stays within [`SETTLED`] of the settled one, from
+/// [`distances_to_settled`]: 0 if the frame that stops is already there. `None` if there are no distances, or the last one is still too
+/// large, because then the last mask may not be settled.
 pub fn lag_frames(distances: &[f64]) -> Option<u32> {
     let last_far = distances.iter().rposition(|distance| *distance > SETTLED);
     match last_far {
@@ -150,7 +149,7 @@ mod tests {
 
     use super::*;
 
-    /// A row of 32 pixels with an edge that has come so far: dark before it, lit behind it.
+    /// Returns a row of 32 pixels with an edge at `place`: dark before it, lit behind it.
     fn edge(place: u32) -> Visibility {
         Visibility::one(UVec2::new(32, 1), (0..32).map(|x| if x < place { 0.0 } else { 1.0 }).collect())
     }
@@ -171,7 +170,7 @@ mod tests {
     fn flicker_is_change_that_the_truth_has_not() {
         let truths: Vec<_> = (0..5).map(|i| truth(4 + 2 * i)).collect();
         let close = |got: Option<f64>, want: f64| (got.unwrap() - want).abs() < 1e-9;
-        // Two of 31 judged pixels change in each frame.
+        // Two of the 31 judged pixels change in each frame.
         let change = (2.0_f64 / 31.0).sqrt();
 
         let right = sums(&truths.iter().map(|t| t.visibility.clone()).collect::<Vec<_>>(), &truths);
@@ -180,7 +179,7 @@ mod tests {
         let frozen = sums(&vec![edge(4); 5], &truths);
         assert!(close(frozen.flicker(), change) && close(frozen.ratio(), 1.0));
 
-        // Always as wrong: no flicker. Wrong in every second frame: flicker, everywhere alike.
+        // A constant error does not flicker; an error in every second frame flickers equally everywhere.
         let tinted = |amount: f32, place: u32| {
             Visibility::one(UVec2::new(32, 1), (0..32).map(|i| edge(place).at(i, 0) + amount).collect())
         };
@@ -209,7 +208,7 @@ mod tests {
         assert!((sums.flicker().unwrap() - 1.0).abs() < 1e-9, "each counts as the wrong end");
     }
 
-    /// A ghost: masks that come some frames late.
+    /// Masks that lag some frames behind, as ghosting does.
     #[test]
     fn a_mask_that_lags_is_seen_to() {
         const STOP: u32 = 10;
@@ -223,7 +222,7 @@ mod tests {
             assert!((distances[0] - (f64::from(late) / 10.0).sqrt()).abs() < 1e-9, "the share that the ghost holds");
             assert_eq!(lag_frames(&distances), Some(late), "{distances:?}");
         }
-        // What never comes to rest is not called settled.
+        // Masks that never settle have no lag.
         let restless: Vec<_> = (0..12).map(|frame| edge(5 + frame % 2)).collect();
         assert_eq!(lag_frames(&distances_to_settled(&restless[..11], &truths[10], &touched)), None);
         assert_eq!(lag_frames(&distances_to_settled(&restless, &truths[10], &[])), None);

@@ -1,18 +1,18 @@
 //! Flicker and lag of techniques in motion.
 //!
-//! A camera, a light or a caster moves for some frames and stops ([`Motion`]). Each technique keeps one state over all of
-//! them, as a host's light does, and is held frame by frame against the traced truth of that frame. What is made of that is
-//! defined in [`flicker`]; where things are in each frame, in `trajectory`.
+//! A camera, a light or a caster moves for some frames and stops ([`Motion`]). Each technique keeps one state over all of them, as a
+//! host's light does, and each frame is compared with its traced ground truth. [`flicker`] defines the resulting measures; `trajectory`
+//! defines the poses in each frame.
 //!
 //! ```text
 //! trajectory ─► scene and camera of a frame ─┬─► rays ──► true change ─┐
 //!                                        └─► mask ──► its change ──┴─► flicker, lag, strip
 //! ```
 //!
-//! **The truth's own noise.** All pixels of all frames are traced with the same light points, so that what stands still has
-//! the same truth in every frame. What is left is the steps of so many light points, in which a penumbra moves. It is
-//! measured: the last change is traced with other light points too, and the rms of the difference, over √2 for two equal
-//! parts, is [`TrueMotion::noise`].
+//! **The truth's own noise.** All pixels of all frames are traced with the same light samples, so static parts have the same
+//! truth in every frame. The remaining noise is the quantisation by the number of samples, in which a penumbra moves. To
+//! measure it, the last change is also traced with other light samples; the rms of the difference, divided by √2 because both
+//! have equal noise, is [`TrueMotion::noise`].
 
 mod caster;
 pub mod flicker;
@@ -46,22 +46,22 @@ use flicker::{FlickerSums, TrueFrame, distances_to_settled, lag_frames, touched_
 use strip::Strip;
 use trajectory::{Pose, Trajectory};
 
-/// What moves.
+/// Moving object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// The camera, to its right or along a path.
+    /// The camera moves to its right or along a path.
     Camera,
-    /// The light that is judged, to the camera's right.
+    /// The judged light moves to the camera's right.
     Light,
-    /// One caster, to the camera's right.
+    /// One caster moves to the camera's right.
     Caster,
 }
 
 impl Motion {
-    /// All of them.
+    /// All motions.
     pub const ALL: [Self; 3] = [Self::Camera, Self::Light, Self::Caster];
 
-    /// Its name on the command line and in `metrics.json`.
+    /// Returns the name on the command line and in `metrics.json`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Camera => "camera",
@@ -71,75 +71,75 @@ impl Motion {
     }
 }
 
-/// How things move.
+/// Options of the motions.
 #[derive(Clone, Debug)]
 pub struct MotionOptions {
-    /// What moves, one after the other.
+    /// Motions, measured one after the other.
     pub motions: Vec<Motion>,
-    /// Frames that move, one at least.
+    /// Number of moving frames, at least one.
     pub frames: u32,
-    /// Metres a frame; a sun turns by the angle that this is at ten metres.
+    /// Metres per frame. A sun turns by the angle that this subtends at ten metres.
     pub step_m: f32,
-    /// The mesh whose instances are the caster that moves; `None` is [`largest_caster`].
+    /// Mesh whose instances are the moving caster; `None` uses [`largest_caster`].
     pub caster: Option<String>,
-    /// Cameras that the camera passes in even times before it comes to the setup's; empty moves it sideways.
+    /// Cameras that the camera passes at even intervals before it reaches the setup's; empty moves it sideways.
     pub path: Vec<Camera>,
 }
 
-/// Frames at the place where a motion starts, before its first step: lists and maps have found their sizes.
+/// Number of static frames at the start, in which lists and maps reach their sizes.
 const STILL_BEFORE: u32 = 4;
-/// Frames that are looked at after the stop, at most.
+/// Maximum number of frames measured after the stop.
 const STILL_AFTER: u32 = 16;
-/// So many masks of the same bits in a row have settled.
+/// Number of consecutive identical masks that count as settled.
 const SAME_MASKS: usize = 4;
 
-/// The truth of a motion, frame by frame.
+/// Ground truth of a motion, frame by frame.
 #[derive(Debug)]
 pub struct MotionTruth {
-    /// What there is to say of it.
+    /// Summary for reports.
     pub summary: TrueMotion,
-    /// One for each frame from the start on, N + 1 of them.
+    /// Truth of each frame from the start on, N + 1 of them.
     frames: Vec<TrueFrame>,
     touched: Vec<usize>,
 }
 
-/// What there is to say of a motion's truth.
+/// Summary of a motion's ground truth.
 #[derive(Clone, Debug)]
 pub struct TrueMotion {
-    /// What moves.
+    /// Motion.
     pub motion: Motion,
-    /// The name of the caster that does, where one does.
+    /// Name of the moving caster; `None` for other motions.
     pub caster: Option<String>,
-    /// The truth's own change from frame to frame, as an rms over frames and judged pixels; `None` where none is judged.
+    /// Rms change of the truth between frames, over frames and judged pixels; `None` if none is judged.
     pub change: Option<f64>,
-    /// What of that is the light points' doing, as an rms over the pixels of the last frame.
+    /// Rms noise of the light samples in that change, over the pixels of the last frame.
     pub noise: Option<f64>,
-    /// Frames and their changes, in two rows.
+    /// Image with frames and their changes, in two rows.
     pub strip: RgbImage,
 }
 
-/// What a technique does in a motion.
+/// Measures of a technique in a motion.
 #[derive(Clone, Debug)]
 pub struct MotionFigures {
-    /// What moves.
+    /// Motion.
     pub motion: Motion,
-    /// Root mean square of the mask's change less the truth's; `None` where no pixel is judged in two frames.
+    /// Root mean square of the mask's change minus the truth's; `None` if no pixel is judged in two frames.
     pub flicker: Option<f64>,
-    /// The same over the truth's change; `None` where the truth does not change.
+    /// Ratio of flicker to the truth's change; `None` if the truth does not change.
     pub ratio: Option<f64>,
-    /// Frames after the stop until the mask stays within [`flicker::SETTLED`] of the settled one; `None` where it does not
+    /// Frames after the stop until the mask stays within [`flicker::SETTLED`] of the settled one; `None` if it does not
     /// settle, or the motion touched no pixel.
     pub lag_frames: Option<u32>,
-    /// How far the masks after the stop are from the last of them, the first for the very frame that stops; empty where the
-    /// motion touched no pixel.
+    /// Rms distances of the masks after the stop to the last of them, starting with the frame that stops;
+    /// empty if the motion touched no pixel.
     pub after_stop: Vec<f64>,
-    /// Frames that lacked room for lists while things moved: no host draws them again, so they count as they are.
+    /// Number of frames whose lists overflowed during the motion. A host does not redraw them, so they count.
     pub lacking_room: u32,
-    /// Frames and their changes, in two rows.
+    /// Image with frames and their changes, in two rows.
     pub strip: RgbImage,
 }
 
-/// A scene whose parts move, seen as it is in one frame after the other.
+/// Scene with moving parts, rendered frame by frame.
 #[derive(Debug)]
 pub struct MovingScene<'a> {
     lab: &'a LabDevice,
@@ -154,15 +154,15 @@ pub struct MovingScene<'a> {
 }
 
 impl<'a> MovingScene<'a> {
-    /// Uploads the scene, and finds the caster where one is to move. `light` is the setup's light that is judged, and that
-    /// moves where a light does.
+    /// Uploads the scene, and finds the caster if one is to move. `light` is the index of the judged
+    /// light, which is also the one that moves.
     ///
     /// # Errors
-    /// Where no mesh has the caster's name, or the scene cannot be traced to find one. A picture in which no caster stands
-    /// apart is none: see [`Self::motions`].
+    /// If no mesh has the caster's name, or the scene cannot be traced to find one. An image without a movable
+    /// caster is no error: see [`Self::motions`].
     ///
     /// # Panics
-    /// Where no frame is to move.
+    /// If the number of moving frames is zero.
     pub fn new(
         lab: &'a LabDevice,
         scene: &'a Scene,
@@ -182,7 +182,7 @@ impl<'a> MovingScene<'a> {
         Ok(Self { lab, setup, light, size_px, options, at_rest: scene, caster, gpu_scene, receiver_pass })
     }
 
-    /// The motions that there can be; the rest is said in the line, for readers.
+    /// Returns the possible motions, and a line for the user about omitted ones.
     pub fn motions(&self) -> (Vec<Motion>, Option<String>) {
         let can_move = |motion: &Motion| *motion != Motion::Caster || self.caster.is_some();
         let motions: Vec<_> = self.options.motions.iter().copied().filter(can_move).collect();
@@ -195,7 +195,7 @@ impl<'a> MovingScene<'a> {
         (motions, left_out)
     }
 
-    /// Frames that move, and metres a frame.
+    /// Returns the number of moving frames, and metres per frame.
     pub fn frames_and_step_m(&self) -> (u32, f32) {
         (self.options.frames, self.options.step_m)
     }
@@ -205,7 +205,7 @@ impl<'a> MovingScene<'a> {
         Trajectory { setup: self.setup, light: self.light, motion, frames, step_m, path }
     }
 
-    /// Puts all in its place and draws what the camera sees.
+    /// Applies a pose and renders what the camera sees.
     fn look(&mut self, pose: &Pose) -> Result<ReceiverImages, LabError> {
         if let Some(caster) = &self.caster {
             self.gpu_scene.offset_instances(self.lab, &caster.instances, pose.caster_offset_m);
@@ -215,18 +215,18 @@ impl<'a> MovingScene<'a> {
         Ok(images)
     }
 
-    /// Traces every frame of a motion, with so many light points for each pixel.
+    /// Traces every frame of a motion, with `samples` light samples per pixel.
     ///
     /// # Errors
-    /// Where the scene cannot be traced, or the device fails.
+    /// If the scene cannot be traced, or the device fails.
     pub fn trace(&mut self, motion: Motion, samples: u32, progress: &dyn Progress) -> Result<MotionTruth, LabError> {
         self.trace_until(motion, samples, None, progress)
     }
 
-    /// The same, given up at a deadline.
+    /// Traces as [`Self::trace`], until a deadline.
     ///
     /// # Errors
-    /// As [`Self::trace`], and where the deadline comes first.
+    /// As [`Self::trace`], and if the deadline passes.
     pub fn trace_until(
         &mut self,
         motion: Motion,
@@ -241,7 +241,7 @@ impl<'a> MovingScene<'a> {
         let mut frames: Vec<TrueFrame> = Vec::new();
         let mut sums = FlickerSums::new(pixel_count(self.size_px));
         let mut strip = Strip::new(self.size_px);
-        // The last two are traced twice.
+        // The last two frames are traced twice.
         progress.begin(&format!("tracing the {}'s motion", motion.name()), u64::from(last + 3) * STEPS);
         let mut other_points: Vec<Visibility> = Vec::new();
         for i in 0..=last {
@@ -260,7 +260,7 @@ impl<'a> MovingScene<'a> {
             }
             let frame = TrueFrame { visibility: truth.visibility, judged: truth.judged };
             if let Some(before) = frames.last() {
-                // The truth against a mask that stands still: its own change.
+                // Against a constant mask, flicker is the truth's own change.
                 let still = [&before.visibility; 2];
                 sums.add([before, &frame], still);
                 strip.add_truth(i, last, [before, &frame]);
@@ -281,18 +281,18 @@ impl<'a> MovingScene<'a> {
         Ok(MotionTruth { summary, touched: touched_pixels(&frames), frames })
     }
 
-    /// Runs a technique, just made, through a motion, and some frames beyond its stop.
+    /// Runs a new technique through a motion, and some frames beyond its stop.
     ///
     /// # Errors
-    /// Where the technique cannot be prepared, or the device fails.
+    /// If the technique cannot be prepared, or the device fails.
     pub fn run(&mut self, truth: &MotionTruth, technique: &mut AnyShadow) -> Result<MotionFigures, LabError> {
         self.run_until(truth, technique, None)
     }
 
-    /// The same, given up at an end.
+    /// Runs as [`Self::run`], until an end time.
     ///
     /// # Errors
-    /// As [`Self::run`], and where the end comes first.
+    /// As [`Self::run`], and if the end passes.
     pub fn run_until(
         &mut self,
         truth: &MotionTruth,
@@ -335,7 +335,7 @@ impl<'a> MovingScene<'a> {
         for i in 0..STILL_AFTER {
             in_time(STILL_BEFORE + last + i, technique)?;
             let (now, lacked) = self.draw(technique, &rest, &images, &mask)?;
-            // What the first of them learns is of the last frame that moved.
+            // The first frame after the stop reports the overflow of the last moving frame.
             lacking_room += u32::from(lacked && i == 0);
             masks.push(now);
             let newest = &masks[masks.len().saturating_sub(SAME_MASKS)..];
@@ -356,7 +356,7 @@ impl<'a> MovingScene<'a> {
         })
     }
 
-    /// A frame's mask, and whether the frame before lacked room.
+    /// Draws a frame. Returns its mask, and whether the previous frame's lists overflowed.
     fn draw(
         &self,
         technique: &mut AnyShadow,
@@ -372,13 +372,13 @@ impl<'a> MovingScene<'a> {
     }
 }
 
-/// Number of steps in which progress is reported, for each traced frame.
+/// Number of progress steps per traced frame.
 const STEPS: u64 = 100;
 
-/// A tracer whose scene moves.
+/// Tracer of a scene with moving instances.
 struct Tracing {
     scene: Scene,
-    /// Instances that move, with the places that they arrive at.
+    /// Moving instances with their final transforms.
     moving: Vec<(usize, Mat4)>,
     tracer: Tracer,
     samples: u32,
@@ -392,7 +392,7 @@ impl Tracing {
         Ok(Self { scene, moving, tracer, samples })
     }
 
-    /// What the camera sees in a frame; the tracer knows the frame's scene from here on.
+    /// Updates the tracer to a pose and returns what the camera sees.
     fn receivers(&mut self, pose: &Pose, size_px: UVec2) -> Result<Receivers, LabError> {
         if !self.moving.is_empty() {
             for (instance, place) in &self.moving {

@@ -1,12 +1,12 @@
-//! A motion as a picture: frames side by side above, how they changed below.
+//! Image of a motion: frames side by side above, their changes below.
 //!
 //! ```text
 //! mask, frame N/4   N/2   3N/4   N    settled
 //! change's error    …     …      …    flicker of each pixel
 //! ```
 //!
-//! The error of a change is (M_i − M_{i−1}) − (V_i − V_{i−1}) on the scale of the error maps, and the flicker of a pixel its
-//! rms over the frames. In the truth's own strip the lower row has V_i − V_{i−1} and its rms.
+//! The error of a change is (M_i − M_{i−1}) − (V_i − V_{i−1}) on the scale of the error maps, and a pixel's flicker is its rms over the
+//! frames. The truth's own strip shows V_i − V_{i−1} and its rms in the lower row.
 
 use glam::UVec2;
 use image::RgbImage;
@@ -16,31 +16,31 @@ use super::flicker::{FlickerSums, TrueFrame};
 use crate::color_maps::{NOT_JUDGED_COLOR, magnitude_map, signed_error_color};
 use crate::picture::{Visibility, rgb_image};
 
-/// Frames of a strip, evenly over the motion.
+/// Number of frames in a strip, evenly spaced over the motion.
 pub const STRIP_FRAMES: u32 = 4;
 
-/// The flicker of a pixel that is shown brightest.
+/// Flicker of a pixel that is shown brightest.
 pub const STRIP_FLICKER_RANGE: f32 = 0.25;
 
-/// A picture of a strip is at most so wide, pixels.
+/// Maximum width of one image of a strip, pixels.
 const CELL_WIDTH_PX: u32 = 320;
-/// Between pictures, pixels.
+/// Gap between images, pixels.
 const GAP_PX: u32 = 4;
 
-/// A strip in the making.
+/// A strip in progress.
 #[derive(Debug)]
 pub(super) struct Strip {
     cell_px: UVec2,
     picture: RgbImage,
 }
 
-/// Whether frame `frame` of `frames` is in the strip, and at which place.
+/// Returns the column of frame `frame` of `frames`; `None` if the strip does not show it.
 fn column_of(frame: u32, frames: u32) -> Option<u32> {
     (1..=STRIP_FRAMES).find(|column| (frames * column).div_ceil(STRIP_FRAMES) == frame).map(|column| column - 1)
 }
 
 impl Strip {
-    /// For masks of `size_px`.
+    /// Creates an empty strip for masks of `size_px`.
     pub(super) fn new(size_px: UVec2) -> Self {
         let width = size_px.x.min(CELL_WIDTH_PX);
         let cell_px = UVec2::new(width, (size_px.y * width).div_ceil(size_px.x).max(1));
@@ -55,22 +55,22 @@ impl Strip {
         overlay(&mut self.picture, &scaled, i64::from(place.x), i64::from(place.y));
     }
 
-    /// Takes in a moving frame, of `frames`: truths and masks of the frame before and of this one. Frames that the strip
-    /// does not show are left.
+    /// Adds a moving frame out of `frames`: truths and masks of the previous and the current frame. Frames that
+    /// the strip does not show are ignored.
     pub(super) fn add(&mut self, frame: u32, frames: u32, truths: [&TrueFrame; 2], masks: [&Visibility; 2]) {
         let Some(column) = column_of(frame, frames) else { return };
         self.put(column, 0, &masks[1].to_gray_levels());
         self.put(column, 1, &change_map(truths, |i, c| masks[1].at(i, c) - masks[0].at(i, c) - change(truths, i, c)));
     }
 
-    /// Takes in a moving frame of the truth itself.
+    /// Adds a moving frame of the truth itself.
     pub(super) fn add_truth(&mut self, frame: u32, frames: u32, truths: [&TrueFrame; 2]) {
         let Some(column) = column_of(frame, frames) else { return };
         self.put(column, 0, &truths[1].visibility.to_gray_levels());
         self.put(column, 1, &change_map(truths, |i, c| change(truths, i, c)));
     }
 
-    /// The strip with what stood at the end and the flicker of each pixel of `judged`.
+    /// Returns the strip with the settled mask and the flicker of each pixel of `judged`.
     pub(super) fn finish(mut self, settled: &Visibility, sums: &FlickerSums, judged: &[bool]) -> RgbImage {
         self.put(STRIP_FRAMES, 0, &settled.to_gray_levels());
         let flicker = magnitude_map(settled.size_px, &sums.by_pixel(), STRIP_FLICKER_RANGE, judged);
@@ -79,12 +79,12 @@ impl Strip {
     }
 }
 
-/// How the truth changed.
+/// Returns the change of the truth.
 fn change(truths: [&TrueFrame; 2], pixel: usize, channel: usize) -> f32 {
     truths[1].visibility.at(pixel, channel) - truths[0].visibility.at(pixel, channel)
 }
 
-/// A signed number of each pixel that is judged in both frames, of the channel where it is largest.
+/// Maps a signed value of each pixel that is judged in both frames, using the channel with the largest magnitude.
 fn change_map(truths: [&TrueFrame; 2], value: impl Fn(usize, usize) -> f32) -> RgbImage {
     let Visibility { size_px, .. } = truths[0].visibility;
     rgb_image(size_px, |i| {
@@ -116,7 +116,7 @@ mod tests {
         let (dark, lit) = (frame(0.0), frame(1.0));
         let mut strip = Strip::new(size_px);
         let mut sums = FlickerSums::new(32);
-        // The truth stands still and the mask lights up.
+        // The truth is constant and the mask lights up.
         strip.add(4, 4, [&dark, &dark], [&dark.visibility, &lit.visibility]);
         sums.add([&dark, &dark], [&dark.visibility, &lit.visibility]);
         let picture = strip.finish(&lit.visibility, &sums, &dark.judged);

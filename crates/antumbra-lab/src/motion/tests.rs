@@ -1,4 +1,4 @@
-//! Motions on built-in scenes, by small pictures.
+//! Tests of motions in built-in scenes, with small images.
 
 use antumbra::TechniqueKind;
 use antumbra_scene::{LoadOptions, load};
@@ -28,7 +28,7 @@ impl Case {
         MovingScene::new(lab, &self.scene, &self.setup, 0, SIZE_PX, &self.options)
     }
 
-    /// The truth, and what each technique does.
+    /// Returns the truth of a motion and the measures of each technique.
     fn run(&self, lab: &LabDevice, motion: Motion, choices: &[TechniqueChoice]) -> (MotionTruth, Vec<MotionFigures>) {
         let mut moving = self.moving(lab).unwrap();
         let truth = moving.trace(motion, 256, &Silent).unwrap();
@@ -78,7 +78,7 @@ fn hard_edges_flicker_more_than_soft_ones() {
     }
 }
 
-/// The state that is kept arrives where a new one is, so that after a motion all is as in a still comparison.
+/// A motion ends at the state of the unmoved scene, as in a still comparison.
 #[test]
 fn a_motion_arrives_at_the_scene_as_it_stands() {
     let Some(lab) = lab_or_skip() else { return };

@@ -1,15 +1,14 @@
 //! Paths of camera, light and caster: their poses in each frame.
 //!
-//! Every motion *arrives*: in its last frame all is where the setup and the scene have it, so that the masks after it are
-//! those of a still comparison, and a caster named for its place stands there at the end. Before, it is a step back for
-//! each frame that is to come:
+//! Every motion *arrives*: in its last frame, everything is at the place that setup and scene give it. So the masks after it are those of
+//! a still comparison, and a caster ends at its own place. Earlier frames are one step further back for each frame to come:
 //!
 //! ```text
 //! frame          0 ........ i ........ N = N + 1 = …
 //! from its place −N·step    −(N − i)·step      0
 //! ```
 //!
-//! along the camera's right, in which motion shows most.
+//! along the camera's right, where motion is most visible.
 
 use antumbra_light::{Light, LightShape};
 use antumbra_scene::{Camera, Setup};
@@ -17,42 +16,41 @@ use glam::{Quat, Vec3};
 
 use super::Motion;
 
-/// How far a sun is taken to be where a step in metres has to become an angle: a lamp above a street, whose shadows then
-/// move as fast.
+/// Assumed distance of a sun when a step in metres is converted to an angle: that of a lamp above a street, whose shadows move as fast.
 const SUN_DISTANCE_M: f32 = 10.0;
 
-/// What moves, and how.
+/// Motion and its parameters.
 #[derive(Clone, Debug)]
 pub(super) struct Trajectory<'a> {
     pub(super) setup: &'a Setup,
-    /// Which of the setup's lights.
+    /// Index of the light in the setup.
     pub(super) light: usize,
     pub(super) motion: Motion,
-    /// Frames that move: N.
+    /// Number of moving frames, N.
     pub(super) frames: u32,
-    /// Metres a frame.
+    /// Metres per frame.
     pub(super) step_m: f32,
-    /// Cameras that are passed in even times before the setup's; where there are none the camera moves sideways.
+    /// Cameras passed at even intervals before the setup's; if empty, the camera moves sideways.
     pub(super) path: &'a [Camera],
 }
 
-/// What there is in one frame.
+/// Camera, light and caster in one frame.
 #[derive(Clone, Debug)]
 pub(super) struct Pose {
     pub(super) camera: Camera,
     pub(super) light: Light,
-    /// Of the caster that moves, from its place, metres in world space.
+    /// Offset of the moving caster from its place, metres in world space.
     pub(super) caster_offset_m: Vec3,
 }
 
 impl Trajectory<'_> {
-    /// What there is in a frame; at rest from frame N on.
+    /// Returns the pose in a frame; at rest from frame N on.
     pub(super) fn at(&self, frame: u32) -> Pose {
         let Setup { camera, lights } = self.setup;
         let to_come = self.frames.saturating_sub(frame);
         let offset_m = -self.step_m * to_come as f32 * right_of(camera);
         let mut pose = Pose { camera: *camera, light: lights[self.light].clone(), caster_offset_m: Vec3::ZERO };
-        // Adding nothing would still turn −0 into 0, and the last pose must be the setup's to the bit.
+        // Adding zero would turn −0 into 0, and the last pose must equal the setup's to the bit.
         if to_come > 0 {
             match self.motion {
                 Motion::Camera if self.path.is_empty() => {
@@ -67,7 +65,7 @@ impl Trajectory<'_> {
         pose
     }
 
-    /// The camera between the two places of the path that it is between.
+    /// Interpolates the camera between two neighbours of the path.
     fn on_path(&self, frame: u32) -> Camera {
         let place = |i: usize| self.path.get(i).copied().unwrap_or(self.setup.camera);
         let along = frame as f32 / self.frames as f32 * self.path.len() as f32;
@@ -83,16 +81,16 @@ impl Trajectory<'_> {
     }
 }
 
-/// The camera's right, unit.
+/// Returns the camera's right as a unit vector.
 fn right_of(camera: &Camera) -> Vec3 {
     (camera.target - camera.eye).cross(camera.up).normalize()
 }
 
-/// Moves a lamp as it is, and turns a sun about the axis across its way.
+/// Translates a lamp, or turns a sun about the axis perpendicular to its movement.
 fn move_light(light: &mut Light, offset_m: Vec3) {
     match &mut light.shape {
         LightShape::Sun { .. } => {
-            // Which way the sun stands from here, and where it goes: the part of the way across that.
+            // Direction to the sun, and the part of the offset perpendicular to it.
             let towards = -light.axis;
             let across = offset_m - towards * towards.dot(offset_m);
             let turn = towards.cross(across).normalize_or_zero();
@@ -164,7 +162,7 @@ mod tests {
         let trajectory = trajectory(&setup, Motion::Light);
         let angle = trajectory.at(3).light.axis.angle_between(setup.lights[0].axis);
         assert!((angle - 0.05).abs() < 1e-4, "{angle}");
-        // Towards the camera's left, from where it comes.
+        // It comes from the camera's left.
         assert!((-trajectory.at(3).light.axis).x < 0.0);
     }
 

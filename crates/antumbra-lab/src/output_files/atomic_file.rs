@@ -1,4 +1,4 @@
-//! A file that is written under another name and takes its own when it is complete.
+//! File that is written under a temporary name and renamed when it is complete.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use super::FileError;
 use super::unfinished::REGISTRY;
 
-/// A file in the making. [`finish`](AtomicFile::finish) puts it in place, over an earlier file of that name; dropped
-/// before that, it leaves nothing.
+/// A file in progress. [`finish`](AtomicFile::finish) moves it into place, over an earlier file of that name.
+/// If dropped before, it leaves nothing.
 #[derive(Debug)]
 pub struct AtomicFile {
-    /// As the user named it, for messages.
+    /// Path as given by the user, for messages.
     named: PathBuf,
     target: PathBuf,
     unfinished: PathBuf,
@@ -19,8 +19,8 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Begins a file that will stand at `path`. Fails at once where it could not: no such folder, read-only, a folder
-    /// or device of that name.
+    /// Begins a file that will be at `path`. Fails immediately if it could not be placed: no such folder,
+    /// read-only, a folder or device of that name.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let target = resolve_target(path)?;
         let (Some(folder), Some(name)) = (target.parent(), target.file_name()) else {
@@ -32,17 +32,17 @@ impl AtomicFile {
         Ok(Self { named: path.to_path_buf(), target, unfinished, writer: Some(BufWriter::new(file)) })
     }
 
-    /// Where to write the content.
+    /// Returns the writer of the content.
     pub fn writer(&mut self) -> &mut BufWriter<File> {
         self.writer.as_mut().expect("the writer is there until finish takes it")
     }
 
-    /// Puts the complete file in place.
+    /// Moves the complete file into place.
     pub fn finish(mut self) -> Result<(), FileError> {
         let writer = self.writer.take().expect("finish runs once");
         let place = || -> io::Result<()> {
             let file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
-            // Without this a power cut could leave the name in place and the content not.
+            // Without this, a power failure could leave the name without the content.
             file.sync_all()?;
             drop(file);
             REGISTRY.finish(&self.unfinished, || fs::rename(&self.unfinished, &self.target))
@@ -58,19 +58,19 @@ impl Drop for AtomicFile {
     }
 }
 
-/// Writes `content` to `path`, whole or not at all.
+/// Writes `content` to `path`, completely or not at all.
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     let mut file = AtomicFile::create(path)?;
     file.writer().write_all(content).map_err(|error| FileError::from_write(path, &error))?;
     file.finish()
 }
 
-/// Whether a file could be written at `path`: for asking before long work, not after it. Leaves nothing.
+/// Checks that a file can be written at `path`, before long work. Leaves no file.
 pub fn check_writable(path: &Path) -> Result<(), FileError> {
     AtomicFile::create(path).map(drop)
 }
 
-/// Follows a symbolic link, which a rename would replace, and refuses what is no regular file.
+/// Resolves a symbolic link, which a rename would replace, and rejects anything but regular files.
 fn resolve_target(path: &Path) -> Result<PathBuf, FileError> {
     let fail = |error| FileError::from_write(path, &error);
     match fs::metadata(path) {

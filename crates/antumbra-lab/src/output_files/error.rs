@@ -1,44 +1,44 @@
-//! Errors of files, in one line: which file, why, and what would be right.
+//! Errors of files in one line: path, reason, and remedy.
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// A file or folder could not be written or read.
+/// Failure to write or read a file or folder.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot {action} {}: {why}; {remedy}", path.display())]
 pub struct FileError {
-    /// What was tried: `write`, `read`, `replace`.
+    /// Attempted action: `write`, `read`, `replace`.
     pub action: &'static str,
-    /// The file as the user named it.
+    /// Path as given by the user.
     pub path: PathBuf,
-    /// What is wrong.
+    /// Reason of the failure.
     pub why: String,
-    /// What would be right.
+    /// Suggested remedy.
     pub remedy: String,
-    /// The arguments or an input file are at fault (a read-only folder, no picture in the file) and not the machine's
-    /// state (a full disk, an interruption): the command line's exit code 2 instead of 1.
+    /// Whether arguments or an input file are at fault (a read-only folder, no image in the file), not the machine's state (a full disk,
+    /// an interruption). The command line then exits with code 2 instead of 1.
     pub is_bad_input: bool,
 }
 
 impl FileError {
-    /// An output path that cannot be used as it is.
+    /// Creates the error of an unusable output path.
     pub(crate) fn bad_path(action: &'static str, path: &Path, why: impl Into<String>, remedy: &str) -> Self {
         Self { action, path: path.to_path_buf(), why: why.into(), remedy: remedy.into(), is_bad_input: true }
     }
 
-    /// An input file that does not hold what it should.
+    /// Creates the error of an input file with wrong content.
     pub(crate) fn bad_content(path: &Path, why: impl Into<String>, remedy: &str) -> Self {
         Self::bad_path("read", path, why, remedy)
     }
 
-    /// What the operating system said while `path` was written.
+    /// Converts an I/O error that occurred while `path` was written.
     pub fn from_write(path: &Path, error: &io::Error) -> Self {
         let folder = match path.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.display().to_string(),
             _ => "the current folder".into(),
         };
         let (why, remedy, is_bad_input) = match error.kind() {
-            // Folders that the system makes up, such as /proc, answer so.
+            // Virtual folders such as /proc return this error.
             ErrorKind::NotFound if path.parent().is_some_and(Path::is_dir) => {
                 (format!("{folder} takes no new files"), "choose a folder that you may write to", true)
             }
@@ -68,7 +68,7 @@ impl FileError {
         Self { action: "write", path: path.to_path_buf(), why, remedy: remedy.into(), is_bad_input }
     }
 
-    /// What the operating system said while `path` was opened or read.
+    /// Converts an I/O error that occurred while `path` was opened or read.
     pub(crate) fn from_read(path: &Path, error: &io::Error) -> Self {
         let (why, remedy) = match error.kind() {
             ErrorKind::NotFound => ("there is no such file".into(), "check the path"),
@@ -80,7 +80,7 @@ impl FileError {
     }
 }
 
-/// Messages of other libraries, on one line.
+/// Returns another library's message as one line.
 pub(crate) fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }

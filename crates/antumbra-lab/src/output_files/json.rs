@@ -1,4 +1,4 @@
-//! JSON of a file.
+//! JSON files.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use serde::de::DeserializeOwned;
 
 use super::FileError;
 
-/// The value that a file holds.
+/// Reads a value from a file.
 ///
 /// # Errors
-/// Where it cannot be read, or holds another kind of value: then `remedy` says what would be right.
+/// If the file cannot be read, or has another kind of value; the message then ends with `remedy`.
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path, remedy: &str) -> Result<T, FileError> {
     let text = std::fs::read_to_string(path).map_err(|error| FileError::from_read(path, &error))?;
     serde_json::from_str(&text).map_err(|error| FileError::bad_content(path, error.to_string(), remedy))

@@ -1,7 +1,7 @@
-//! Files and folders that appear whole or not at all.
+//! Files and folders that appear completely or not at all.
 //!
-//! Everything is built under a temporary name beside its target, so on the same file system, and renamed when it is
-//! complete. A list of what is unfinished lets a Ctrl-C handler leave nothing behind: see [`remove_unfinished`].
+//! Everything is written under a temporary name beside its target, thus on the same file system, and renamed when it is complete. A list
+//! of unfinished files lets a Ctrl-C handler remove them: see [`remove_unfinished`].
 
 mod atomic_file;
 mod error;

@@ -1,13 +1,13 @@
-//! Validation of an output's name: a file, of a known kind.
+//! Validation of output paths: a file name with a known extension.
 
 use std::path::Path;
 
 use super::{FileError, check_writable};
 
-/// Refuses `-`, by which other programs mean their standard output, and which would become a file of that name. `./-` is one.
+/// Rejects `-`, which other programs use for standard output and which would become a file of that name. `./-` is accepted.
 ///
 /// # Errors
-/// Where the path is `-`.
+/// If the path is `-`.
 pub fn check_named(path: &Path) -> Result<(), FileError> {
     if path.as_os_str() == "-" {
         let why = "results are files and folders, and are not written to standard output";
@@ -16,10 +16,10 @@ pub fn check_named(path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Which of some endings, in lower case and without their dot, a name has, in any case. `what` is written to it.
+/// Returns which of `endings` (lower case, without dot) a file name has, in any case. `what` describes the content in messages.
 ///
 /// # Errors
-/// Where it has another one or none, which would leave open what is written, or is `-`.
+/// If the extension is missing or unknown, or the path is `-`.
 pub fn check_ending(path: &Path, what: &str, endings: &[&'static str]) -> Result<&'static str, FileError> {
     check_named(path)?;
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
@@ -34,10 +34,10 @@ pub fn check_ending(path: &Path, what: &str, endings: &[&'static str]) -> Result
     Err(FileError::bad_path("write", path, why, &remedy))
 }
 
-/// Whether JSON can be written there, to be asked before long work. Nothing is left there.
+/// Checks that JSON can be written to a path, before long work. Leaves no file.
 ///
 /// # Errors
-/// Where the name does not end in `.json`, or the place takes no file.
+/// If the name does not end in `.json`, or the path is not writable.
 pub fn check_json_path(path: &Path) -> Result<(), FileError> {
     check_ending(path, "JSON", &["json"])?;
     check_writable(path)

@@ -1,4 +1,4 @@
-//! A folder of results that appears whole, and replaces an earlier one only where that holds nothing but our own files.
+//! Folder of results that appears completely, and replaces an earlier one only if that has no other files than ours.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::unfinished::{REGISTRY, UNFINISHED};
 use super::{FileError, check_named, write_atomically};
 
-/// A hidden list, in every folder that we make, of the files that we put there. What is not on it is not ours.
+/// Name of the hidden list of files that we wrote, in every output folder. Other files are the user's.
 const MANIFEST_NAME: &str = ".antumbra-output.json";
 const MANIFEST_FORMAT: &str = "antumbra-output";
 
@@ -18,27 +18,27 @@ const MANIFEST_FORMAT: &str = "antumbra-output";
 struct Manifest {
     format: String,
     version: u32,
-    /// Relative to the folder, `/` between names.
+    /// Paths relative to the folder, with `/` as separator.
     files: BTreeSet<String>,
 }
 
-/// A folder in the making. Write into [`path`](OutputDir::path), then [`finish`](OutputDir::finish); dropped before
-/// that, it leaves nothing.
+/// A folder in progress. Write into [`path`](OutputDir::path), then [`finish`](OutputDir::finish). If
+/// dropped before that, it leaves nothing.
 #[derive(Debug)]
 pub struct OutputDir {
-    /// As the user named it, for messages.
+    /// Path as given by the user, for messages.
     named: PathBuf,
     target: PathBuf,
     unfinished: PathBuf,
-    /// Whether it is at its target already, and grows there.
+    /// Whether the folder is at its target already, and grows there.
     is_placed: bool,
 }
 
 impl OutputDir {
-    /// Begins a folder that will stand at `path`; folders above it are made when it is finished.
+    /// Begins a folder that will be at `path`. Its parent folders are created when it is finished.
     ///
-    /// Fails at once where it could not stand there: a file of that name, a folder that is not empty and not ours, or
-    /// one of ours in which somebody put files of their own.
+    /// Fails immediately if it could not be placed: a file has that name, or the folder is not empty and not
+    /// ours, or the user added files to ours.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let fail = |error: io::Error| FileError::from_write(path, &error);
         check_named(path)?;
@@ -62,8 +62,8 @@ impl OutputDir {
         Ok(Self { named: path.to_path_buf(), target, unfinished, is_placed: false })
     }
 
-    /// Goes on with a folder that an earlier run left unfinished; begins one where there is none. Files that the earlier run was writing
-    /// when it was killed are removed.
+    /// Continues a folder that an earlier run left unfinished, or begins one if there is none. Removes files that the
+    /// earlier run was writing when it was killed.
     ///
     /// # Errors
     /// As [`create`](OutputDir::create).
@@ -81,11 +81,11 @@ impl OutputDir {
         Ok(Self { unfinished: target.clone(), named, target, is_placed: true })
     }
 
-    /// Moves the folder into place before it is complete, for results that are to be kept whatever happens. `expected` are the files that
-    /// it will have, relative to it: a later run knows them for ours.
+    /// Moves the folder into place before it is complete, so that results are kept if the run is interrupted. `expected` are relative
+    /// paths of its future files, by which a later run recognises them.
     ///
     /// # Errors
-    /// Where it cannot be moved.
+    /// If the folder cannot be moved.
     pub fn place_now(&mut self, expected: impl IntoIterator<Item = String>) -> Result<(), FileError> {
         let fail = |error: io::Error| FileError::from_write(&self.named, &error);
         let there = files_below(self.path()).map_err(fail)?;
@@ -97,12 +97,12 @@ impl OutputDir {
         Ok(())
     }
 
-    /// The folder to fill: a temporary one, until it is placed.
+    /// Returns the folder to fill: a temporary one until it is placed.
     pub fn path(&self) -> &Path {
         if self.is_placed { &self.target } else { &self.unfinished }
     }
 
-    /// Moves the folder into place, instead of an earlier one of ours. Returns where it stands now.
+    /// Moves the folder into place, replacing an earlier one of ours. Returns its final path.
     pub fn finish(self) -> Result<PathBuf, FileError> {
         let files = files_below(self.path()).map_err(|error| FileError::from_write(&self.named, &error))?;
         self.write_manifest(files)?;
@@ -120,12 +120,12 @@ impl OutputDir {
     }
 
     fn move_into_place(&self) -> Result<(), FileError> {
-        // Asked again: the user may have put something there since.
+        // Checked again, because the user may have added files meanwhile.
         check_replaceable(&self.named, &self.target)?;
         REGISTRY.finish(&self.unfinished, || self.place()).map_err(|error| FileError::from_write(&self.named, &error))
     }
 
-    /// Two renames; where the second fails, the first is taken back.
+    /// Moves with two renames; if the second fails, the first is undone.
     fn place(&self) -> io::Result<()> {
         if let Some(above) = self.target.parent() {
             fs::create_dir_all(above)?;
@@ -151,7 +151,7 @@ impl Drop for OutputDir {
     }
 }
 
-/// Whether a finished folder may take the place of what stands at `target`.
+/// Checks that a finished folder may replace `target`.
 fn check_replaceable(named: &Path, target: &Path) -> Result<(), FileError> {
     let refuse = |why: String| {
         let remedy = "name a new or empty folder, or move away what it holds";
@@ -181,13 +181,13 @@ fn check_replaceable(named: &Path, target: &Path) -> Result<(), FileError> {
     }
 }
 
-/// Whether a file is one of ours that was being written when a run was killed.
+/// Returns whether a file is one of ours that a killed run left unfinished.
 fn is_unfinished(file: &str) -> bool {
     let name = file.rsplit('/').next().unwrap_or(file);
     name.starts_with('.') && name.ends_with(UNFINISHED)
 }
 
-/// Everything below `folder` that is not a folder, relative to it, and the empty folders (their names end in `/`).
+/// Returns all files below `folder` and its empty subfolders (names ending in `/`), as relative paths.
 fn files_below(folder: &Path) -> io::Result<BTreeSet<String>> {
     let mut files = BTreeSet::new();
     let mut pending = vec![String::new()];
@@ -237,7 +237,7 @@ mod tests {
         assert_eq!(fs::read_dir(target.parent().unwrap()).unwrap().count(), 1);
     }
 
-    /// A folder that grows in place is ours from its first file on, and a killed run's leftovers are no reason to refuse it.
+    /// A folder that grows in place is ours from its first file on, and may be resumed after a killed run.
     #[test]
     fn a_folder_grows_in_place_and_is_resumed() {
         let root = tempfile::tempdir().unwrap();

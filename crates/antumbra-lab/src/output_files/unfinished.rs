@@ -1,4 +1,4 @@
-//! The list of files and folders that are being built, so that an interruption can remove them.
+//! List of unfinished files and folders, for removal on interruption.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Removes every unfinished file and folder of this process, and refuses to begin or finish more from then on.
+/// Removes every unfinished file and folder of this process, and rejects any further ones.
 ///
-/// For a Ctrl-C handler, which should exit the process next: other threads may still be at work, and what they write
-/// must neither come back nor appear half-made.
+/// For a Ctrl-C handler that exits the process next: other threads may still be working, and their output must
+/// neither reappear nor appear incomplete.
 pub fn remove_unfinished() {
     REGISTRY.close();
 }
 
-/// Ending of the names of what is being built.
+/// Suffix of names of unfinished files.
 pub(super) const UNFINISHED: &str = ".unfinished";
 
 pub(super) static REGISTRY: Registry = Registry::new();
 
-/// Temporary files and folders in the making. Its lock is held whenever one of them is created, renamed or removed, so
-/// that closing it leaves each target either as it was or whole.
+/// Temporary files and folders in progress. Its lock is held whenever one of them is created, renamed or removed, so after closing, each
+/// target is either unchanged or complete.
 pub(super) struct Registry(Mutex<Entries>);
 
 struct Entries {
@@ -34,7 +34,7 @@ impl Registry {
         Self(Mutex::new(Entries { is_closed: false, paths: BTreeSet::new() }))
     }
 
-    /// Creates something under a fresh hidden name in `folder`, which `create` must refuse to overwrite.
+    /// Creates an entry under a new hidden name in `folder`. `create` must not overwrite existing files.
     pub(super) fn begin<T>(
         &self,
         folder: &Path,
@@ -47,7 +47,7 @@ impl Registry {
             let count = COUNTER.fetch_add(1, Ordering::Relaxed);
             let path = folder.join(format!(".{target_name}.{}-{count}{UNFINISHED}", std::process::id()));
             match create(&path) {
-                // Left there by an earlier process of the same id that was killed.
+                // An earlier process with the same id was killed and left this file.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
                 created => {
                     let created = created?;
@@ -58,7 +58,7 @@ impl Registry {
         }
     }
 
-    /// Moves what is finished into place by `place`. Where that fails the entry stays, for its owner to discard.
+    /// Moves a finished entry into place with `place`. If that fails, the entry stays for its owner to discard.
     pub(super) fn finish(&self, path: &Path, place: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
         let mut entries = self.open()?;
         place()?;
@@ -66,7 +66,7 @@ impl Registry {
         Ok(())
     }
 
-    /// Removes an entry and what it names.
+    /// Removes an entry and its file or folder.
     pub(super) fn discard(&self, path: &Path) {
         let mut entries = self.lock();
         if entries.paths.remove(path) {
@@ -87,13 +87,13 @@ impl Registry {
         if entries.is_closed { Err(io::ErrorKind::Interrupted.into()) } else { Ok(entries) }
     }
 
-    /// A panic elsewhere leaves the set usable: every change to it is one step.
+    /// A panic elsewhere leaves the set usable, because every change to it is one step.
     fn lock(&self) -> MutexGuard<'_, Entries> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// Best effort: there is nobody left to tell.
+/// Best effort: errors cannot be reported any more.
 fn remove(path: &Path) {
     let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
 }

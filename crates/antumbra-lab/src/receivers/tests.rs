@@ -1,4 +1,4 @@
-//! The receivers against rays: the same point, the same triangle's normal, the same holes.
+//! Tests of receivers against traced rays: same point, same normal, same holes.
 
 use antumbra_scene::{AlphaMode, Image, Instance, Material, Mesh, Scene, WorldTriangle, Wrap};
 use glam::{DVec3, EulerRot, Mat4, Quat, Vec2};
@@ -10,16 +10,16 @@ use crate::test_support::{camera_at, lab_or_skip, quad};
 
 const SIZE: UVec2 = UVec2::new(96, 64);
 
-/// A ray's meeting with a triangle: distance and barycentric weights of its second and third corner.
+/// Intersection of a ray and a triangle: distance, and barycentric weights of the second and third corner.
 struct Hit {
     t: f64,
     barycentric: Vec2,
     triangle: WorldTriangle,
-    /// The least weight: how far inside the triangle the ray passes.
+    /// Smallest barycentric weight, which measures the distance from the triangle's edges.
     inside: f64,
 }
 
-/// The plane through the triangle, in double precision; `None` where the ray misses or the surface has a hole.
+/// Returns the nearest hit that `hits_at` accepts, in double precision; `None` without one.
 fn first_hit(scene: &Scene, origin: Vec3, direction: Vec3, hits_at: impl Fn(&Hit) -> bool) -> Option<Hit> {
     let (origin, direction) = (origin.as_dvec3(), direction.as_dvec3());
     let meet = |triangle: WorldTriangle| {
@@ -40,7 +40,7 @@ fn base_color(scene: &Scene, hit: &Hit) -> Vec4 {
     scene.base_color_at(mesh, hit.triangle.triangle, hit.barycentric)
 }
 
-/// A floor, a tilted and a mirrored copy of it, and one seen from behind.
+/// Returns a floor, a tilted and a mirrored copy of it, and one seen from behind.
 fn planes() -> Scene {
     let pose = |scale: Vec3, x: f32, z: f32, at: Vec3| {
         let turn = Quat::from_euler(EulerRot::XYZ, x, 0.0, z);
@@ -79,7 +79,7 @@ fn positions_and_normals_are_those_of_the_rays() {
             assert!(position.is_none() && normal[3] == 0.0, "{pixel} sees {position:?}, and no ray does");
             continue;
         };
-        // On an edge between two triangles, either may win.
+        // On an edge between two triangles, either may be shown.
         if hit.inside < 1e-3 {
             continue;
         }
@@ -89,7 +89,7 @@ fn positions_and_normals_are_those_of_the_rays() {
         let [a, b, c] = hit.triangle.positions.map(|p| p.as_dvec3());
         let exact = (b - a).cross(c - a).normalize();
         let exact = if exact.dot(direction.as_dvec3()) > 0.0 { -exact } else { exact };
-        // The surface may be drawn by a part of a pixel beside itself, in both directions, which is more along a ray that grazes it.
+        // The rasteriser may displace the surface by a fraction of a pixel in both directions, which is more along a grazing ray.
         let moved_m = 1.5 * snapped_px * pixel_m_per_m * hit.t as f32 / -exact.dot(direction.as_dvec3()) as f32;
         assert!(got.distance(expected) < 3e-6 * hit.t as f32 + moved_m, "{pixel}: {got} against {expected}");
         let got = Vec4::from(*normal).truncate().as_dvec3();
@@ -99,7 +99,7 @@ fn positions_and_normals_are_those_of_the_rays() {
     assert!(seen.iter().all(|n| *n > 10), "{seen:?}");
 }
 
-/// A fence: opaque bars in a texture with soft edges, tiled twice.
+/// Returns a fence: opaque bars in a texture with soft edges, tiled twice.
 fn fence(alpha: AlphaMode) -> Scene {
     let texel = |i: u32| [255, 255, 255, if i % 8 < 3 { 255 } else { 40 * (i % 5) as u8 }];
     let image = Image { width: 8, height: 8, rgba8: (0..64).map(texel).collect(), wrap: [Wrap::Repeat, Wrap::Mirror] };
@@ -117,7 +117,7 @@ fn fence(alpha: AlphaMode) -> Scene {
     }
 }
 
-/// A mesh whose vertices lie behind another's in common buffers.
+/// A deformed mesh is drawn as if uploaded deformed, also when its vertices follow another mesh's in shared buffers.
 #[test]
 fn what_is_bent_is_drawn_as_if_it_had_been_uploaded_so() {
     let Some(lab) = lab_or_skip() else { return };
@@ -155,7 +155,7 @@ fn masked_holes_are_where_the_definition_has_them() {
         let direction = camera.ray_direction(SIZE, pixel.as_vec2() + 0.5);
         let Some(hit) = first_hit(&scene, camera.eye, direction, |hit| hit.inside > 1e-3) else { continue };
         let alpha = base_color(&scene, &hit).w;
-        // Hardware blends texels with weights of 8 bits.
+        // Hardware filters texels with 8-bit weights.
         if (alpha - cutoff).abs() < 0.01 {
             continue;
         }
@@ -185,7 +185,7 @@ fn translucent_surfaces_are_first_hits_and_the_layer_behind_is_without_them() {
     assert!(distance(Layer::BehindTranslucent) > 4.0);
 }
 
-/// Meshes without texture coordinates, with one for a whole triangle, and with coordinates along a line, as palettes have them.
+/// Base colour is right for meshes without texture coordinates, with constant ones, and with ones along a line, as for palettes.
 #[test]
 fn surfaces_have_their_colour_where_texture_coordinates_stand_still() {
     let Some(lab) = lab_or_skip() else { return };
@@ -207,7 +207,7 @@ fn surfaces_have_their_colour_where_texture_coordinates_stand_still() {
         let middle = (SIZE.y / 2 * SIZE.x + SIZE.x / 2) as usize;
         let stored = read_rgba32u(lab, &images.surface).unwrap()[middle][0].to_le_bytes();
         let color = scene.base_color_at(&scene.meshes[0], 0, Vec2::splat(0.3));
-        // As square roots of linear colours, and opacity.
+        // Stored as square roots of linear colours, with opacity.
         let expected = [color.x.sqrt(), color.y.sqrt(), color.z.sqrt(), 1.0].map(|v| (255.0 * v).round() as u8);
         assert!(stored.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1), "{uvs:?}: {stored:?}, not {expected:?}");
     }
@@ -228,7 +228,7 @@ fn a_size_that_no_texture_can_have_is_an_error() {
     if lab_or_skip().is_none() {
         return;
     }
-    // Its own device: the errors are meant.
+    // A separate device, because this test provokes errors.
     let lab = LabDevice::new(&DeviceOptions::default()).unwrap();
     let uploaded = GpuScene::upload(&lab, &planes());
     for size in [UVec2::ZERO, UVec2::new(lab.device.limits().max_texture_dimension_2d + 1, 1)] {

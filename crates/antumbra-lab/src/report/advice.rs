@@ -1,4 +1,4 @@
-//! An advice as a page, a preset and JSON.
+//! Advice as a page, a preset and JSON.
 
 use std::fmt::Write;
 use std::fs;
@@ -14,8 +14,8 @@ use crate::preset::preset_toml;
 
 const TEMPLATE: &str = include_str!("advice.html");
 
-/// Writes an advice into a folder, each file whole or not at all: `index.html`, `advice.json`, `advice.toml` (the preset) and
-/// `images/`. Gives the preset's path.
+/// Writes an advice into a folder, each file completely or not at all: `index.html`, `advice.json`, `advice.toml` (the preset) and
+/// `images/`. Returns the preset's path.
 pub fn write_advice(dir: &Path, advice: &Advice) -> Result<std::path::PathBuf, FileError> {
     let images = dir.join("images");
     fs::create_dir_all(&images).map_err(|error| FileError::from_write(&images, &error))?;
@@ -30,7 +30,7 @@ pub fn write_advice(dir: &Path, advice: &Advice) -> Result<std::path::PathBuf, F
     Ok(preset)
 }
 
-/// The preset, with where it comes from above it.
+/// Returns the preset's text with its origin as a comment above.
 fn preset_text(advice: &Advice) -> String {
     let line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     format!(
@@ -91,7 +91,7 @@ fn page(advice: &Advice) -> String {
     )
 }
 
-/// What the recommendation costs and errs.
+/// Returns the facts of the recommendation: error, time, memory.
 fn facts(advice: &Advice) -> String {
     let best = &advice.best;
     let budget_ms = advice.budget_ms.get(best.heaviest_view).copied().unwrap_or(0.0);
@@ -129,7 +129,7 @@ fn images() -> String {
     images.map(shot).concat()
 }
 
-/// Lines that create the technique with its settings.
+/// Returns Rust code that creates the technique with its settings.
 fn program(advice: &Advice) -> String {
     let config = &advice.best.config;
     let mut lines = format!("let mut shadow = TechniqueKind::{:?}.create(&gpu)?;", config.kind);
@@ -139,7 +139,7 @@ fn program(advice: &Advice) -> String {
     lines
 }
 
-/// What the times are of: the budget of each view, what `pcf` takes, and of how many frames they are medians.
+/// Describes the times: budget of each view, time of `pcf`, and number of frames of the medians.
 fn times_note(advice: &Advice) -> String {
     let times = |values: &[f64]| values.iter().map(|ms| three_figures(*ms)).collect::<Vec<_>>().join(", ");
     let pcf =
@@ -151,7 +151,7 @@ fn times_note(advice: &Advice) -> String {
     format!("The budget is {} ms{pcf}. The time is a {}.{view}", times(&advice.budget_ms), advice.best.counted())
 }
 
-/// The recommendation, the runners-up, the step up and the front, each once.
+/// Returns the recommendation, the runners-up, the step up and the front, each once.
 fn shown(advice: &Advice) -> Vec<&Candidate> {
     let mut shown: Vec<&Candidate> = Vec::new();
     let all = std::iter::once(&advice.best).chain(&advice.runners_up).chain(&advice.next_step).chain(&advice.front);

@@ -1,11 +1,11 @@
-//! The part of a page that holds its rows against those of another run.
+//! Section of a page that compares its rows with those of another run.
 
 use std::fmt::Write;
 
 use super::html::{escape, three_figures};
 use crate::baseline::{Against, Beside, DIFFERENCES};
 
-/// Ratios of time and differences of error, as a section.
+/// Returns a section with ratios of time and differences of error.
 pub(super) fn baseline_section(against: &Against) -> String {
     let mut html = format!(
         "<section id=\"baseline\" aria-labelledby=\"baseline-title\"><h2 id=\"baseline-title\">Against another run</h2><p \

@@ -1,4 +1,4 @@
-//! The writing of a report's files, all at once or as they are made.
+//! Writing of a report's files, all at once or incrementally.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -19,43 +19,42 @@ use crate::image_io::{encode_png, write_png, write_visibility_exr};
 use crate::output_files::{FileError, write_atomically};
 use crate::picture::{Visibility, rgb_image};
 
-/// Writes a report into the folder `dir`, which must exist: `index.html`, `metrics.json`, `values.js` (visibility for
-/// the page's pixel readout) and `images/`, with every visibility image as PNG and as 32-bit float OpenEXR, the error
-/// maps, and the mask of judged pixels.
+/// Writes a report into the existing folder `dir`: `index.html`, `metrics.json`, `values.js` (visibility for the page's pixel readout) and
+/// `images/`, with every visibility mask as PNG and as 32-bit float OpenEXR, the error maps, and the mask of judged pixels.
 pub fn write_report(dir: &Path, report: &Report) -> Result<(), FileError> {
     ReportWriter::new(dir).finish(report)
 }
 
-/// Writes a report as it grows. After each call `metrics.json` is whole, and the images that it names are there.
+/// Writer of a growing report. After each call, `metrics.json` is complete and the images that it names exist.
 #[derive(Debug)]
 pub struct ReportWriter {
     dir: PathBuf,
-    /// Paths of images that are there.
+    /// Paths of images written so far.
     written: BTreeSet<String>,
 }
 
 impl ReportWriter {
-    /// Into a folder, which must exist.
+    /// Creates a writer for an existing folder.
     pub fn new(dir: &Path) -> Self {
         Self { dir: dir.to_path_buf(), written: BTreeSet::new() }
     }
 
-    /// Into the folder of an earlier report, whose images stay.
+    /// Creates a writer for the folder of an earlier report, whose images are kept.
     pub fn resuming(dir: &Path, earlier: &Report) -> Self {
         let mut writer = Self::new(dir);
         writer.written.extend(image_paths(earlier));
         writer
     }
 
-    /// Goes on in the place to which its folder was moved.
+    /// Continues at the path to which the folder was moved.
     pub fn moved_to(&mut self, dir: &Path) {
         self.dir = dir.to_path_buf();
     }
 
-    /// Writes images that are new, then the numbers.
+    /// Writes new images, then the numbers.
     ///
     /// # Errors
-    /// Where a file cannot be written.
+    /// If a file cannot be written.
     pub fn write(&mut self, report: &Report) -> Result<(), FileError> {
         let images = self.dir.join("images");
         fs::create_dir_all(&images).map_err(|error| FileError::from_write(&images, &error))?;
@@ -68,10 +67,10 @@ impl ReportWriter {
         write_atomically(&self.dir.join(METRICS_PATH), &metrics_json(report))
     }
 
-    /// The same, and the page.
+    /// Writes new images, the numbers and the page.
     ///
     /// # Errors
-    /// Where a file cannot be written.
+    /// If a file cannot be written.
     pub fn finish(&mut self, report: &Report) -> Result<(), FileError> {
         self.write(report)?;
         let uri = |path: &str| -> Result<String, FileError> {
@@ -134,7 +133,7 @@ impl ReportWriter {
     }
 }
 
-/// Paths of the images that a report has.
+/// Returns the paths of all images of a report.
 fn image_paths(report: &Report) -> BTreeSet<String> {
     let mut paths = BTreeSet::from([JUDGED_PATH.to_owned()]);
     let mut add = |stem: &str| paths.extend([shaded_path(stem), visibility_path(stem), visibility_exr_path(stem)]);

@@ -1,34 +1,33 @@
-//! The metrics as a reader meets them: names, meanings, which way is better. Declared once, for tables, tooltips and
-//! the glossary.
+//! Metrics for readers: names, meanings, which direction is better. Declared once, for tables, tooltips and the glossary.
 
 use crate::metrics::Metrics;
 
-/// A metric for readers.
+/// Description of a metric for readers.
 pub(super) struct MetricInfo {
-    /// Its key in `metrics.json`.
+    /// Key in `metrics.json`.
     pub(super) key: &'static str,
-    /// Its name in a table's head.
+    /// Name in a table's head.
     pub(super) label: &'static str,
-    /// What it means, in a sentence or two.
+    /// Meaning, in one or two sentences.
     pub(super) meaning: &'static str,
-    /// Larger is better; else smaller is.
+    /// Whether larger values are better.
     pub(super) higher_is_better: bool,
-    /// Its value.
+    /// Accessor of the value.
     pub(super) value: fn(&Metrics) -> Option<f64>,
 }
 
 impl MetricInfo {
-    /// Which way is better, in words.
+    /// Describes which direction is better.
     pub(super) fn direction(&self) -> &'static str {
         if self.higher_is_better { "higher is better; 1 is perfect" } else { "lower is better; 0 is perfect" }
     }
 
-    /// Whether `a` is better than `b`.
+    /// Returns whether `a` is better than `b`.
     pub(super) fn is_better(&self, a: f64, b: f64) -> bool {
         if self.higher_is_better { a > b } else { a < b }
     }
 
-    /// The best of several rows: its index and value. The first of equals.
+    /// Returns index and value of the best row; the first of equals.
     pub(super) fn best<'a>(&self, rows: impl Iterator<Item = &'a Metrics>) -> Option<(usize, f64)> {
         rows.enumerate().filter_map(|(i, metrics)| Some((i, (self.value)(metrics)?))).fold(None, |best, (i, v)| {
             match best {
@@ -39,7 +38,7 @@ impl MetricInfo {
     }
 }
 
-/// Every metric, in the order of tables.
+/// All metrics, in the order of tables.
 pub(super) const METRICS: [MetricInfo; 13] = [
     MetricInfo {
         key: "rmse",
@@ -142,7 +141,7 @@ pub(super) const METRICS: [MetricInfo; 13] = [
 mod tests {
     use super::*;
 
-    /// Every number that `metrics.json` holds but the counts and the tile's place is explained, under its own name.
+    /// Every number of `metrics.json`, except counts and the tile's position, has a description under its key.
     #[test]
     fn every_metric_is_declared() {
         let all = Metrics {

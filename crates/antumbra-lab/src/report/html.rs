@@ -1,11 +1,11 @@
-//! Text into HTML: escaping, templates, numbers for readers, pictures as data URIs.
+//! HTML generation: escaping, templates, number formats, images as data URIs.
 
 use std::fmt::Write;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-/// Text as the content of an element or of a quoted attribute.
+/// Escapes text for the content of an element or a quoted attribute.
 pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
@@ -21,15 +21,15 @@ pub(super) fn escape(text: &str) -> String {
     escaped
 }
 
-/// JSON as the content of a `<script>` element, which ends at the first `</script` whatever quotes stand around it.
+/// Escapes JSON for a `<script>` element, which ends at the first `</script` even within quotes.
 pub(super) fn json_for_script(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c")
 }
 
-/// Puts values for the `{{names}}` of a template, in one walk: what a value holds is not looked at again.
+/// Replaces the `{{names}}` of a template by values, in one pass: values are not expanded again.
 ///
 /// # Panics
-/// On a name that has no value: templates and values are both ours.
+/// If a name has no value: templates and values are both ours.
 pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
     let mut filled = String::with_capacity(template.len());
     let mut rest = template;
@@ -43,7 +43,7 @@ pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
     filled + rest
 }
 
-/// `1234567` as `1 234 567`, with narrow no-break spaces.
+/// Formats `1234567` as `1 234 567`, with narrow no-break spaces.
 pub(super) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();
@@ -56,7 +56,7 @@ pub(super) fn grouped(count: u64) -> String {
     text
 }
 
-/// A count to three figures: `950`, `23.5 k`, `236 M`, `1.2 G`.
+/// Formats a count to three figures: `950`, `23.5 k`, `236 M`, `1.2 G`.
 pub(super) fn rounded_count(count: f64) -> String {
     match count {
         c if c < 1e3 => format!("{c:.0}"),
@@ -66,7 +66,7 @@ pub(super) fn rounded_count(count: f64) -> String {
     }
 }
 
-/// Three significant figures, no exponent: `0.0123`, `1.23`, `123`.
+/// Formats three significant figures without exponent: `0.0123`, `1.23`, `123`.
 pub(super) fn three_figures(v: f64) -> String {
     if v == 0.0 || !v.is_finite() {
         return format!("{v}");
@@ -75,7 +75,7 @@ pub(super) fn three_figures(v: f64) -> String {
     format!("{v:.decimals$}")
 }
 
-/// Bytes in the unit that keeps them short.
+/// Formats a number of bytes in B, KiB or MiB.
 pub(super) fn bytes(count: u64) -> String {
     const KIB: f64 = 1024.0;
     match count as f64 {
@@ -85,17 +85,17 @@ pub(super) fn bytes(count: u64) -> String {
     }
 }
 
-/// `#rrggbb`.
+/// Formats a colour as `#rrggbb`.
 pub(super) fn css_color([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Bytes of a PNG file as a data URI, from which a script may read pixels even where the page was opened from disk.
+/// Returns a PNG file as a data URI, whose pixels a script may read even if the page was opened from disk.
 pub(super) fn png_data_uri(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
-/// A list of lines as `<li>`s in a `<ul>` of a class; nothing where there are none.
+/// Returns lines as a `<ul>` of a class; empty if there are none.
 pub(super) fn list(class: &str, lines: &[String]) -> String {
     if lines.is_empty() {
         return String::new();

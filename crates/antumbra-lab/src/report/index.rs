@@ -1,4 +1,4 @@
-//! The page above several reports: a picture of each scene, and who did best where.
+//! Index page of several reports: an image of each scene, and the best techniques.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,19 +14,19 @@ use crate::stopwatch::FrameCount;
 
 const TEMPLATE: &str = include_str!("index.html");
 
-/// Writes `index.html` into `dir`, which holds the folder of each entry, and `summary.md` beside it: what each technique
-/// costs and errs over all scenes.
+/// Writes `index.html` into `dir`, which contains the folder of each entry, and `summary.md`: time and
+/// error of each technique over all scenes.
 pub fn write_index(dir: &Path, entries: &[IndexEntry]) -> Result<(), FileError> {
     write_atomically(&dir.join("summary.md"), summary_markdown(entries).as_bytes())?;
     write_atomically(&dir.join("index.html"), index_html(entries).as_bytes())
 }
 
-/// A technique's geometric means over scenes, on each of which it was measured.
+/// Geometric means of a technique over scenes, all of which it was measured on.
 struct OverAll<'a> {
     technique: &'a str,
     rmse: f64,
     ms: f64,
-    /// The fewest frames that one of its times is the median of, and the fewest that warmed up.
+    /// Smallest numbers of timed and of warm-up frames over the scenes.
     count: FrameCount,
 }
 
@@ -113,7 +113,7 @@ fn index_html(entries: &[IndexEntry]) -> String {
     )
 }
 
-/// Of all entries, in the order in which they first come.
+/// Returns the technique names of all entries, in order of first appearance.
 fn technique_names(entries: &[IndexEntry]) -> Vec<&str> {
     let mut names = Vec::new();
     for technique in entries.iter().flat_map(|entry| &entry.techniques) {
@@ -128,7 +128,7 @@ fn report_link(entry: &IndexEntry) -> String {
     format!("{}/index.html", escape(&entry.folder))
 }
 
-/// Slider between hard shadows and the truth on the first scene; between the largest error and the truth where nothing is called `hard`.
+/// Returns a slider between `hard` (or else the technique with the largest error) and the truth, on the first scene.
 fn hard_against_soft(entries: &[IndexEntry]) -> String {
     let Some(entry) = entries.first() else { return String::new() };
     let error = |technique: &&IndexTechnique| technique.metrics.rmse.unwrap_or(0.0);
@@ -148,7 +148,7 @@ fn hard_against_soft(entries: &[IndexEntry]) -> String {
     )
 }
 
-/// Class of a grid of cards: narrower ones where the wide ones would leave one alone in the last row.
+/// Returns the class of a grid of cards: narrow ones if wide ones would leave a single card in the last row.
 fn columns(cards: usize) -> &'static str {
     if cards % 3 == 1 && cards % 4 != 1 { "cards narrow" } else { "cards" }
 }
@@ -209,7 +209,7 @@ fn errors_table(entries: &[IndexEntry], techniques: &[&str]) -> String {
     html + "</tbody></table></div>"
 }
 
-/// Error against time over all scenes: geometric means of those techniques that were measured on each.
+/// Plots error against time over all scenes: geometric means of the techniques measured on every scene.
 fn front_of_all(entries: &[IndexEntry], techniques: &[&str]) -> String {
     let points = points_of(&over_all(entries, techniques));
     let axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };

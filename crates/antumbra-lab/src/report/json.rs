@@ -1,8 +1,8 @@
-//! `metrics.json`: everything that a report measured, for other programs.
+//! `metrics.json`: all measurements of a report, for other programs.
 //!
-//! The keys are a contract; [`VERSION`] rises when one changes its meaning or goes. Times are milliseconds but for the
-//! `seconds` of the reference and of rows, and for limits; what was not measured is null. Each row names the adapter beside its times, of how many frames they are the
-//! medians, and after how many of warm-up.
+//! The keys are stable: [`VERSION`] rises when one changes its meaning or is removed. Times are milliseconds, except limits and the
+//! `seconds` of the reference and of rows. Values that were not measured are null. Each row has the adapter of its times and the
+//! numbers of timed and warm-up frames.
 
 use serde_json::{Map, Number, Value, json};
 
@@ -12,10 +12,10 @@ use super::paths::{
 };
 use crate::motion::MotionFigures;
 
-/// Of the schema.
+/// Version of the schema.
 pub(super) const VERSION: u32 = 1;
 
-/// The file's content, indented.
+/// Returns the file's content, indented.
 pub(super) fn metrics_json(report: &Report) -> Vec<u8> {
     let reference = &report.reference;
     let size_px = reference.visibility.size_px;
@@ -72,7 +72,7 @@ fn motion_json(info: &MotionInfo) -> Value {
     });
     json!({
         "frames": info.frames,
-        // By way of text, so that 0.15 stays 0.15 and does not become its double-precision neighbour.
+        // Converted through text, so that 0.15 stays 0.15 and does not become its double-precision neighbour.
         "step_m": info.step_m.to_string().parse::<Number>().ok(),
         "samples": info.samples,
         "motions": truths.collect::<Map<_, _>>(),

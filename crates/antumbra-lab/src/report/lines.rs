@@ -1,21 +1,21 @@
-//! Errors over a number as an inline SVG, a line for each series.
+//! Line plot of errors over a number, as inline SVG.
 
 use std::fmt::Write;
 
 use super::html::{escape, three_figures};
 use super::scatter::{Axes, Point, Scale, draw_axes, draw_grid, name_points};
 
-/// A series.
+/// A series of the plot.
 pub(super) struct Line {
     pub(super) name: String,
-    /// The number, above zero, and the error.
+    /// Number (above zero) and error of each point.
     pub(super) points: Vec<(f64, f64)>,
 }
 
-/// Strokes that lines take in turn.
+/// Stroke styles, used in turn.
 const STROKES: [&str; 4] = ["solid", "dashed", "dotted", "mixed"];
 
-/// The lines over a grid of logarithmic scales, each with its name at its last point. `None` without a line of two points.
+/// Plots lines on logarithmic scales, each named at its last point. `None` unless a line has two points.
 pub(super) fn lines_svg(lines: &[Line], axes: Axes) -> Option<String> {
     let drawable = |(at, error): &(f64, f64)| *at > 0.0 && at.is_finite() && error.is_finite();
     let points_of = |line: &Line| -> Vec<Point> {

@@ -1,8 +1,8 @@
-//! A comparison as a folder: a page that opens from disk, the numbers as JSON, the pictures.
+//! Report of a comparison as a folder: a page that opens from disk, the numbers as JSON, the images.
 //!
-//! [`Report`] is what there is to say; [`write_report`] says it. The page is one file with its style and script inside
-//! (`page.html`, `style.css`, `page.js` and `copy.js` here), the pictures stand beside it, and nothing is fetched from a network.
-//! [`write_index`] is the page above several of them.
+//! [`Report`] is the content; [`write_report`] writes it. The page is one file including style and script (`page.html`,
+//! `style.css`, `page.js` and `copy.js` here). Its images are beside it, and nothing is fetched from a network. [`write_index`]
+//! writes the index page of several reports.
 
 mod advice;
 mod baseline;

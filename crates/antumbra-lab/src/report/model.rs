@@ -1,4 +1,4 @@
-//! Content of a report as plain data, which a comparison fills in.
+//! Content of a report as plain data, filled in by a comparison.
 
 use image::RgbImage;
 use serde::{Deserialize, Serialize};
@@ -14,44 +14,44 @@ use crate::picture::Visibility;
 use crate::scene_facts::SceneFacts;
 use crate::stopwatch::FrameCount;
 
-/// One scene, one camera, one light, held by several techniques against the traced truth.
+/// Comparison of several techniques with the traced ground truth, for one scene, camera and light.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// What was rendered.
+    /// Rendered scene.
     pub scene: SceneInfo,
-    /// What the scene is like for shadows; `None` where no truth was traced.
+    /// Scene facts; `None` without traced truth.
     pub facts: Option<SceneFacts>,
-    /// What it was rendered on.
+    /// Adapter that rendered it.
     pub adapter: AdapterInfo,
-    /// The commit of Antumbra that rendered it, or its version where the commit is unknown.
+    /// Commit of Antumbra, or its version if the commit is unknown.
     pub commit: String,
-    /// When, as [`utc_now`](super::utc_now) writes it.
+    /// Date and time, as [`utc_now`](super::utc_now) writes it.
     pub date: String,
-    /// The command line that makes this report again.
+    /// Command line that reproduces this report.
     pub command: String,
-    /// The truth.
+    /// Ground truth.
     pub reference: Reference,
-    /// The techniques, in the order to show them.
+    /// Techniques in the order of display.
     pub rows: Vec<Row>,
-    /// How things moved, where they did.
+    /// Motions, if measured.
     pub motion: Option<MotionInfo>,
-    /// What it depends on beside program and adapter: a report is resumed only with the same.
+    /// Settings that the report depends on besides program and adapter. Only a report with equal settings is resumed.
     pub settings: Value,
-    /// Names of what there was no time for, as `pcss` or `pcss, camera in motion`.
+    /// Names of missing measurements, as `pcss` or `pcss, camera in motion`.
     pub missing: Vec<String>,
-    /// The same rows of another run, where one was given.
+    /// Comparison with another run, if one was given.
     pub baseline: Option<Against>,
-    /// What the reader should know of the whole comparison, one line each: repairs of the loader, limits of this run.
+    /// Warnings about the whole comparison, one line each: repairs by the loader, limits of this run.
     pub warnings: Vec<String>,
 }
 
 impl Report {
-    /// A name for each row's files and anchor: the technique's, numbered where it comes more than once.
+    /// Returns each row's name in files and anchors: that of the technique, with repeated ones numbered.
     pub(super) fn stems(&self) -> Vec<String> {
         stems_of(self.rows.iter().map(|row| row.technique.as_str()))
     }
 
-    /// Figures of its measured rows, to hold beside another run's.
+    /// Returns the figures of the measured rows, for comparison with another run.
     pub fn figures(&self) -> Vec<Figures> {
         let rows = self.rows.iter().zip(self.names());
         let figures = rows.filter_map(|(row, name)| match &row.outcome {
@@ -65,181 +65,181 @@ impl Report {
         figures.collect()
     }
 
-    /// A name for each row: the technique's, numbered where it comes more than once: `pcss`, `pcss-2`.
+    /// Returns each row's name: that of the technique, with repeated ones numbered: `pcss`, `pcss-2`.
     pub fn names(&self) -> Vec<String> {
         numbered(self.rows.iter().map(|row| row.technique.clone()), "-")
     }
 }
 
-/// A scene, as far as a report names it.
+/// Description of a scene in a report.
 #[derive(Clone, Debug, Default)]
 pub struct SceneInfo {
-    /// Its name, e.g. `builtin:overlap` or a file's stem.
+    /// Name, e.g. `builtin:overlap` or a file's stem.
     pub name: String,
-    /// One sentence on what it is or shows; may be empty.
+    /// Summary in one sentence; may be empty.
     pub summary: String,
-    /// Triangles of all instances.
+    /// Number of triangles of all instances.
     pub triangles: u64,
-    /// The setup file (TOML) that reproduces camera and lights.
+    /// Setup file (TOML) that reproduces camera and lights.
     pub setup_toml: String,
 }
 
-/// The traced truth, its picture, and the pixels over which techniques are judged.
+/// Traced ground truth, its image, and the judged pixels.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// True visibility; its size is that of all images of the report.
+    /// True visibility; all images of the report have its size.
     pub visibility: Visibility,
     /// The scene shaded with true visibility, 8-bit sRGB.
     pub shaded: RgbImage,
-    /// Pixels with geometry that faces the light's centre, `width · height`.
+    /// Whether each pixel has geometry that faces the light's centre, `width · height`.
     pub judged: Vec<bool>,
-    /// How it was traced.
+    /// Cost of tracing.
     pub info: ReferenceInfo,
 }
 
-/// How the truth was traced.
+/// Cost of tracing the ground truth.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct ReferenceInfo {
-    /// Light points for each pixel.
+    /// Light samples per pixel.
     pub samples: u32,
-    /// Occlusion rays traced.
+    /// Number of occlusion rays.
     pub rays: u64,
-    /// Time that tracing took, seconds.
+    /// Duration of tracing, seconds.
     pub seconds: f64,
 }
 
 impl ReferenceInfo {
-    /// Occlusion rays a second, where the time was measured.
+    /// Returns the occlusion rays per second, if the time was measured.
     pub fn rays_per_second(&self) -> Option<f64> {
         (self.seconds > 0.0).then(|| self.rays as f64 / self.seconds)
     }
 }
 
-/// Motions in which techniques were looked at.
+/// Motions in which techniques were measured.
 #[derive(Clone, Debug)]
 pub struct MotionInfo {
-    /// Frames that moved.
+    /// Number of moving frames.
     pub frames: u32,
-    /// Metres a frame.
+    /// Metres per frame.
     pub step_m: f32,
-    /// Light points for each pixel of each frame's truth.
+    /// Light samples per pixel of each frame's truth.
     pub samples: u32,
-    /// The truth of each motion, in the order to show them.
+    /// Truth of each motion, in the order of display.
     pub truths: Vec<TrueMotion>,
 }
 
-/// A technique with its parameters, and what became of it.
+/// A technique with its parameters and outcome.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub technique: String,
-    /// Its name for readers, e.g. `Percentage-closer soft shadows`.
+    /// Title, e.g. `Percentage-closer soft shadows`.
     pub title: String,
-    /// Every parameter by name, defaults included.
+    /// All parameters by name, including defaults.
     pub parameters: Map<String, Value>,
-    /// The command line that renders this row again.
+    /// Command line that renders this row.
     pub command: String,
-    /// What was measured, or why nothing was.
+    /// Measurement, or the reason for its absence.
     pub outcome: Outcome,
-    /// What a reader should know, one line each: overflow, a fallback that was taken.
+    /// Warnings, one line each: overflow, a fallback.
     pub warnings: Vec<String>,
     /// Remarks, one line each.
     pub notes: Vec<String>,
-    /// It was not measured yet.
+    /// Whether it is not measured yet.
     pub is_missing: bool,
-    /// The limit of a technique, seconds, where it cut this short.
+    /// Time limit that cut the measurement short, seconds.
     pub cut_short_s: Option<f64>,
-    /// Time that it took in all, seconds.
+    /// Total duration of the measurement, seconds.
     pub seconds: f64,
 }
 
-/// What became of a row.
+/// Outcome of a row.
 #[derive(Clone, Debug)]
 pub enum Outcome {
-    /// It ran.
+    /// The technique ran.
     Measured(Box<Measurement>),
-    /// It did not, for the reason given.
+    /// The technique did not run, for the given reason.
     Skipped(String),
 }
 
-/// What a technique made, and what that took.
+/// Results of a technique.
 #[derive(Clone, Debug)]
 pub struct Measurement {
-    /// Its visibility.
+    /// Visibility mask.
     pub visibility: Visibility,
-    /// The scene shaded with it, 8-bit sRGB.
+    /// Scene shaded with the mask, 8-bit sRGB.
     pub shaded: RgbImage,
-    /// How far from the truth, `flip` included.
+    /// Errors, `flip` included.
     pub metrics: Metrics,
-    /// The truth that it was held against, where that is not the report's.
+    /// Reference of this technique if it differs from the report's.
     pub own_truth: Option<Visibility>,
-    /// GPU times, in the order of execution.
+    /// GPU times of the passes, in the order of execution.
     pub passes: Vec<PassTime>,
-    /// Time of the whole frame's shadows, milliseconds; `None` where the adapter has no timestamps.
+    /// Time of the whole frame's shadows, milliseconds; `None` if the adapter has no timestamps.
     pub total_ms: Option<f64>,
-    /// How many frames all of these times are the median of, and after how many.
+    /// Number of timed and warm-up frames of all these times.
     pub count: FrameCount,
     /// GPU memory that the technique holds, bytes.
     pub memory_bytes: Option<u64>,
-    /// Texels along a side of each map whose size is `auto`; none where sizes are given.
+    /// Side of each map whose size is `auto`, texels; empty if sizes are given.
     pub auto_map_sizes: Vec<u32>,
-    /// What it did in motion.
+    /// Results in motion.
     pub motions: Vec<MotionFigures>,
 }
 
 /// GPU time of one pass over several frames.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct PassTime {
-    /// The pass's label.
+    /// Label of the pass.
     pub name: String,
-    /// Median, milliseconds.
+    /// Median time, milliseconds.
     pub median_ms: f64,
-    /// 10th percentile, milliseconds.
+    /// 10th percentile of the time, milliseconds.
     pub p10_ms: Option<f64>,
-    /// 90th percentile, milliseconds.
+    /// 90th percentile of the time, milliseconds.
     pub p90_ms: Option<f64>,
-    /// Bytes that the pass writes or holds, where it says so.
+    /// Bytes that the pass writes or holds, if known.
     pub bytes: Option<u64>,
 }
 
-/// A report among several, for [`write_index`](super::write_index).
+/// Entry of a report in [`write_index`](super::write_index).
 #[derive(Clone, Debug, Default)]
 pub struct IndexEntry {
-    /// The folder of the report, relative to the index, e.g. `overlap`.
+    /// Folder of the report, relative to the index, e.g. `overlap`.
     pub folder: String,
-    /// The scene's name.
+    /// Name of the scene.
     pub scene: String,
-    /// One sentence on the scene; may be empty.
+    /// Summary of the scene in one sentence; may be empty.
     pub summary: String,
-    /// Triangles of all instances.
+    /// Number of triangles of all instances.
     pub triangles: u64,
-    /// The adapter whose times these are.
+    /// Adapter on which times were measured.
     pub adapter: AdapterInfo,
-    /// The commit of Antumbra that rendered it.
+    /// Commit of Antumbra that rendered it.
     pub commit: String,
-    /// When.
+    /// Date and time.
     pub date: String,
-    /// Techniques that were measured, with their metrics and times, in the report's order.
+    /// Measured techniques with their metrics and times, in the report's order.
     pub techniques: Vec<IndexTechnique>,
 }
 
 /// A technique in an [`IndexEntry`].
 #[derive(Clone, Debug, Default)]
 pub struct IndexTechnique {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub technique: String,
-    /// Begin of its images' names.
+    /// Prefix of its images' names.
     pub stem: String,
-    /// How far from the truth.
+    /// Errors.
     pub metrics: Metrics,
     /// Time of the whole frame's shadows, milliseconds.
     pub total_ms: Option<f64>,
-    /// Of how many frames it is the median, and after how many.
+    /// Number of timed and warm-up frames of the median.
     pub count: FrameCount,
 }
 
 impl IndexEntry {
-    /// The entry of a report that was written into `folder`, relative to the index.
+    /// Creates the entry of a report in `folder`, relative to the index.
     pub fn of(folder: &str, report: &Report) -> Self {
         let rows = report.rows.iter().zip(report.stems());
         let techniques = rows.filter_map(|(row, stem)| match &row.outcome {

@@ -1,4 +1,4 @@
-//! The page's section on motion: a table of flicker and lag, and a strip of frames for each technique.
+//! Motion section of the page: a table of flicker and lag, and a strip of frames per technique.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use super::paths::{REFERENCE_STEM, motion_path};
 use crate::motion::flicker::SETTLED;
 use crate::motion::{Motion, MotionFigures, STRIP_FLICKER_RANGE, TrueMotion};
 
-/// The section, or nothing where nothing moved.
+/// Returns the section, or nothing without motion.
 pub(super) fn motion_section(report: &Report) -> String {
     let Some(info) = &report.motion else { return String::new() };
     format!(
@@ -51,7 +51,7 @@ fn name_of(truth: &TrueMotion) -> String {
     }
 }
 
-/// The lag as it reads: a number, or that there was no end to it.
+/// Formats the lag: a number, or a lower bound if it did not settle.
 fn lag_text(figures: &MotionFigures) -> String {
     match figures.lag_frames {
         Some(frames) => frames.to_string(),
@@ -60,7 +60,7 @@ fn lag_text(figures: &MotionFigures) -> String {
     }
 }
 
-/// Measured rows: name, stem, what they did.
+/// Returns name, stem and motion results of the measured rows.
 fn measured(report: &Report) -> impl Iterator<Item = (String, String, &[MotionFigures])> {
     report.rows.iter().zip(report.stems()).filter_map(|(row, stem)| match &row.outcome {
         Outcome::Measured(measured) => Some((row.technique.clone(), stem, measured.motions.as_slice())),
@@ -112,7 +112,7 @@ fn table(report: &Report, info: &MotionInfo) -> String {
     html + "</tbody></table></div>"
 }
 
-/// The strips of one motion: the truth's, then every technique's.
+/// Returns the strips of one motion: the truth's, then every technique's.
 fn strips(report: &Report, truth: &TrueMotion) -> String {
     let mut html = format!(
         "<h3>The {} moves</h3><p class=\"note\">Above: masks, evenly over the motion, and the settled one. Below: how each \

@@ -1,4 +1,4 @@
-//! The page of a report: fragments of HTML around the data, put into `page.html`.
+//! Page of a report: fragments of HTML for the data, inserted into `page.html`.
 
 mod gallery;
 mod plots;
@@ -24,12 +24,12 @@ const TEMPLATE: &str = include_str!("page.html");
 const SCRIPT: &str = concat!(include_str!("page.js"), include_str!("copy.js"));
 pub(super) const STYLE: &str = include_str!("style.css");
 
-/// An annular eclipse: the ring of light that stands around an occluder seen from the antumbra.
+/// Icon of an annular eclipse: the ring of light around an occluder seen from the antumbra.
 pub(super) const ICON: &str = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 32 32'%3E\
     %3Ccircle cx='16' cy='16' r='14' fill='%23f0b35c'/%3E\
     %3Ccircle cx='17' cy='15.4' r='10.6' fill='%231c1e22'/%3E%3C/svg%3E";
 
-/// A measured row with its number among all rows and its name in files and anchors.
+/// A measured row with its index among all rows and its name in files and anchors.
 struct Measured<'a> {
     row_number: usize,
     row: &'a Row,
@@ -38,13 +38,13 @@ struct Measured<'a> {
 }
 
 impl Measured<'_> {
-    /// The technique's name as it was given, or its stem where that had to be numbered.
+    /// Returns the technique's name, or its stem if that is numbered.
     fn name(&self) -> &str {
         if self.stem.len() == self.row.technique.len() { &self.row.technique } else { &self.stem }
     }
 }
 
-/// The whole page.
+/// Returns the whole page.
 pub(super) fn page_html(report: &Report) -> String {
     let rows = measured_rows(report);
     let size_px = report.reference.visibility.size_px;
@@ -92,7 +92,7 @@ pub(super) fn footer(commit: &str, date: &str) -> String {
     )
 }
 
-/// What is said wherever times of a software adapter stand.
+/// Returns the notice that accompanies times of a software renderer.
 pub(super) fn software_notice(adapter: &str) -> String {
     format!(
         "<p class=\"notice\"><b>Times are from a software renderer</b> ({} runs on the CPU). They show roughly what \
@@ -101,7 +101,7 @@ pub(super) fn software_notice(adapter: &str) -> String {
     )
 }
 
-/// A metric's value for tables.
+/// Formats a metric's value for tables.
 pub(super) fn metric_text(v: f64) -> String {
     format!("{v:.4}")
 }
@@ -140,13 +140,13 @@ fn facts(report: &Report) -> String {
     html + "</dl>"
 }
 
-/// What the scene is like, in the words of the command line.
+/// Returns the scene facts in the words of the command line.
 fn scene_facts(facts: &SceneFacts) -> String {
     let lines: String = facts.lines().iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
     format!("<ul class=\"note\" aria-label=\"What the scene is like\">{lines}</ul>")
 }
 
-/// Rays, and time and rate where they were measured.
+/// Describes the number of rays, with time and rate if measured.
 fn tracing_text(info: ReferenceInfo) -> String {
     let rays = format!("{} rays", rounded_count(info.rays as f64));
     match info.rays_per_second() {
@@ -203,7 +203,7 @@ fn judged_note(report: &Report) -> String {
     )
 }
 
-/// Text in a box with a button that copies it.
+/// Returns text in a box with a button that copies it.
 pub(super) fn copyable(text: &str) -> String {
     format!(
         "<div class=\"copy\"><pre><code>{}</code></pre><button type=\"button\" class=\"only-js\">Copy</button></div>",
@@ -236,7 +236,7 @@ pub(super) fn glossary() -> String {
     html + "</dl>"
 }
 
-/// What the script needs: the images, and which of them to show first.
+/// Returns the data of the script: the images and their groups.
 fn data(report: &Report, rows: &[Measured]) -> Value {
     let size_px = report.reference.visibility.size_px;
     let image = |group: usize, kind: &str, src: String| json!({ "group": group, "kind": kind, "src": src });

@@ -6,7 +6,7 @@ use crate::motion::Motion;
 
 pub(super) const REFERENCE_STEM: &str = "reference";
 pub(super) const JUDGED_PATH: &str = "images/judged.png";
-/// The numbers.
+/// Path of the numbers.
 pub const METRICS_PATH: &str = "metrics.json";
 pub(super) const VALUES_PATH: &str = "values.js";
 pub(super) const PAGE_PATH: &str = "index.html";
@@ -27,12 +27,12 @@ pub(super) fn error_path(stem: &str) -> String {
     format!("images/{stem}_error.png")
 }
 
-/// The strip of a motion.
+/// Path of a motion's strip.
 pub(super) fn motion_path(stem: &str, motion: Motion) -> String {
     format!("images/{stem}_motion_{}.png", motion.name())
 }
 
-/// Every file that a report of these techniques and motions may have, relative to its folder.
+/// Returns every file that a report of these techniques and motions may have, relative to its folder.
 pub fn report_paths(techniques: &[String], motions: &[Motion]) -> Vec<String> {
     let mut paths = [METRICS_PATH, VALUES_PATH, PAGE_PATH, JUDGED_PATH].map(str::to_owned).to_vec();
     let stems = stems_of(techniques.iter().map(String::as_str));
@@ -43,7 +43,7 @@ pub fn report_paths(techniques: &[String], motions: &[Motion]) -> Vec<String> {
     paths
 }
 
-/// A name for each technique's files and anchor: its own, numbered where it comes more than once.
+/// Returns a name per technique for files and anchors: its own, with repeated ones numbered.
 pub(super) fn stems_of<'a>(techniques: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut used = BTreeSet::from([REFERENCE_STEM.to_owned()]);
     let mut stems = Vec::new();

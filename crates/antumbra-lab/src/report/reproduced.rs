@@ -1,4 +1,4 @@
-//! The papers' tables and figures as pages: one for each paper, and one above them.
+//! Pages of the papers' tables and figures: one per paper, and an index.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -13,24 +13,24 @@ use crate::reproduce::{
     Verdict, VerdictCount,
 };
 
-/// How it was reproduced.
+/// Origin of a reproduction.
 #[derive(Clone, Debug)]
 pub struct ReproductionInfo {
-    /// On what.
+    /// Adapter on which it was measured.
     pub adapter: AdapterInfo,
-    /// Its memory bandwidth, GB/s, where somebody said it.
+    /// Memory bandwidth of the adapter, GB/s; `None` if not given.
     pub bandwidth_gb_s: Option<f64>,
-    /// The commit of Antumbra.
+    /// Commit of Antumbra.
     pub commit: String,
-    /// When, as [`utc_now`](super::utc_now) writes it.
+    /// Date and time, as [`utc_now`](super::utc_now) writes it.
     pub date: String,
-    /// What stands after an exhibit's name in the command that runs it again.
+    /// Arguments that follow an exhibit's name in the command that reproduces it.
     pub arguments: String,
 }
 
 type Results<'a> = [(&'static Paper, Vec<ExhibitResult>)];
 
-/// Writes `index.html` and a page for each paper into `dir`, which holds the pictures, and `verdicts.md` beside them.
+/// Writes `index.html`, a page per paper and `verdicts.md` into `dir`, which contains the images.
 pub fn write_reproduction(dir: &Path, results: &Results<'_>, info: &ReproductionInfo) -> Result<(), FileError> {
     for (paper, exhibits) in results {
         let path = dir.join(format!("{}.html", paper.id));
@@ -106,7 +106,7 @@ fn index_page(results: &Results<'_>, info: &ReproductionInfo) -> String {
     html + &foot(info)
 }
 
-/// `As published 3 claims hold, …; ours …`.
+/// Returns `As published 3 claims hold, …; ours …`.
 fn counts(exhibits: &[ExhibitResult]) -> String {
     let [published, ours] = [Form::Published, Form::Ours].map(|form| VerdictCount::of(exhibits, form));
     format!("As published {published}; ours {ours}")
@@ -137,7 +137,7 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
     html + &foot(info)
 }
 
-/// How times are to be compared.
+/// Explains how to compare times.
 fn bandwidths(paper: &Paper, info: &ReproductionInfo) -> String {
     let there = format!(
         "The paper's times are of an {}, which moves {} GB/s; its frames a second are of whole frames, and ours \
@@ -205,7 +205,7 @@ fn capitalised(form: Form) -> &'static str {
     }
 }
 
-/// ` (at 256 × 144)`.
+/// Returns ` (at 256 × 144)`; empty without sizes.
 fn at_size(judged: &Judged) -> String {
     if judged.sizes.is_empty() { String::new() } else { format!(" (at {})", judged.sizes) }
 }
@@ -253,7 +253,7 @@ fn table(result: &ExhibitResult, info: &ReproductionInfo) -> String {
     html + "</tbody></table></div>"
 }
 
-/// The size at which a row is drawn where nothing makes it smaller: the paper's, where it says one.
+/// Returns the full size of a row if it is drawn smaller here.
 fn full_size((width, height): (u32, u32), here: [u32; 2]) -> String {
     if [width, height] == here { String::new() } else { format!("<br><small>on a GPU: {width} × {height}</small>") }
 }
@@ -266,10 +266,10 @@ fn here(measured: &Measured, row: &crate::reproduce::Row) -> String {
     html
 }
 
-/// Ours over the paper's, and the same with both bandwidths taken out.
+/// Returns the ratio of our time to the paper's, and the same at equal memory bandwidth.
 fn ratio(paper: &Paper, row: &crate::reproduce::Row, measured: &Measured, info: &ReproductionInfo) -> String {
     let (Some(there), Some(here)) = (row.measure.paper_ms(), measured.ms) else { return "–".to_owned() };
-    // A paper's seconds are of its graphics card: those of a processor say nothing beside them.
+    // A paper's times are of its graphics card, so times of a CPU are not comparable.
     if info.adapter.is_software || matches!(row.measure, Measure::SceneMs { .. }) {
         return "–".to_owned();
     }
@@ -462,7 +462,7 @@ mod tests {
             assert!(!html.contains(raw), "{raw}");
         }
         assert!(page(None, false).contains("--bandwidth") && !page(None, false).contains("with bandwidths"));
-        // A processor's milliseconds stand beside no graphics card's.
+        // Times of a CPU are not compared with those of a graphics card.
         assert!(!page(Some(50.0), true).contains("with bandwidths"));
     }
 }

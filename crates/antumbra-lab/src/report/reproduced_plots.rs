@@ -1,10 +1,10 @@
-//! Plots of an exhibit's rows: error over time, and error over a number that rows differ in.
+//! Plots of an exhibit's rows: error over time, and error over a parameter in which rows differ.
 
 use super::lines::{Line, lines_svg};
 use super::scatter::{Axes, Point, scatter_svg};
 use crate::reproduce::{ExhibitResult, Form, Measured, Outcome, RowResult};
 
-/// Those that the rows allow, as HTML.
+/// Returns the possible plots as HTML.
 pub(super) fn plots(result: &ExhibitResult) -> String {
     let caption = |text: &str, svg: String| format!("<p class=\"note\">{text}</p>{svg}");
     let over_time =
@@ -24,7 +24,7 @@ fn measured(one: &RowResult) -> Option<&Measured> {
     }
 }
 
-/// `what`, and `what, ours` where there are two forms.
+/// Returns `name`, with `, ours` or `, as published` appended if there are two forms.
 fn named(result: &ExhibitResult, one: &RowResult, name: &str) -> String {
     let has_forms = one.row.forms(result.paper).len() > 1;
     match one.form {

@@ -1,4 +1,4 @@
-//! The reading of a report that is resumed: its numbers and images, as they were written.
+//! Reading of a report to resume: its numbers and images.
 
 use std::path::Path;
 
@@ -73,7 +73,7 @@ struct RowFile {
     notes: Vec<String>,
 }
 
-/// Key of a motion's truth: `truth_change`, `truth_noise`.
+/// Truth of a motion; its keys are `truth_change`, `truth_noise`.
 #[derive(Deserialize)]
 struct TrueMotionFile {
     caster: Option<String>,
@@ -90,10 +90,10 @@ struct FiguresFile {
     frames_lacking_room: u32,
 }
 
-/// The report in the folder `dir`, with its images, for a run of this identity; `None` if there is none yet.
+/// Reads the report in the folder `dir`, with its images, if it is of the same run; `None` if there is none yet.
 ///
 /// # Errors
-/// Where it is of another run, or a file cannot be read.
+/// If it is of another run, or a file cannot be read.
 pub fn report_to_resume(dir: &Path, identity: &Identity) -> Result<Option<Report>, LabError> {
     let path = dir.join(METRICS_PATH);
     let Some(json) = read_to_resume(&path, "antumbra-metrics")? else { return Ok(None) };
@@ -111,7 +111,7 @@ fn parse<T: DeserializeOwned>(path: &Path, json: Value) -> Result<T, FileError> 
     serde_json::from_value(json).map_err(|error| FileError::bad_content(path, error.to_string(), REMEDY))
 }
 
-/// A report's folder.
+/// Folder of a report.
 struct Folder<'a> {
     dir: &'a Path,
     path: &'a Path,
@@ -173,7 +173,7 @@ impl Folder<'_> {
         Ok(MotionInfo { frames, step_m, samples, truths })
     }
 
-    /// With its images and motions.
+    /// Completes the numbers of a measurement by its images and motions.
     fn measurement(
         &self,
         numbers: Measurement,
@@ -202,10 +202,10 @@ impl Folder<'_> {
     }
 }
 
-/// Numbers of a measured row, without images, and its motions.
+/// Numbers of a measured row without images, and its motions.
 type Figures = (Option<Box<Measurement>>, Map<String, Value>);
 
-/// A row without what was measured, and that.
+/// Splits a row of the file into a row without results, and the results.
 fn row(file: RowFile) -> (Row, Figures) {
     let measured = file.metrics.filter(|_| file.status == "measured").map(|metrics| {
         Box::new(Measurement {

@@ -1,4 +1,4 @@
-//! Error against cost as an inline SVG: every technique a point, and the line of those that none beats in both.
+//! Scatter plot of error against cost as inline SVG: a point per technique, and the Pareto front as a line.
 
 use std::fmt::Write;
 
@@ -7,25 +7,25 @@ use super::html::{escape, three_figures};
 /// A technique as a point.
 pub(super) struct Point {
     pub(super) name: String,
-    /// Of its section in the page, without `#`.
+    /// Anchor of its section in the page, without `#`.
     pub(super) anchor: String,
-    /// Above zero.
+    /// Cost, above zero.
     pub(super) cost: f64,
     pub(super) error: f64,
 }
 
-/// What a drawing's axes are.
+/// Labels of a plot's axes.
 #[derive(Clone, Copy)]
 pub(super) struct Axes {
-    /// Of the cost, to read along the axis: `milliseconds a frame`.
+    /// Cost, with its unit: `milliseconds a frame`.
     pub(super) cost: &'static str,
-    /// `ms`.
+    /// Unit of the cost: `ms`.
     pub(super) cost_unit: &'static str,
-    /// Of the error: `rmse`.
+    /// Error: `rmse`.
     pub(super) error: &'static str,
 }
 
-/// The drawing, in its own units; the page scales it.
+/// Size and margins of the drawing in its own units; the page scales it.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 380.0;
 const LEFT: f64 = 58.0;
@@ -34,27 +34,27 @@ const TOP: f64 = 18.0;
 const BOTTOM: f64 = 46.0;
 /// Radius of a point.
 const RADIUS: f64 = 5.5;
-/// Least distance between the baselines of labels.
+/// Minimum distance between the baselines of labels.
 const LABEL_STEP: f64 = 14.0;
-/// Height of a label above its baseline, and below it.
+/// Height of a label above and below its baseline.
 const LABEL_RISE: f64 = 10.5;
 const LABEL_DROP: f64 = 3.5;
-/// Approximate advance of a character of a label.
+/// Approximate advance width of a label's character.
 const LABEL_ADVANCE: f64 = 7.2;
-/// Margin on either side of the points, as a factor: it leaves room for labels, and always contains a tick.
+/// Margin on either side of the points, as a factor. It leaves space for labels, and always contains a tick.
 const MARGIN: f64 = 1.6;
 
-/// Logarithmic scales: cost to the right, error upwards. An error of zero lies on the lower edge.
+/// Logarithmic scales: cost to the right, error upwards. An error of zero is at the lower edge.
 pub(super) struct Scale {
     costs: (f64, f64),
     errors: (f64, f64),
 }
 
 impl Scale {
-    /// Of the drawing.
+    /// View box of the drawing.
     pub(super) const VIEW_BOX: &'static str = "0 0 640 380";
 
-    /// Scale that shows every point.
+    /// Returns the scale that shows every point.
     pub(super) fn of(points: &[&Point]) -> Self {
         let range = |values: &dyn Fn(&Point) -> f64| {
             let positive = points.iter().map(|point| values(point)).filter(|value| *value > 0.0);
@@ -73,12 +73,12 @@ impl Scale {
     }
 }
 
-/// Position of a value in a range on a logarithmic scale, 0 to 1.
+/// Returns the position of a value in a range on a logarithmic scale, 0 to 1.
 fn share((min, max): (f64, f64), value: f64) -> f64 {
     ((value.max(min) / min).ln() / (max / min).ln()).min(1.0)
 }
 
-/// The points over a grid, each a link to its row, with the front of the best. `None` without a point.
+/// Plots the points over a grid, each a link to its row, with the Pareto front. `None` without a point.
 pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
     let points: Vec<&Point> =
         points.iter().filter(|p| p.cost > 0.0 && p.cost.is_finite() && p.error.is_finite()).collect();
@@ -105,7 +105,7 @@ pub(super) fn scatter_svg(points: &[Point], axes: Axes) -> Option<String> {
     Some(svg + "</svg></div>")
 }
 
-/// Lines at round errors and costs, with their numbers.
+/// Draws grid lines at round errors and costs, with their numbers.
 pub(super) fn draw_grid(svg: &mut String, scale: &Scale) {
     let (floor, ceiling) = (HEIGHT - BOTTOM, TOP);
     for error in log_ticks(scale.errors) {
@@ -132,7 +132,7 @@ pub(super) fn draw_grid(svg: &mut String, scale: &Scale) {
     }
 }
 
-/// What the axes mean.
+/// Draws the labels of the axes.
 pub(super) fn draw_axes(svg: &mut String, axes: &Axes) {
     let _ = write!(
         svg,
@@ -148,14 +148,14 @@ pub(super) fn draw_axes(svg: &mut String, axes: &Axes) {
     );
 }
 
-/// A name beside each point.
+/// Draws the name of each point beside it.
 pub(super) fn name_points(svg: &mut String, scale: &Scale, points: &[&Point]) {
     for (point, named) in points.iter().zip(named_points(scale, points)) {
         svg.push_str(&named.text(&point.name));
     }
 }
 
-/// A point in the drawing, and the place of its name.
+/// Position of a point and of its name.
 struct NamedPoint {
     x: f64,
     y: f64,
@@ -174,7 +174,7 @@ impl NamedPoint {
     }
 }
 
-/// Places of points and of their names, which cover none and no point.
+/// Returns the positions of points and names. Names cover neither names nor points if there is space.
 fn named_points(scale: &Scale, points: &[&Point]) -> Vec<NamedPoint> {
     let centers: Vec<(f64, f64)> =
         points.iter().map(|point| (scale.x_of(point.cost), scale.y_of(point.error))).collect();
@@ -187,7 +187,7 @@ fn named_points(scale: &Scale, points: &[&Point]) -> Vec<NamedPoint> {
     centers.into_iter().zip(labels).map(named).collect()
 }
 
-/// A circle and a name for each point.
+/// Draws a circle and a name for each point.
 fn draw_points(svg: &mut String, scale: &Scale, axes: &Axes, points: &[&Point], front: &[&Point]) {
     for (point, named) in points.iter().zip(named_points(scale, points)) {
         let NamedPoint { x, y, label_x, label_y, .. } = named;
@@ -216,7 +216,7 @@ fn draw_points(svg: &mut String, scale: &Scale, axes: &Axes, points: &[&Point], 
     }
 }
 
-/// The points that no other beats in both cost and error, cheapest first.
+/// Returns the Pareto front of cost and error, cheapest first.
 pub(super) fn front(points: &[Point]) -> Vec<&Point> {
     front_of(&points.iter().collect::<Vec<_>>())
 }
@@ -254,8 +254,8 @@ impl Label {
     }
 }
 
-/// Labels beside their points, moved up or down until they cover no other label and no point. Where no place is free, a label lies to the
-/// right of its point.
+/// Places labels beside their points, moved up or down until they cover no other label and no point. Without a free place,
+/// a label is to the right of its point.
 fn place_labels(centers: &[(f64, f64)], widths: &[f64]) -> Vec<Label> {
     const GAP: f64 = 10.0;
     let mut placed: Vec<Label> = Vec::new();
@@ -271,7 +271,7 @@ fn place_labels(centers: &[(f64, f64)], widths: &[f64]) -> Vec<Label> {
                 && placed.iter().all(|other| !label.meets(other))
                 && centers.iter().all(|center| !label.covers(*center))
         };
-        // 0, −1, 1, −2, … half steps away, on the right side first.
+        // Offsets of 0, −1, 1, −2, … half steps, on the right side first.
         let steps = (0..40).map(|i| if i % 2 == 0 { i / 2 } else { -(i + 1) / 2 });
         let label = steps.flat_map(|step| [at(step, true), at(step, false)]).find(is_free);
         placed.push(label.unwrap_or(at(0, true)));
@@ -279,7 +279,7 @@ fn place_labels(centers: &[(f64, f64)], widths: &[f64]) -> Vec<Label> {
     placed
 }
 
-/// 1, 2 and 5 times powers of ten in a range; the powers alone where that would be many.
+/// Returns 1, 2 and 5 times the powers of ten in a range; only the powers if there would be too many.
 fn log_ticks((min, max): (f64, f64)) -> Vec<f64> {
     let powers = (min.log10().floor() as i32)..=(max.log10().ceil() as i32);
     let factors: &[f64] = if max / min > 300.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
@@ -287,7 +287,7 @@ fn log_ticks((min, max): (f64, f64)) -> Vec<f64> {
     all.filter(|&tick| tick >= min && tick <= max).collect()
 }
 
-/// Three figures without trailing zeros.
+/// Formats three figures without trailing zeros.
 fn short(v: f64) -> String {
     let text = three_figures(v);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
@@ -346,7 +346,7 @@ mod tests {
     fn ticks_are_round() {
         assert_eq!(log_ticks((0.7, 30.0)), [1.0, 2.0, 5.0, 10.0, 20.0]);
         assert_eq!(log_ticks((0.1, 1000.0)), [0.1, 1.0, 10.0, 100.0, 1000.0]);
-        // A lone point has a tick.
+        // A single point has a tick.
         for value in [1.0, 2.1, 3.2, 4.9, 7.9] {
             assert!(!log_ticks((value / MARGIN, value * MARGIN)).is_empty(), "{value}");
         }

@@ -1,4 +1,4 @@
-//! A report over made-up images: are all its files there, whole, linked, escaped?
+//! Tests of a report on synthetic images: files exist and are complete, links work, text is escaped.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -17,7 +17,7 @@ use crate::stopwatch::FrameCount;
 
 const SIZE_PX: UVec2 = UVec2::new(48, 27);
 
-/// The shadow of a disc with a linear penumbra of a given width, pixels.
+/// Returns the shadow of a disc with a linear penumbra of a given width, pixels.
 fn disc_shadow(penumbra_px: f32) -> Visibility {
     let values = (0..pixel_count(SIZE_PX)).map(|i| {
         let pos_px = UVec2::new(i as u32 % SIZE_PX.x, i as u32 / SIZE_PX.x).as_vec2() + 0.5;
@@ -138,7 +138,7 @@ fn a_report_is_whole_and_its_links_lead_somewhere() {
     let html = fs::read_to_string(dir.join("index.html")).unwrap();
     assert!(!html.contains("{{") && !html.contains("<script>alert") && !html.contains("<b>warning"));
     assert!(html.contains("Times are from a software renderer"));
-    // Beside each time of the three rows that were measured: in the table, above their passes, and at their pictures.
+    // Once at each time of the three measured rows: in the table, above their passes, and at their images.
     assert_eq!(html.matches("median of 5 frames after 2").count(), 9, "{html}");
     assert!(html.contains("skipped: it needs 64-bit atomics, which &quot;llvmpipe&quot; lacks"));
     let links: BTreeSet<&str> = ["src=\"", "href=\""]
@@ -162,7 +162,7 @@ fn a_report_is_whole_and_its_links_lead_somewhere() {
     assert_eq!(exr, disc_shadow(9.0));
     let values = fs::read_to_string(dir.join("values.js")).unwrap();
     assert_eq!(values.matches("data:image/png;base64,").count(), 5, "the judged pixels and four visibilities");
-    // Each error map has its worst tile outlined.
+    // Each error map outlines its worst tile.
     let page = std::fs::read_to_string(dir.join("index.html")).unwrap();
     assert_eq!(page.matches("<i class=\"tile\" style=\"left:").count(), 3);
 }

@@ -1,80 +1,80 @@
-//! Claims of papers by their tables and figures, as rules over an exhibit's rows.
+//! Claims of papers about their tables and figures, as rules over an exhibit's rows.
 //!
-//! A claim holds where all of its rules do. A rule speaks of rows by name and is printed beside its verdict, so that whoever
-//! reads "holds" sees what would have been "contradicted". Each rule is judged twice, over its rows as published and over ours.
+//! A claim holds if all its rules do. A rule names rows and is printed beside its verdict, so that readers of "holds" see which result
+//! would be "contradicted". Each rule is judged twice, for the rows as published and for ours.
 
 use super::figure::Figure;
 
 /// A claim of a paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Claim {
-    /// What the paper says, in short.
+    /// Summary of the paper's statement.
     pub says: &'static str,
-    /// What must be measured for it to hold: all of these. Empty where nothing here can show it.
+    /// Rules that must all be met; empty if nothing here can show the claim.
     pub rules: &'static [Rule],
-    /// Whether times of a software renderer may decide it.
+    /// Whether times of a software renderer may decide the claim.
     pub on_any_adapter: bool,
-    /// Why it was found contradicted as published, where that is known; empty where it is not.
+    /// Known reason of a contradiction as published; empty if unknown.
     pub because: &'static str,
-    /// Why it was found contradicted by our form, where that is known.
+    /// Known reason of a contradiction in our form; empty if unknown.
     pub because_ours: &'static str,
-    /// Why nothing here can show it, and what would; empty where there are rules.
+    /// Reason why nothing here can show the claim, and what would; empty if there are rules.
     pub needs: &'static str,
 }
 
 impl Claim {
-    /// Times of a software renderer decide it too: it is of how work grows, which is alike on any adapter.
+    /// Lets times of a software renderer decide the claim, because it is about the growth of work, which is alike on any adapter.
     pub(super) const fn on_any_adapter(self) -> Self {
         Self { on_any_adapter: true, ..self }
     }
 
-    /// Why it was found contradicted.
+    /// Sets the reason of a contradiction as published.
     pub(super) const fn because(self, because: &'static str) -> Self {
         Self { because, ..self }
     }
 
-    /// Why it was found contradicted by both forms.
+    /// Sets the reason of a contradiction in both forms.
     pub(super) const fn because_both(self, because: &'static str) -> Self {
         Self { because, because_ours: because, ..self }
     }
 
-    /// Why it was found contradicted by our form.
+    /// Sets the reason of a contradiction in our form.
     pub(super) const fn because_ours(self, because_ours: &'static str) -> Self {
         Self { because_ours, ..self }
     }
 }
 
-/// A claim that holds where all of `rules` do.
+/// Creates a claim that holds if all `rules` do.
 pub(super) const fn claim(says: &'static str, rules: &'static [Rule]) -> Claim {
     Claim { says, rules, on_any_adapter: false, because: "", because_ours: "", needs: "" }
 }
 
-/// A claim that nothing here can show: why, and what would.
+/// Creates a claim that nothing here can show, with the reason and what would show it.
 pub(super) const fn not_here(says: &'static str, needs: &'static str) -> Claim {
     Claim { needs, ..claim(says, &[]) }
 }
 
-/// A condition on what rows measured.
+/// Condition on the figures of rows.
 #[derive(Clone, Copy, Debug)]
 pub enum Rule {
-    /// A row's figure is at most this.
+    /// A row's figure is at most the bound.
     AtMost(Figure, &'static str, f64),
-    /// A row's figure is at least this.
+    /// A row's figure is at least the bound.
     AtLeast(Figure, &'static str, f64),
-    /// A row's figure, divided by another row's, is at most this.
+    /// The ratio of a row's figure to another row's is at most the bound.
     RatioAtMost(Figure, &'static str, &'static str, f64),
-    /// A row's figure, divided by another row's, is at least this.
+    /// The ratio of a row's figure to another row's is at least the bound.
     RatioAtLeast(Figure, &'static str, &'static str, f64),
-    /// A row's figure, divided by another row's, lies between these: not less, and not more.
+    /// The ratio of a row's figure to another row's is within the bounds.
     RatioWithin(Figure, &'static str, &'static str, [f64; 2]),
-    /// Each of these rows has a larger figure than the one before it.
+    /// Figures increase from row to row.
     Rising(Figure, &'static [&'static str]),
-    /// The largest figure of these rows is at most so many times the smallest.
+    /// The ratio of the largest to the smallest figure of the rows is at most the bound.
     Alike(Figure, &'static [&'static str], f64),
 }
 
 impl Rule {
-    /// Of what it speaks.
+    /// Returns the figure of the rule.
     pub fn figure(&self) -> Figure {
         match self {
             Self::AtMost(figure, ..)
@@ -87,7 +87,7 @@ impl Rule {
         }
     }
 
-    /// The rows that it speaks of.
+    /// Returns the names of the rule's rows.
     pub fn rows(&self) -> Vec<&'static str> {
         match self {
             Self::AtMost(_, row, _) | Self::AtLeast(_, row, _) => vec![row],
@@ -98,8 +98,8 @@ impl Rule {
         }
     }
 
-    /// The rows that it finds good: images there have to be better than one without any shadow in it, or a black, white or grey
-    /// one would do. Rules that find something wanting name none.
+    /// Returns the rows that the rule praises. Their images must be better than one without any shadow, or else a black, white or grey
+    /// image would meet the rule. Rules that criticise return none.
     pub fn favored(&self) -> Vec<&'static str> {
         match self {
             _ if !self.figure().is_of_images() => Vec::new(),
@@ -110,7 +110,7 @@ impl Rule {
         }
     }
 
-    /// The rule in words, without what was measured.
+    /// Describes the rule without measured values.
     pub fn text(&self) -> String {
         let figure = self.figure();
         let list = |rows: &[&str]| rows.iter().map(|row| format!("‘{row}’")).collect::<Vec<_>>().join(", ");

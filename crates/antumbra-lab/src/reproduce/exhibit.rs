@@ -1,137 +1,136 @@
-//! A paper's tables and figures as data: what is in them, what of ours to hold beside it, and what the
-//! paper claims by it.
+//! A paper's tables and figures as data: content, our rows to compare, and the paper's claims.
 
 use super::claim::Claim;
 use crate::motion::Motion;
 
-/// A paper that this project implements.
+/// A paper whose techniques this project implements.
 #[derive(Clone, Copy, Debug)]
 pub struct Paper {
     /// First author and year: the first half of an exhibit's name.
     pub id: &'static str,
     /// Authors, title, venue, year.
     pub citation: &'static str,
-    /// What its times were measured on.
+    /// Hardware on which the paper measured times.
     pub hardware: &'static str,
-    /// That hardware's memory bandwidth, GB/s: what shadow maps mostly wait for, so that times compare by it.
+    /// Memory bandwidth of that hardware, GB/s. Shadow maps are mostly limited by it, so times are compared relative to it.
     pub bandwidth_gb_s: f64,
-    /// Its own techniques: rows of them are run as published and as ours.
+    /// Techniques of the paper; their rows run as published and as ours.
     pub own: &'static [&'static str],
-    /// Its tables and figures, in the paper's order.
+    /// Tables and figures, in the paper's order.
     pub exhibits: &'static [Exhibit],
 }
 
 /// A table or a figure.
 #[derive(Clone, Copy, Debug)]
 pub struct Exhibit {
-    /// `table1`, `figure3`, or `text` for numbers in the running text.
+    /// Name: `table1`, `figure3`, or `text` for numbers in the running text.
     pub id: &'static str,
-    /// What it shows.
+    /// Description of the content.
     pub shows: &'static str,
-    /// What to run for it; empty for a drawing.
+    /// Rows to run; empty for a drawing.
     pub rows: &'static [Row],
-    /// What the paper says of it, and how that is decided.
+    /// Claims of the paper about it, with their rules.
     pub claims: &'static [Claim],
-    /// What of it is not shown here, and why; empty where all is.
+    /// Omitted content with the reason; empty if complete.
     pub note: &'static str,
 }
 
-/// One thing to run, and what the paper has for it.
+/// A measurement to run, with the paper's result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// What it is, in the paper's terms. No two rows of an exhibit have one name: claims speak of rows by it.
+    /// Name in the paper's terms, unique within the exhibit, because claims refer to rows by name.
     pub what: &'static str,
-    /// `builtin:NAME`, or the name of a file in the folder that [`SCENES_VARIABLE`](super::SCENES_VARIABLE) names. Where the
-    /// paper's own scene is not to be had this is one of its kind.
+    /// Scene: `builtin:NAME`, or the name of a file in the folder given by [`SCENES_VARIABLE`](super::SCENES_VARIABLE). If the paper's own
+    /// scene is not available, this is a similar one.
     pub scene: &'static str,
-    /// Where from it is seen and what lights it, by name among [`VIEWS`](super::VIEWS); `None` as the scene itself says.
+    /// Camera and lights by their name in [`VIEWS`](super::VIEWS); `None` uses the scene's own.
     pub view: Option<&'static str>,
-    /// The technique, by the name that it has or will have; empty where none is measured.
+    /// Name of the technique, possibly one still to be implemented; empty if none is measured.
     pub technique: &'static str,
-    /// Its parameters in both forms, as the paper set them for this row.
+    /// Parameters of both forms, as the paper set them for this row.
     pub settings: Settings,
-    /// Parameters of our form alone.
+    /// Additional parameters of our form.
     pub ours: Settings,
-    /// Whether there is no form of ours: what the row measures is of the published algorithm alone.
+    /// Whether only the published form is run, because the row measures the published algorithm.
     pub is_published_alone: bool,
-    /// Width and height of the picture, pixels.
+    /// Width and height of the image, pixels.
     pub size_px: (u32, u32),
-    /// The light's size over its own.
+    /// Factor of the light's size.
     pub light_scale: f32,
-    /// Frames that add up to the picture, for techniques that accumulate.
+    /// Number of accumulated frames, for techniques that accumulate.
     pub frames: u32,
-    /// What is measured, with the paper's own figure.
+    /// Measurement, with the paper's own figure.
     pub measure: Measure,
-    /// Whether a software renderer takes too long over it to be asked for it in passing.
+    /// Whether the row takes a software renderer too long to run by default.
     pub is_dear: bool,
-    /// Whether a row about errors is timed too, so that the page draws its error over its time.
+    /// Whether a row about errors is timed too, so that the page plots its error over its time.
     pub is_timed_too: bool,
-    /// Where it stands in a plot of its exhibit's errors over a number.
+    /// Position in the exhibit's plot of errors over a parameter.
     pub plotted: Option<Plotted>,
 }
 
-/// A point of a plot of errors over a number that rows differ in.
+/// Point in a plot of errors over a parameter in which rows differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plotted {
-    /// What the number is, for the axis; one for all of an exhibit.
+    /// Axis label of the parameter, the same for all rows of an exhibit.
     pub axis: &'static str,
-    /// The line that the point is on.
+    /// Name of the point's line.
     pub line: &'static str,
-    /// The number, above zero.
+    /// Value of the parameter, above zero.
     pub at: f64,
 }
 
-/// A technique's parameters.
+/// Parameters of a technique.
 pub type Settings = &'static [(&'static str, &'static str)];
 
-/// What a row measures.
+/// Measurement of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
-    /// Milliseconds for the passes whose label contains the text (all where it is empty).
+    /// Milliseconds of the passes whose label contains the text (all passes if it is empty).
     Ms {
-        /// Part of the label; several parts with `|` between them add up.
+        /// Part of the label; several parts separated by `|` are summed.
         passes: &'static str,
-        /// As printed.
+        /// Figure as printed.
         paper: Reported,
     },
-    /// Frames a second, of the shadows alone where we measure.
+    /// Frames per second; ours are of the shadows alone.
     Fps {
-        /// As printed, for the whole frame.
+        /// Figure as printed, for the whole frame.
         paper: Reported,
     },
-    /// Milliseconds for drawing what the camera sees, by the processor's clock: what hosts do before they ask for shadows.
+    /// Milliseconds for rendering the camera's view, on the CPU's clock: a host's work before shadows.
     SceneMs {
-        /// As printed.
+        /// Figure as printed.
         paper: Reported,
     },
-    /// Errors against the truth: `rmse`, `umbra_leak` and `lit_loss`. The papers show pictures for these.
+    /// Errors against the ground truth: `rmse`, `umbra_leak` and `lit_loss`. The papers show images of these.
     Error,
-    /// The same against exact filtering by the technique's own kernel of fixed width.
+    /// Errors against exact filtering with the technique's own kernel of fixed width.
     FilteredError,
-    /// The same against another technique.
+    /// Errors against another technique.
     Difference {
-        /// Its name.
+        /// Name of the other technique.
         from: &'static str,
-        /// Its parameters.
+        /// Parameters of the other technique.
         settings: Settings,
     },
-    /// Flicker against the truth's own change, frame by frame, while something moves; a strip of frames is its picture.
+    /// Flicker relative to the truth's own change during a motion, with a strip of frames as the image.
     Motion(Motion),
-    /// No number: a debug view in colours, as the technique paints it.
+    /// Image of a debug view in colours, without a figure.
     Colors,
 }
 
 /// A paper's own figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reported {
-    /// Printed as a number.
+    /// Printed number.
     Number(f64),
-    /// Only drawn, as a curve or a bar.
+    /// Curve or bar without a number.
     Drawn,
 }
 
 impl Measure {
-    /// The paper's own figure for a table, with its unit.
+    /// Formats the paper's own figure for a table, with its unit.
     pub fn paper_text(&self) -> String {
         let text = |reported: &Reported, unit: &str| match reported {
             Reported::Number(value) => format!("{value} {unit}"),
@@ -145,7 +144,7 @@ impl Measure {
         }
     }
 
-    /// The paper's own figure as milliseconds a frame.
+    /// Returns the paper's own figure in milliseconds per frame.
     pub fn paper_ms(&self) -> Option<f64> {
         match self {
             Self::Ms { paper: Reported::Number(ms), .. } | Self::SceneMs { paper: Reported::Number(ms) } => Some(*ms),
@@ -154,69 +153,69 @@ impl Measure {
         }
     }
 
-    /// Whether a technique's frames are timed.
+    /// Returns whether a technique's frames are timed.
     pub fn is_timed(&self) -> bool {
         matches!(self, Self::Ms { .. } | Self::Fps { .. })
     }
 
-    /// Whether pictures are compared, so that errors come out.
+    /// Returns whether images are compared, which gives errors.
     pub fn is_error(&self) -> bool {
         matches!(self, Self::Error | Self::FilteredError | Self::Difference { .. })
     }
 }
 
 impl Row {
-    /// Another size of picture.
+    /// Sets the image size.
     pub(super) const fn at(self, width: u32, height: u32) -> Self {
         Self { size_px: (width, height), ..self }
     }
 
-    /// Seen from one of [`VIEWS`](super::VIEWS).
+    /// Sets the view, one of [`VIEWS`](super::VIEWS).
     pub(super) const fn seen(self, view: &'static str) -> Self {
         Self { view: Some(view), ..self }
     }
 
-    /// With a light of another size.
+    /// Sets the factor of the light's size.
     pub(super) const fn light_scaled(self, light_scale: f32) -> Self {
         Self { light_scale, ..self }
     }
 
-    /// The picture after so many frames.
+    /// Sets the number of accumulated frames.
     pub(super) const fn after_frames(self, frames: u32) -> Self {
         Self { frames, ..self }
     }
 
-    /// With parameters.
+    /// Sets the parameters of both forms.
     pub(super) const fn with(self, settings: Settings) -> Self {
         Self { settings, ..self }
     }
 
-    /// With parameters of our form alone.
+    /// Sets the additional parameters of our form.
     pub(super) const fn ours(self, ours: Settings) -> Self {
         Self { ours, ..self }
     }
 
-    /// Run as published alone.
+    /// Runs the published form only.
     pub(super) const fn alone(self) -> Self {
         Self { is_published_alone: true, ..self }
     }
 
-    /// Timed too.
+    /// Times the row, too.
     pub(super) const fn timed(self) -> Self {
         Self { is_timed_too: true, ..self }
     }
 
-    /// A point of the exhibit's plot.
+    /// Adds the row to the exhibit's plot.
     pub(super) const fn plotted(self, axis: &'static str, line: &'static str, at: f64) -> Self {
         Self { plotted: Some(Plotted { axis, line, at }), ..self }
     }
 
-    /// Too dear for a software renderer, unless it is asked for.
+    /// Marks the row as too slow for a software renderer unless requested.
     pub(super) const fn dear(self) -> Self {
         self.dear_where(true)
     }
 
-    /// The same, where it is so.
+    /// Marks the row as too slow under a condition.
     pub(super) const fn dear_where(self, is_dear: bool) -> Self {
         Self { is_dear, ..self }
     }
@@ -241,17 +240,17 @@ const fn row(what: &'static str, scene: &'static str, technique: &'static str, m
     }
 }
 
-/// A row that compares pictures.
+/// Creates a row that compares images with the ground truth.
 pub(super) const fn error(what: &'static str, scene: &'static str, technique: &'static str) -> Row {
     row(what, scene, technique, Measure::Error)
 }
 
-/// A row that compares pictures of one kernel of fixed width.
+/// Creates a row that compares images with exact filtering by the same kernel.
 pub(super) const fn filtered_error(what: &'static str, scene: &'static str, technique: &'static str) -> Row {
     row(what, scene, technique, Measure::FilteredError)
 }
 
-/// A row that compares a technique's picture with another technique's.
+/// Creates a row that compares a technique's image with another technique's.
 pub(super) const fn difference(
     what: &'static str,
     scene: &'static str,
@@ -261,17 +260,17 @@ pub(super) const fn difference(
     row(what, scene, technique, Measure::Difference { from, settings })
 }
 
-/// A row that looks at frames while something moves.
+/// Creates a row that measures flicker during a motion.
 pub(super) const fn in_motion(what: &'static str, scene: &'static str, technique: &'static str, motion: Motion) -> Row {
     row(what, scene, technique, Measure::Motion(motion))
 }
 
-/// A row that shows a debug view.
+/// Creates a row that shows a debug view.
 pub(super) const fn colors(what: &'static str, scene: &'static str, technique: &'static str) -> Row {
     row(what, scene, technique, Measure::Colors)
 }
 
-/// A row that compares milliseconds of all passes, or of those whose label contains `passes`.
+/// Creates a row that compares the milliseconds of all passes, or of those whose label contains `passes`.
 pub(super) const fn ms(
     what: &'static str,
     scene: &'static str,
@@ -282,24 +281,24 @@ pub(super) const fn ms(
     row(what, scene, technique, Measure::Ms { passes, paper })
 }
 
-/// A row that compares frames a second.
+/// Creates a row that compares frames per second.
 pub(super) const fn fps(what: &'static str, scene: &'static str, technique: &'static str, paper: f64) -> Row {
     row(what, scene, technique, Measure::Fps { paper: Reported::Number(paper) })
 }
 
-/// A row that compares milliseconds for drawing what the camera sees.
+/// Creates a row that compares the milliseconds for rendering the camera's view.
 pub(super) const fn scene_ms(what: &'static str, scene: &'static str, paper: f64) -> Row {
     row(what, scene, "", Measure::SceneMs { paper: Reported::Number(paper) })
 }
 
 impl Exhibit {
-    /// How many runs its rows are: one for each form of each.
+    /// Returns the number of runs: one per form of each row.
     pub fn run_count(&self, paper: &Paper) -> usize {
         self.rows.iter().map(|row| row.forms(paper).len()).sum()
     }
 }
 
-/// An exhibit without anything to run.
+/// Creates an exhibit without anything to run.
 pub(super) const fn drawing(id: &'static str, shows: &'static str) -> Exhibit {
     Exhibit { id, shows, rows: &[], claims: &[], note: "" }
 }

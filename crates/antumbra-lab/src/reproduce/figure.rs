@@ -1,33 +1,33 @@
-//! Figures that rules are about.
+//! Figures that rules compare.
 
 use std::fmt;
 
-/// Which figure a rule is about.
+/// Kind of measured value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
-    /// Milliseconds of what the row names.
+    /// Time of the row's passes, milliseconds.
     Ms,
-    /// Root of the mean squared error.
+    /// Root mean square error.
     Rmse,
     /// Mean visibility where the reference is umbra.
     UmbraLeak,
-    /// Mean of what is missing where the reference is lit.
+    /// Mean missing visibility where the reference is lit.
     LitLoss,
     /// Rms of the error's detail where the reference is smooth: noise, bands, texels, seams.
     Noise,
-    /// Rms of the mask's change from frame to frame less the truth's.
+    /// Rms change of the mask between frames minus that of the truth.
     Flicker,
     /// Memory, MiB.
     MemoryMib,
 }
 
 impl Figure {
-    /// Whether images are compared for it.
+    /// Returns whether the figure requires a comparison of images.
     pub fn is_of_images(self) -> bool {
         matches!(self, Self::Rmse | Self::UmbraLeak | Self::LitLoss | Self::Noise | Self::Flicker)
     }
 
-    /// A value for readers.
+    /// Formats a value for readers.
     pub fn text(self, value: f64) -> String {
         match self {
             Self::Ms => format!("{value:.3} ms"),

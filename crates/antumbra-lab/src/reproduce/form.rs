@@ -1,4 +1,4 @@
-//! The two forms in which a paper's technique is run: as published, and ours.
+//! Two forms in which a paper's technique is run: as published, and ours.
 
 use std::fmt;
 
@@ -11,14 +11,14 @@ use crate::technique_run::TechniqueChoice;
 /// A form of a paper's technique.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Form {
-    /// The algorithm as its paper has it: every departure that a parameter turns off is turned off. Verdicts are on this form.
+    /// Algorithm of the paper: all departures are off that a parameter can switch off. Verdicts are on this form.
     Published,
-    /// The technique as this library has it by default.
+    /// Technique with this library's defaults.
     Ours,
 }
 
 impl Form {
-    /// For tables and pages.
+    /// Returns the name for tables and pages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Published => "as published",
@@ -34,8 +34,8 @@ impl fmt::Display for Form {
 }
 
 impl Row {
-    /// The forms in which the row is run: both where the technique is the paper's own and departs from it; else one. What a paper
-    /// compares with stands as published in both.
+    /// Returns the forms in which the row runs: both if the technique is the paper's own and ours departs from it, else the published one.
+    /// Techniques that the paper compares with run as published in both.
     pub fn forms(&self, paper: &Paper) -> &'static [Form] {
         let kind = TechniqueKind::from_name(self.technique);
         let is_own = paper.own.contains(&self.technique);
@@ -43,22 +43,22 @@ impl Row {
         if is_own && departs && !self.is_published_alone { &[Form::Published, Form::Ours] } else { &[Form::Published] }
     }
 
-    /// The parameters that are set after the preset's: those of both forms, then what ours has beside them.
+    /// Returns the parameters set after the preset's: those of both forms, then the additional ones of ours.
     pub fn settings_of(&self, form: Form) -> impl Iterator<Item = &'static (&'static str, &'static str)> {
         let own = if form == Form::Ours { self.ours } else { &[] };
         self.settings.iter().chain(own)
     }
 
-    /// The technique in a form.
+    /// Returns the technique in a form.
     ///
     /// # Errors
-    /// Where there is no such technique.
+    /// If there is no such technique.
     pub(super) fn choice(&self, form: Form) -> Result<TechniqueChoice, LabError> {
         choice_with(self.technique, form, self.settings_of(form))
     }
 }
 
-/// A technique in a form, with settings.
+/// Returns a technique in a form, with settings.
 pub(super) fn choice_with(
     technique: &str,
     form: Form,
@@ -68,7 +68,7 @@ pub(super) fn choice_with(
     Ok(TechniqueChoice { settings, ..choice_of_form(technique, form)? })
 }
 
-/// The preset of a form: `:paper` where the technique has one.
+/// Returns the preset of a form: for the published form, `:paper` if the technique has it.
 fn choice_of_form(technique: &str, form: Form) -> Result<TechniqueChoice, LabError> {
     let kind = TechniqueKind::from_name(technique)
         .ok_or_else(|| LabError::Request(format!("there is no technique `{technique}`")))?;
@@ -89,7 +89,7 @@ mod tests {
     use super::super::papers::PAPERS;
     use super::*;
 
-    /// The paper's own techniques are run twice, as published first; what it compares with once, as its own paper has it.
+    /// A paper's own techniques run twice, as published first; others run once, as their own paper publishes them.
     #[test]
     fn own_techniques_have_two_forms() {
         let shen = PAPERS.iter().find(|paper| paper.id == "shen-2013").unwrap();
@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// Every claim that rests on a paper's own technique is judged by a row of it as published.
+    /// Every technique of a paper has a preset with its published form.
     #[test]
     fn own_techniques_have_a_published_preset() {
         for paper in &PAPERS {
@@ -116,7 +116,7 @@ mod tests {
         }
     }
 
-    /// All parameters that a row runs with: defaults, then what the preset sets, then the row's own.
+    /// Returns all parameters of a row: defaults, then the preset's, then the row's own.
     fn parameters(row: &Row, form: Form) -> BTreeMap<&'static str, ParamValue> {
         let TechniqueChoice { kind, quality, settings, .. } = row.choice(form).unwrap();
         let mut values: BTreeMap<_, _> = kind.param_specs().iter().map(|spec| (spec.key, spec.default)).collect();
@@ -128,13 +128,13 @@ mod tests {
         values
     }
 
-    /// Whether two rows measure the same of the same, whatever they are called and however their parameters are written.
+    /// Returns whether two rows run the same measurement, whatever their names and spelling of parameters.
     fn are_one(paper: &Paper, a: &Row, b: &Row) -> bool {
         *a == Row { what: a.what, settings: a.settings, ours: a.ours, ..*b }
             && a.forms(paper).iter().all(|form| parameters(a, *form) == parameters(b, *form))
     }
 
-    /// Two rows of an exhibit differ in one form at least: a preset that sets what a row takes for a default would make them one.
+    /// Any two rows of an exhibit differ in at least one form, so no preset makes them equal.
     #[test]
     fn rows_with_two_names_run_two_things() {
         for paper in &PAPERS {

@@ -1,9 +1,8 @@
-//! The papers' tables and figures beside our own.
+//! Papers' tables and figures beside our own.
 //!
-//! [`PAPERS`] is the catalogue: each exhibit with the rows to run for it and the paper's own figure. A row whose
-//! technique is not in the library yet says so; nothing else has to be done when the technique arrives. To add an
-//! exhibit or a row, add an entry in `papers/`. What a paper says of an exhibit is a claim beside its rows, with the rule that
-//! decides it; [`Session`] runs rows and decides.
+//! [`PAPERS`] is the catalogue: each exhibit with its rows to run and the paper's figures. Rows of techniques that the library lacks state
+//! so, and run as soon as the technique exists. To add an exhibit or a row, add an entry in `papers/`. Statements of the paper are claims
+//! beside the rows, with the rules that decide them; [`Session`] runs rows and decides claims.
 
 mod claim;
 mod exhibit;
@@ -30,33 +29,33 @@ pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Sessi
 pub use verdict::{Judged, Outcomes, Ruling, Verdict, judge};
 pub use views::VIEWS;
 
-/// The environment variable that names the folder with scenes that are files.
+/// Environment variable with the folder of scene files.
 pub const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
 
-/// Where from the scenes that are files are to be had.
+/// Source of the scene files.
 pub const SCENES_HINT: &str = "sponza.glb is the sample model Sponza of Khronos (github.com/KhronosGroup/glTF-Sample-Assets, \
                                Models/Sponza) as one binary glTF file; all else is built in";
 
-/// `marrs-2014/figure3`.
+/// Returns an exhibit's name, `marrs-2014/figure3`.
 fn exhibit_name(paper: &Paper, exhibit: &Exhibit) -> String {
     format!("{}/{}", paper.id, exhibit.id)
 }
 
-/// Whether an exhibit can be run today.
+/// Availability of an exhibit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Readiness {
-    /// A drawing: nothing to run.
+    /// A drawing without anything to run.
     Drawing,
-    /// Every row can be run.
+    /// All rows can run.
     Ready,
-    /// Some rows can; the others need these techniques, or scenes that are files.
+    /// Some rows can run; the others lack these techniques or scene files.
     Partly(Vec<&'static str>),
-    /// No row can before these techniques or scenes are there.
+    /// No row can run; these techniques or scene files are missing.
     NotYet(Vec<&'static str>),
 }
 
 impl Exhibit {
-    /// Whether it can be run today.
+    /// Returns whether the exhibit can run.
     pub fn readiness(&self) -> Readiness {
         let lacks = |row: &Row| row.missing_technique().or((!row.is_ready()).then_some(row.scene));
         let mut missing: Vec<&'static str> = Vec::new();
@@ -74,7 +73,7 @@ impl Exhibit {
     }
 }
 
-/// Every exhibit with its full name, `marrs-2014/figure3`.
+/// Returns all exhibits with their full names, `marrs-2014/figure3`.
 pub fn exhibits() -> impl Iterator<Item = (String, &'static Paper, &'static Exhibit)> {
     PAPERS
         .iter()
@@ -131,7 +130,7 @@ mod tests {
         }
     }
 
-    /// Rules speak of rows by name, and of figures that these rows measure.
+    /// Rules name existing rows, and figures that these rows measure.
     #[test]
     fn rules_speak_of_what_is_measured() {
         for (name, _, exhibit) in exhibits() {
@@ -160,7 +159,7 @@ mod tests {
         }
     }
 
-    /// What is timed is one frame, and plots have one axis and lines of several points.
+    /// Timed rows have one frame, and plots have one axis and lines of several points.
     #[test]
     fn rows_of_plots_can_be_drawn() {
         for (name, _, exhibit) in exhibits() {
@@ -176,7 +175,7 @@ mod tests {
         }
     }
 
-    /// Settings of rows, and of what rows are held against.
+    /// Returns the settings of rows, and of the techniques that rows are compared with.
     fn all_settings() -> impl Iterator<Item = (String, &'static str, Settings)> {
         exhibits().flat_map(|(name, _, exhibit)| {
             exhibit.rows.iter().flat_map(move |row| {
@@ -194,7 +193,7 @@ mod tests {
         })
     }
 
-    /// A technique that arrives must have the parameters that its rows set.
+    /// Techniques accept the parameters that their rows set.
     #[test]
     fn settings_fit_their_techniques() {
         for (name, technique, settings) in all_settings() {

@@ -1,4 +1,4 @@
-//! Rows about frames while something moves: flicker against the truth's own change, and a strip of frames.
+//! Rows about motion: flicker relative to the truth's own change, and a strip of frames.
 
 use std::rc::Rc;
 
@@ -10,9 +10,9 @@ use crate::motion::{Motion, MotionOptions, MotionTruth, MovingScene};
 use crate::progress::Silent;
 use crate::technique_run::TechniqueChoice;
 
-/// Frames that move.
+/// Number of moving frames.
 const FRAMES: u32 = 12;
-/// Metres a frame.
+/// Metres per frame.
 const STEP_M: f32 = 0.1;
 
 impl Site<'_, '_> {
@@ -45,7 +45,7 @@ impl Site<'_, '_> {
         Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s: None })
     }
 
-    /// Traced once for all rows that look at one motion.
+    /// Returns the truth of a motion, traced once for all rows that use it.
     fn motion_truth(&mut self, motion: Motion, moving: &mut MovingScene<'_>) -> Result<Rc<MotionTruth>, LabError> {
         let samples = self.bench.options.samples;
         let size_px = self.bench.options.size_of(self.row);

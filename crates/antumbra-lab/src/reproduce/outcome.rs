@@ -9,68 +9,68 @@ use super::figure::Figure;
 use super::{SCENES_HINT, SCENES_VARIABLE};
 use crate::stopwatch::FrameCount;
 
-/// What came of a row.
+/// Outcome of a row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// It was measured.
+    /// The row was measured.
     Measured(Measured),
-    /// Nobody has asked for it.
+    /// The row was not requested.
     NotRun,
-    /// The library does not have this technique yet.
+    /// The library lacks this technique.
     NotYet(String),
-    /// The scene is a file, which is not here.
+    /// The scene is a file that is not available.
     NotReady(String),
-    /// It takes a software renderer too long to be run unasked.
+    /// The row takes a software renderer too long to run by default.
     TooDear,
-    /// This device cannot: why.
+    /// The device cannot run the row, for the given reason.
     Skipped(String),
-    /// It went wrong: how. Other rows go on.
+    /// The row failed with the given message. Other rows continue.
     Failed(String),
 }
 
-/// The figures of a row; which there are depends on what it measures.
+/// Figures of a row; which ones exist depends on its measurement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// Milliseconds, of the passes that the row names. None where it is about errors.
+    /// Time of the row's passes, milliseconds; `None` for rows about errors.
     pub ms: Option<f64>,
-    /// Of how many frames that is the median, and after how many.
+    /// Number of timed and warm-up frames of `ms`.
     pub count: Option<FrameCount>,
-    /// Milliseconds for drawing what the camera sees, beside it.
+    /// Time for rendering the camera's view, milliseconds.
     pub scene_ms: Option<f64>,
-    /// Of how many frames that is the median, and after how many.
+    /// Number of timed and warm-up frames of `scene_ms`.
     pub scene_count: Option<FrameCount>,
-    /// Root of the mean squared error.
+    /// Root mean square error.
     pub rmse: Option<f64>,
     /// Mean visibility where the reference is umbra.
     pub umbra_leak: Option<f64>,
-    /// Mean of what is missing where the reference is lit.
+    /// Mean missing visibility where the reference is lit.
     pub lit_loss: Option<f64>,
     /// Rms of the error's detail where the reference is smooth.
     #[serde(default)]
     pub noise: Option<f64>,
-    /// Rms of the mask's change from frame to frame less the truth's.
+    /// Rms change of the mask between frames minus that of the truth.
     #[serde(default)]
     pub flicker: Option<f64>,
-    /// The truth's own change: what a mask that never changes would flicker.
+    /// Rms change of the truth itself: the flicker of a mask that never changes.
     #[serde(default)]
     pub still_flicker: Option<f64>,
-    /// Light points a pixel of the reference, where it was traced.
+    /// Light samples per pixel of the reference, if it was traced.
     #[serde(default)]
     pub truth_samples: Option<u32>,
-    /// Root of the mean squared error of a mask that has the reference's mean everywhere: what a picture without any shadow in
-    /// it would err. Large beside it, errors are small.
+    /// Root mean square error of a constant mask with the reference's mean, that is of an image without any
+    /// shadow. An `rmse` far below it is small.
     pub flat_rmse: Option<f64>,
     /// GPU memory that the technique holds, bytes.
     pub memory_bytes: Option<u64>,
-    /// Width and height of the picture, pixels.
+    /// Width and height of the image, pixels.
     pub size_px: [u32; 2],
-    /// Triangles as drawn.
+    /// Number of drawn triangles.
     pub triangles: u64,
 }
 
 impl Measured {
-    /// One of its figures.
+    /// Returns one of the figures.
     pub fn figure(&self, figure: Figure) -> Option<f64> {
         match figure {
             Figure::Ms => self.ms,
@@ -83,7 +83,7 @@ impl Measured {
         }
     }
 
-    /// What the row is about, for tables, with units.
+    /// Formats the row's main figures for tables, with units.
     pub fn text(&self, measure: &Measure) -> String {
         let number = |value: Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.4}"));
         let fps = |ms: f64| 1e3 / ms.max(f64::MIN_POSITIVE);
@@ -111,13 +111,13 @@ impl Measured {
     }
 }
 
-/// ` (median of 5 frames after 2)`.
+/// Returns ` (median of 5 frames after 2)`.
 fn counted(count: Option<FrameCount>) -> String {
     count.map_or_else(String::new, |count| format!(" ({count})"))
 }
 
 impl fmt::Display for Outcome {
-    /// Why there is nothing, for a table.
+    /// Writes the reason of a missing result, for a table.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Measured(_) => write!(f, "measured"),
@@ -134,7 +134,7 @@ impl fmt::Display for Outcome {
 }
 
 impl Outcome {
-    /// For a table.
+    /// Formats the outcome for a table.
     pub fn text(&self, measure: &Measure) -> String {
         match self {
             Self::Measured(measured) => measured.text(measure),

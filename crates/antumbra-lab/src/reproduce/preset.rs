@@ -1,17 +1,17 @@
-//! Techniques that each paper compares: its own, and those that it measures them against.
+//! Techniques that each paper compares: its own, and those that it compares them with.
 
 use antumbra::TechniqueKind;
 
-/// One paper's comparison.
+/// Comparison of one paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Preset {
-    /// The paper's id among [`PAPERS`](super::PAPERS).
+    /// Id of the paper in [`PAPERS`](super::PAPERS).
     pub paper: &'static str,
-    /// Its own techniques, then the others.
+    /// Techniques: the paper's own first.
     pub techniques: &'static [TechniqueKind],
 }
 
-/// Every paper's.
+/// Comparisons of all papers.
 pub const PRESETS: &[Preset] = &[
     // Figures 8 to 10.
     Preset {

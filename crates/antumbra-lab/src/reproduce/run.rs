@@ -1,4 +1,4 @@
-//! Runs rows of exhibits.
+//! Running of exhibits' rows.
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -31,32 +31,32 @@ use crate::technique_run::{Drawn, TechniqueChoice, TechniqueRun, Timing, Timings
 use crate::truth::{LightTruth, trace_lights_until};
 use crate::view::View;
 
-/// How rows are run.
+/// Options of runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunOptions {
-    /// Timed frames.
+    /// Number of timed frames.
     pub frames: u32,
-    /// Another size of picture than the paper's.
+    /// Image size that replaces the paper's.
     pub size_px: Option<UVec2>,
-    /// Light points a pixel of the truth.
+    /// Light samples per pixel of the ground truth.
     pub samples: u32,
-    /// No further frame of a row is begun after so long.
+    /// Time after which no further frame of a row is started.
     pub at_most: Duration,
-    /// Whether rows are run that take a software renderer too long.
+    /// Whether to run rows that take a software renderer too long.
     pub dear: bool,
-    /// Pictures have about as many pixels as this, where that is less than the paper's.
+    /// Approximate maximum number of pixels of an image; larger images of the papers are reduced.
     pub most_pixels: Option<u32>,
 }
 
 impl RunOptions {
-    /// As the papers have it, whatever it takes.
+    /// Returns the papers' settings, whatever the run time.
     pub fn as_printed(frames: u32) -> Self {
         let at_most = Duration::from_secs(20);
         Self { frames, size_px: None, samples: 1024, at_most, dear: true, most_pixels: None }
     }
 
-    /// As the papers have it on a GPU; on a software renderer in pictures of some 256 × 144 pixels, which take minutes for a
-    /// paper and not hours. The truth's noise is below 0.002 rmse with 1024 points, but in foliage, and twice that with 256.
+    /// Returns the papers' settings on a GPU. On a software renderer, images have about 256 × 144 pixels, which take minutes per paper,
+    /// not hours. The truth's noise is below 0.002 rmse with 1024 samples, except in foliage, and twice that with 256.
     pub fn for_device(lab: &LabDevice, frames: u32) -> Self {
         let printed = Self::as_printed(frames);
         if lab.adapter.is_software() {
@@ -67,12 +67,12 @@ impl RunOptions {
         }
     }
 
-    /// How times are taken, without a limit for the technique.
+    /// Returns the timing without a limit for the technique.
     fn timing(&self) -> Timing {
         Timing { warm_up: 1, frames: self.frames, at_least: Duration::ZERO, at_most: self.at_most, end: None }
     }
 
-    /// The size at which a row is drawn: the paper's shape, and its size where it may.
+    /// Returns the image size of a row: the paper's aspect ratio, and its size if allowed.
     pub fn size_of(&self, row: &Row) -> UVec2 {
         let (width, height) = row.size_px;
         if let Some(size_px) = self.size_px {
@@ -85,25 +85,25 @@ impl RunOptions {
     }
 }
 
-/// A row's pictures.
+/// Images of a row.
 #[derive(Debug)]
 pub struct Pictures {
-    /// Shaded with the technique's mask; a debug view as it is.
+    /// Image shaded with the technique's mask, or a debug view.
     pub picture: RgbImage,
-    /// Shaded with what it is held against, where it is held against something.
+    /// Image shaded with the reference, if there is one.
     pub reference: Option<RgbImage>,
-    /// The signed error, where it is of one frame.
+    /// Signed error, for measurements of one frame.
     pub error: Option<RgbImage>,
 }
 
-/// A row that was run.
+/// Result of a run.
 #[derive(Debug)]
 pub struct Ran {
-    /// What came of it.
+    /// Outcome of the row.
     pub outcome: Outcome,
-    /// Where pictures were asked for, and came out.
+    /// Images, if requested and available.
     pub pictures: Option<Pictures>,
-    /// The limit of a technique, seconds, where it cut this short.
+    /// Time limit that cut the measurement short, seconds.
     pub cut_short_s: Option<f64>,
 }
 
@@ -113,21 +113,21 @@ impl Ran {
     }
 }
 
-/// So many scenes are kept: neighbouring rows share theirs.
+/// Number of cached scenes; neighbouring rows share theirs.
 const KEPT_SCENES: usize = 3;
 
-/// What rows share: scenes, and their truths.
+/// State shared by rows: scenes and their ground truths.
 #[derive(Debug)]
 pub struct Bench<'a> {
     pub(super) lab: &'a LabDevice,
     pub(super) options: RunOptions,
-    /// By what was loaded, the latest used last.
+    /// Scenes by name, most recently used last.
     scenes: Vec<(String, Rc<Loaded>)>,
     truths: HashMap<String, Rc<LightTruth>>,
     pub(super) motion_truths: HashMap<String, Rc<MotionTruth>>,
-    /// Of the row that runs.
+    /// End time of the current row.
     pub(super) end: Option<End>,
-    /// Of all rows.
+    /// Deadline of the run.
     pub(super) deadline: Option<Instant>,
 }
 
@@ -151,7 +151,7 @@ impl Loaded {
 }
 
 impl<'a> Bench<'a> {
-    /// Rows will be run on this device.
+    /// Creates the state for runs on a device.
     pub fn new(lab: &'a LabDevice, options: RunOptions) -> Self {
         Self {
             lab,
@@ -164,16 +164,16 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The same, whose truths are given up at a deadline.
+    /// Sets the deadline after which ground truths are not traced further.
     pub(super) fn until(self, deadline: Option<Instant>) -> Self {
         Self { deadline, ..self }
     }
 
-    /// Runs a row in one form, until `end` at the most.
+    /// Runs a row in one form, until `end` at most.
     ///
     /// # Errors
-    /// Where the scene cannot be loaded or traced, the device fails, or the run's deadline comes first. What is not there or not possible
-    /// is an outcome.
+    /// If the scene cannot be loaded or traced, the device fails, or the run's deadline passes. Anything
+    /// missing or unsupported is an outcome.
     pub fn run(&mut self, row: &Row, form: Form, with_pictures: bool, end: Option<End>) -> Result<Ran, LabError> {
         self.end = end;
         if let Some(outcome) = self.why_not(row) {
@@ -203,12 +203,12 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// How times of the row that runs are taken.
+    /// Returns the timing of the current row.
     fn timing(&self) -> Timing {
         Timing { end: self.end, ..self.options.timing() }
     }
 
-    /// Why a row is not run at all.
+    /// Returns the reason not to run a row, if any.
     fn why_not(&self, row: &Row) -> Option<Outcome> {
         if let Some(technique) = row.missing_technique() {
             return Some(Outcome::NotYet(technique.to_owned()));
@@ -254,7 +254,7 @@ impl Loaded {
     }
 }
 
-/// A row where it is run.
+/// A row with its scene and view.
 pub(super) struct Site<'a, 'b> {
     pub(super) bench: &'a mut Bench<'b>,
     pub(super) row: &'a Row,
@@ -317,7 +317,7 @@ impl Site<'_, '_> {
         Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s })
     }
 
-    /// The mask, after as many frames as the row adds up.
+    /// Draws the mask, after the row's number of accumulated frames.
     fn draw(&self, choice: &TechniqueChoice) -> Result<Drawn, LabError> {
         self.view.draw_until(&mut self.view.create(choice)?, 0, self.row.frames, self.bench.end)
     }
@@ -326,7 +326,7 @@ impl Site<'_, '_> {
         self.view.run(&mut self.view.create(choice)?, 0, &self.bench.timing())
     }
 
-    /// What the row's picture is held against, and where.
+    /// Returns the reference of the row's image, and the judged pixels.
     fn reference(&mut self, choice: &TechniqueChoice) -> Result<(Visibility, Vec<bool>), LabError> {
         let other = match self.row.measure {
             Measure::FilteredError => {
@@ -342,7 +342,7 @@ impl Site<'_, '_> {
             return Ok((truth.visibility.clone(), truth.judged.clone()));
         };
         let drawn = self.draw(&other)?.visibility;
-        // The tracer tells no more than which pixels are judged.
+        // The tracer only determines which pixels are judged.
         Ok((drawn, self.truth(1)?.judged.clone()))
     }
 
@@ -353,7 +353,7 @@ impl Site<'_, '_> {
         if let Some(truth) = self.bench.truths.get(&key) {
             return Ok(Rc::clone(truth));
         }
-        // A truth is of all techniques, and takes nothing of one's time.
+        // All techniques share a truth, so its time does not count for one of them.
         let deadline = self.bench.deadline;
         let mut truth = self.loaded.trace(self.setup, size_px, samples, deadline)?;
         truth.judge_what_is_seen(&self.view.surface_points()?, self.setup.camera.eye);
@@ -364,7 +364,7 @@ impl Site<'_, '_> {
     }
 }
 
-/// Milliseconds of what a row names; `None` where single passes are not timed.
+/// Returns the milliseconds of a row's passes; `None` if single passes are not timed.
 fn time_of(timings: &Timings, measure: Measure) -> Result<Option<f64>, LabError> {
     let Measure::Ms { passes, .. } = measure else { return Ok(Some(timings.total_ms)) };
     if passes.is_empty() {
@@ -382,7 +382,7 @@ fn time_of(timings: &Timings, measure: Measure) -> Result<Option<f64>, LabError>
     Ok(Some(meant.iter().sum()))
 }
 
-/// A mask with the mean of the judged pixels everywhere.
+/// Returns a constant mask with the mean of the judged pixels.
 fn flat(reference: &Visibility, judged: &[bool]) -> Visibility {
     let channels = reference.channel_count();
     let meant = || (0..judged.len()).filter(|i| judged[*i]);
@@ -394,7 +394,7 @@ fn flat(reference: &Visibility, judged: &[bool]) -> Visibility {
     Visibility::one(reference.size_px, vec![sum / count; judged.len()])
 }
 
-/// The camera and the one light of a row.
+/// Returns the camera and the single light of a row.
 fn setup_of(row: &Row, scene: &Scene) -> Result<Setup, LabError> {
     let setup = match row.view {
         None => Setup::for_scene(scene),
@@ -405,19 +405,19 @@ fn setup_of(row: &Row, scene: &Scene) -> Result<Setup, LabError> {
 }
 
 impl Row {
-    /// The technique that the library lacks for it.
+    /// Returns the technique that the library lacks for the row.
     pub fn missing_technique(&self) -> Option<&'static str> {
         let is_there = self.technique.is_empty() || TechniqueKind::from_name(self.technique).is_some();
         (!is_there).then_some(self.technique)
     }
 
-    /// Whether its scene is here.
+    /// Returns whether the row's scene is available.
     pub fn is_ready(&self) -> bool {
         scene_spec(self.scene, std::env::var_os(SCENES_VARIABLE).as_deref()).is_some()
     }
 }
 
-/// What to load for a row's scene: a built-in, or a file that is in `folder`.
+/// Returns the scene to load: a built-in, or a file that exists in `folder`.
 fn scene_spec(scene: &str, folder: Option<&OsStr>) -> Option<String> {
     if scene.starts_with("builtin:") {
         return Some(scene.to_owned());

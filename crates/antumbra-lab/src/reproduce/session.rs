@@ -1,4 +1,4 @@
-//! Exhibits run one after the other, with what has been measured in a folder, so that work that was stopped goes on.
+//! Session: exhibits run one after the other, with results in a folder, from which an interrupted session resumes.
 
 use std::fmt;
 use std::fs;
@@ -23,80 +23,80 @@ use crate::output_files::{FileError, write_atomically};
 use crate::progress::Progress;
 use crate::store::{Kind, Store};
 
-/// The file with all measurements in a folder of reproductions.
+/// Name of the file with all measurements in a folder of reproductions.
 pub const REPRODUCED_NAME: &str = "reproduced.json";
 
 const KIND: Kind = Kind { format: "antumbra-reproduced", version: 3 };
 
-/// Pictures of a row, as paths relative to the folder.
+/// Images of a row, as paths relative to the folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PictureFiles {
-    /// Shaded with the technique's mask, or a debug view.
+    /// Image shaded with the technique's mask, or a debug view.
     pub picture: String,
-    /// Shaded with what it is held against.
+    /// Image shaded with the reference.
     pub reference: Option<String>,
-    /// The signed error.
+    /// Signed error.
     pub error: Option<String>,
 }
 
-/// What is kept of a row.
+/// Stored result of a row.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Kept {
-    /// What was run: another row of the same name is run anew.
+    /// Description of the run; if it differs, the row is run again.
     row: Value,
     outcome: Outcome,
     pictures: Option<PictureFiles>,
-    /// The limit of a technique, seconds, where it cut this short.
+    /// Time limit that cut the measurement short, seconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     cut_short_s: Option<f64>,
-    /// Time that it took, seconds.
+    /// Duration of the run, seconds.
     #[serde(default)]
     seconds: f64,
 }
 
-/// A row in one form, and what came of it.
+/// Result of a row in one form.
 #[derive(Clone, Debug)]
 pub struct RowResult {
-    /// The row.
+    /// Row.
     pub row: &'static Row,
-    /// As published, or ours.
+    /// Form: as published, or ours.
     pub form: Form,
-    /// What came of it.
+    /// Outcome of the row.
     pub outcome: Outcome,
-    /// Its pictures, where there are.
+    /// Images, if there are any.
     pub pictures: Option<PictureFiles>,
-    /// The limit of a technique, seconds, where it cut this short.
+    /// Time limit that cut the measurement short, seconds.
     pub cut_short_s: Option<f64>,
 }
 
-/// An exhibit, and what came of it.
+/// Results of an exhibit.
 #[derive(Clone, Debug)]
 pub struct ExhibitResult {
-    /// `marrs-2014/figure3`.
+    /// Name: `marrs-2014/figure3`.
     pub name: String,
-    /// Whose it is.
+    /// Paper of the exhibit.
     pub paper: &'static Paper,
-    /// The exhibit.
+    /// Exhibit.
     pub exhibit: &'static Exhibit,
-    /// Its rows, in their order, each as published and then, where it has one, in our form.
+    /// Rows in order, each as published and then, if it has one, in our form.
     pub rows: Vec<RowResult>,
-    /// Its claims, decided.
+    /// Verdicts on its claims.
     pub judged: Vec<Judged>,
 }
 
-/// How many claims of some exhibits hold, are contradicted, and are not shown.
+/// Numbers of claims that hold, are contradicted, and are undecided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct VerdictCount {
-    /// Every rule is met.
+    /// Claims with all rules met.
     pub holds: usize,
-    /// A rule is not.
+    /// Claims with a rule that is not met.
     pub contradicted: usize,
-    /// Nothing can be said.
+    /// Undecided claims.
     pub undecided: usize,
 }
 
 impl VerdictCount {
-    /// Of all claims of these exhibits: as published, and by our form of those that have one.
+    /// Counts the claims of exhibits: as published, or in our form for those that have one.
     pub fn of<'a>(exhibits: impl IntoIterator<Item = &'a ExhibitResult>, form: Form) -> Self {
         let of_form = |judged: &'a Judged| match form {
             Form::Published => Some(&judged.published),
@@ -125,7 +125,7 @@ impl fmt::Display for VerdictCount {
     }
 }
 
-/// Runs exhibits.
+/// Session that runs exhibits.
 #[derive(Debug)]
 pub struct Session<'a> {
     bench: Bench<'a>,
@@ -138,10 +138,10 @@ pub struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// Begins or goes on in a folder, which is made where it is not there; without one nothing is kept.
+    /// Opens a session in a folder, which is created if needed and resumed if it has results. Without a folder, nothing is stored.
     ///
     /// # Errors
-    /// Where the folder's measurements are of another commit, adapter or way of running, or cannot be read or written.
+    /// If the folder's measurements have another commit, adapter or options, or cannot be read or written.
     pub fn open(
         lab: &'a LabDevice,
         options: RunOptions,
@@ -180,11 +180,11 @@ impl<'a> Session<'a> {
         Ok(Self { bench, options, is_software, dir, store, pace, missing: Vec::new() })
     }
 
-    /// Runs those of an exhibit's rows that have no result yet, and calls `each` after every one. `begun` of `all` rows come before it, for
-    /// progress. A row that is not expected to end before the deadline is [missing](Self::missing).
+    /// Runs those of an exhibit's rows that have no result yet, and calls `each` after every one. For progress, `begun` of `all` rows
+    /// precede it. A row that is not expected to end before the deadline is [missing](Self::missing).
     ///
     /// # Errors
-    /// Where the device fails, or a file cannot be written. What goes wrong with one row is its outcome.
+    /// If the device fails, or a file cannot be written. The failure of one row is its outcome.
     pub fn run(
         &mut self,
         paper: &'static Paper,
@@ -214,7 +214,7 @@ impl<'a> Session<'a> {
                     self.missing.push(key(&name, row, form));
                     continue;
                 }
-                // Nothing can be run any more.
+                // The device is lost for all rows.
                 Err(error @ LabError::Device(_)) => return Err(error),
                 Err(error) => Ran { outcome: Outcome::Failed(error.to_string()), pictures: None, cut_short_s: None },
                 Ok(Some(ran)) => ran,
@@ -227,7 +227,7 @@ impl<'a> Session<'a> {
             let (row_json, cut_short_s) = (described(row, form, &self.options), ran.cut_short_s);
             let kept = Kept { row: row_json, outcome: ran.outcome, pictures, cut_short_s, seconds };
             self.store.insert(key(&name, row, form), kept)?;
-            // Whatever ends this run leaves what was measured.
+            // Results survive however this run ends.
             self.store.write()?;
             each(self)?;
         }
@@ -235,7 +235,7 @@ impl<'a> Session<'a> {
         Ok(self.result(paper, exhibit))
     }
 
-    /// All that this and earlier runs know of an exhibit.
+    /// Returns the results of an exhibit from this and earlier runs.
     pub fn result(&self, paper: &'static Paper, exhibit: &'static Exhibit) -> ExhibitResult {
         let name = exhibit_name(paper, exhibit);
         let result = |row: &'static Row, form: Form| match self.store.get(&key(&name, row, form)) {
@@ -264,23 +264,23 @@ impl<'a> Session<'a> {
         ExhibitResult { name, paper, exhibit, rows, judged }
     }
 
-    /// The same of every exhibit, paper by paper.
+    /// Returns the results of every exhibit, by paper.
     pub fn results(&self) -> Vec<(&'static Paper, Vec<ExhibitResult>)> {
         let of = |paper: &'static Paper| paper.exhibits.iter().map(|exhibit| self.result(paper, exhibit)).collect();
         PAPERS.iter().map(|paper| (paper, of(paper))).collect()
     }
 
-    /// Names of the rows that the deadline left out: `marrs-2014/figure1: row, as published`.
+    /// Returns the names of the rows that the deadline left out: `marrs-2014/figure1: row, as published`.
     pub fn missing(&self) -> &[String] {
         &self.missing
     }
 
-    /// How many rows this session has run itself.
+    /// Returns the number of rows that this session has run.
     pub fn ran(&self) -> usize {
         self.store.fresh
     }
 
-    /// What a row has from before, where that still says all: what was not there then may be there now.
+    /// Returns a row's stored result if it is final. A missing technique or scene may be available by now.
     fn kept(&self, name: &str, row: &Row, form: Form) -> Option<&Kept> {
         let kept = self.store.get(&key(name, row, form))?;
         let is_final = matches!(kept.outcome, Outcome::Measured(_) | Outcome::Skipped(_));
@@ -289,13 +289,13 @@ impl<'a> Session<'a> {
     }
 }
 
-/// What a row's pictures are called: `marrs-2014-figure4-1`, `marrs-2014-figure4-1-ours`.
+/// Returns the file name of a row's images: `marrs-2014-figure4-1`, `marrs-2014-figure4-1-ours`.
 fn file_name(name: &str, i: usize, form: Form) -> String {
     let end = if form == Form::Ours { "-ours" } else { "" };
     format!("{}-{}{end}", name.replace('/', "-"), i + 1)
 }
 
-/// Writes a row's pictures into the folder `dir`, under this name.
+/// Writes a row's images into the folder `dir`, under the name `own`.
 fn write(dir: &Path, pictures: &Pictures, own: &str, row: &Row) -> Result<PictureFiles, LabError> {
     let put = |file: String, picture| -> Result<String, LabError> {
         let path = format!("images/{file}.png");
@@ -303,7 +303,7 @@ fn write(dir: &Path, pictures: &Pictures, own: &str, row: &Row) -> Result<Pictur
         Ok(path)
     };
     let picture = put(own.to_owned(), &pictures.picture)?;
-    // Rows that look at one truth share its picture.
+    // Rows with the same ground truth share its image.
     let named = if row.measure == Measure::Error { truth_name(row) } else { format!("{own}-reference") };
     let reference = pictures.reference.as_ref().map(|reference| put(named, reference)).transpose()?;
     let error = pictures.error.as_ref().map(|error| put(format!("{own}-error"), error)).transpose()?;
@@ -318,7 +318,7 @@ fn key(name: &str, row: &Row, form: Form) -> String {
     format!("{name}: {}, {form}", row.what)
 }
 
-/// All that a row's result depends on.
+/// Returns everything that a row's result depends on.
 fn described(row: &Row, form: Form, options: &RunOptions) -> Value {
     let Row { scene, view, technique, light_scale, frames, measure, is_timed_too, .. } = row;
     let settings: Vec<String> = row.settings_of(form).map(|(key, value)| format!("{key}={value}")).collect();
@@ -343,7 +343,7 @@ fn truth_name(row: &Row) -> String {
     format!("truth-{}-{width}x{height}", text.chars().map(plain).collect::<String>())
 }
 
-/// Whether a row's picture is to be shown: where pictures are compared, and for tables once for each scene.
+/// Returns whether to show a row's image: if images are compared, and otherwise once per scene.
 fn shows_picture(exhibit: &Exhibit, i: usize) -> bool {
     let row = &exhibit.rows[i];
     let is_same = |other: &Row| (other.scene, other.view) == (row.scene, row.view) && !other.technique.is_empty();
@@ -384,7 +384,7 @@ mod tests {
         assert!(shows_picture(&EXHIBIT, 0) && shows_picture(&EXHIBIT, 2));
     }
 
-    /// Whatever a row measures, it runs without a folder, and its pictures are kept where there is one.
+    /// Every kind of row runs without a folder, and stores its images if there is one.
     #[test]
     fn every_kind_of_row_runs_with_and_without_a_folder() {
         use super::super::exhibit::{colors, difference, filtered_error, fps, in_motion, scene_ms};
@@ -418,7 +418,7 @@ mod tests {
                 assert_eq!(measured.flicker.is_some_and(|flicker| flicker > 0.0), moves, "{}", row.what);
                 assert_eq!(measured.still_flicker.is_some_and(|change| change > 0.0), moves, "{}", row.what);
                 assert_eq!((measured.ms.is_some(), measured.count.is_some()), (is_timed, is_timed), "{}", row.what);
-                // The very first frame never counts.
+                // The first frame never counts.
                 assert!(measured.count.is_none_or(|count| count.frames >= 1 && count.warm_up >= 1), "{measured:?}");
                 let text = outcome.text(&row.measure);
                 assert_eq!(text.contains(" after "), is_timed, "{text}");
@@ -455,7 +455,7 @@ mod tests {
             assert!(dir.path().join(file.unwrap()).is_file());
         }
 
-        // Only what was not there or went wrong is tried again, and the rest is as it was.
+        // Only missing and failed rows are tried again; the others are unchanged.
         let (ran, again) = run(options);
         let timed = |result: &ExhibitResult| match &result.rows[1].outcome {
             Outcome::Measured(measured) => measured.clone(),
@@ -470,7 +470,7 @@ mod tests {
         assert!(open(other, Limits::default()).is_err());
     }
 
-    /// What the deadline leaves out is named, and measured by the next run.
+    /// The deadline's missing rows are named, and measured by the next run.
     #[test]
     fn a_deadline_leaves_rows_out() {
         let Some(lab) = lab_or_skip() else { return };
@@ -496,7 +496,7 @@ mod tests {
         assert_eq!((ran, calls, missing.len()), (4, 4, 0));
         let cut = |row: &RowResult| matches!(&row.outcome, Outcome::Skipped(why) if why.contains("cut short by the limit of 0 s"));
         assert!(result.rows[..2].iter().all(|row| cut(row) && row.cut_short_s == Some(0.0)), "{result:?}");
-        // A longer limit measures again what was cut short, with the two that are never final.
+        // A longer limit repeats measurements that were cut short, and the two that are never final.
         let (ran, _, _, result) = run(limit(60));
         assert_eq!(ran, 4);
         assert!(result.rows[..2].iter().all(|row| matches!(row.outcome, Outcome::Measured(_))), "{result:?}");

@@ -1,9 +1,9 @@
-//! Verdicts on claims, from what was measured.
+//! Verdicts on claims, from measurements.
 //!
-//! A verdict is on a paper's technique as published; beside it stands what our form gives. A rule is met, not met, or too close to
-//! tell: every figure is known to within its [`Range`], and a rule is decided where all of the range says the same. Nothing is
-//! decided where a number is lacking, nor does a software renderer decide about a GPU's milliseconds, unless the claim is of work
-//! that grows alike on any. Each "cannot be shown" says what would show it.
+//! A verdict is on a paper's technique as published; the result of our form is shown beside it. A rule is met, not met, or too close to
+//! tell: every figure has an uncertainty [`Range`], and a rule is decided if the whole range agrees. Missing numbers decide nothing. A
+//! software renderer does not decide about milliseconds unless the claim is about work that grows alike on any adapter. Each "cannot be
+//! shown" names what would show it.
 
 use std::ops::Mul;
 
@@ -13,19 +13,19 @@ use super::figure::Figure;
 use super::form::Form;
 use super::outcome::{Measured, Outcome};
 
-/// What is to be said of a claim.
+/// Verdict on a claim.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every rule is met.
+    /// All rules are met.
     Holds,
     /// A rule is not met.
     Contradicted,
-    /// Nothing can be said: why, and what would show it.
+    /// No decision, for the given reason, with what would show the claim.
     Undecided(String),
 }
 
 impl Verdict {
-    /// For tables and pages.
+    /// Returns the name for tables and pages.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -35,19 +35,19 @@ impl Verdict {
     }
 }
 
-/// A claim judged over one form of the paper's technique.
+/// Judgement of a claim for one form of the paper's technique.
 #[derive(Clone, Debug)]
 pub struct Ruling {
-    /// What is to be said of it.
+    /// Verdict on the claim.
     pub verdict: Verdict,
-    /// Each of its rules in words, with what was measured.
+    /// Description of each rule with the measured values.
     pub found: Vec<String>,
-    /// Why it is contradicted, where that is known.
+    /// Known reason of a contradiction.
     because: &'static str,
 }
 
 impl Ruling {
-    /// The verdict as a sentence, with its reason where there is one.
+    /// Returns the verdict as a sentence, with its reason if known.
     pub fn sentence(&self) -> String {
         match &self.verdict {
             Verdict::Holds => "The claim holds here.".to_owned(),
@@ -58,44 +58,44 @@ impl Ruling {
     }
 }
 
-/// A claim after measuring.
+/// Judgement of a claim in both forms.
 #[derive(Clone, Debug)]
 pub struct Judged {
-    /// The claim.
+    /// Claim.
     pub claim: Claim,
-    /// The verdict: on the technique as published.
+    /// Verdict on the technique as published.
     pub published: Ruling,
-    /// What our form gives; `None` where no row of the claim has one.
+    /// Result of our form; `None` if no row of the claim has one.
     pub ours: Option<Ruling>,
-    /// Sizes of the images that were measured: `256 × 144`. Empty where none was.
+    /// Sizes of the measured images: `256 × 144`. Empty without measurements.
     pub sizes: String,
 }
 
 impl Judged {
-    /// The ruling on each form.
+    /// Returns the ruling on each form.
     pub fn rulings(&self) -> impl Iterator<Item = (Form, &Ruling)> {
         std::iter::once((Form::Published, &self.published)).chain(self.ours.as_ref().map(|ours| (Form::Ours, ours)))
     }
 }
 
-/// What came of an exhibit's rows, in their order.
+/// Outcomes of an exhibit's rows, in their order.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcomes<'a> {
-    /// As published.
+    /// Outcomes as published.
     pub published: &'a [Outcome],
-    /// Ours, of rows that have a form of ours.
+    /// Outcomes of our form, for rows that have one.
     pub ours: &'a [Option<Outcome>],
 }
 
 impl Outcomes<'_> {
-    /// A row's outcome in a form: what has no form of ours stands as published.
+    /// Returns a row's outcome in a form; rows without our form use the published one.
     fn of(&self, i: usize, form: Form) -> Option<&Outcome> {
         let ours = self.ours.get(i).and_then(Option::as_ref).filter(|_| form == Form::Ours);
         ours.or_else(|| self.published.get(i))
     }
 }
 
-/// Decides an exhibit's claims.
+/// Judges an exhibit's claims.
 pub fn judge(exhibit: &Exhibit, outcomes: Outcomes<'_>, is_software: bool) -> Vec<Judged> {
     let bench = Bench { exhibit, outcomes, is_software };
     exhibit.claims.iter().map(|claim| bench.judge(claim)).collect()
@@ -107,12 +107,12 @@ struct Bench<'a> {
     is_software: bool,
 }
 
-/// What became of a rule.
+/// Result of a rule.
 #[derive(Clone, Debug, PartialEq)]
 enum Met {
     Yes,
     No,
-    /// Why nothing can be said, and what would show it.
+    /// Undecided, with the reason and what would show it.
     Unknown(String),
 }
 
@@ -150,7 +150,7 @@ impl Bench<'_> {
         });
         let verdict = match unknown {
             _ if !claim.needs.is_empty() => Verdict::Undecided(claim.needs.to_owned()),
-            // One rule that is not met is enough.
+            // A single rule that is not met contradicts the claim.
             _ if found.iter().any(|(_, met)| *met == Met::No) => Verdict::Contradicted,
             Some(why) => Verdict::Undecided(why),
             None => Verdict::Holds,
@@ -162,7 +162,7 @@ impl Bench<'_> {
         Ruling { verdict, found: found.into_iter().map(|(text, _)| text).collect(), because }
     }
 
-    /// A rule held against what was measured.
+    /// Judges a rule by the measured values.
     fn look(&self, claim: &Claim, rule: &Rule, form: Form) -> (String, Met) {
         let values: Result<Vec<f64>, String> =
             rule.rows().iter().map(|row| self.value(rule.figure(), row, form)).collect();
@@ -189,7 +189,7 @@ impl Bench<'_> {
         (format!("{}: here {here}", rule.text()), met)
     }
 
-    /// Why a software renderer's times do not decide a rule, and what would; `None` where they do, and of other figures.
+    /// Returns the reason why a software renderer's times do not decide a rule, and what would; `None` if they do, or for other figures.
     fn doubt_of_times(&self, claim: &Claim, rule: &Rule, values: &[f64], form: Form) -> Option<&'static str> {
         if rule.figure() != Figure::Ms || !self.is_software {
             return None;
@@ -211,7 +211,7 @@ impl Bench<'_> {
         )
     }
 
-    /// Why an image is none: it errs no less than one without any shadow in it.
+    /// Returns the reason why an image does not count: its error is at least that of one without any shadow.
     fn is_flat(&self, row: &str, form: Form) -> Option<String> {
         let measured = self.measured(row, form)?;
         if let (Some(flicker), Some(still)) = (measured.flicker, measured.still_flicker) {
@@ -248,7 +248,7 @@ impl Bench<'_> {
         match self.outcome(row, form) {
             None => Err(format!("‘{row}’ was not run")),
             Some(Outcome::Measured(measured)) => match measured.figure(figure) {
-                // Software renderers' clocks do: a ratio to it would say anything.
+                // Software renderers' clocks report zero, for which ratios are meaningless.
                 Some(ms) if figure == Figure::Ms && ms <= 0.0 => {
                     Err(format!("‘{row}’ was timed as nothing; a GPU would show it"))
                 }
@@ -259,29 +259,29 @@ impl Bench<'_> {
     }
 }
 
-/// Shorter times of a software renderer say nothing of its work: passes begin and end with its scheduler.
+/// Minimum time of a software renderer, ms. Shorter ones reflect its scheduler, which starts and ends passes.
 const LEAST_MS: f64 = 1.0;
 
-/// Of fewer frames a software renderer's median may be of a moment in which others had the processor.
+/// Minimum number of frames of a software renderer's median. A shorter median may fall into a moment of other load.
 const LEAST_FRAMES: u32 = 5;
 
-/// Noise of a traced reference with one light point a pixel, rmse: below .002 with 1024 points, but in foliage.
+/// Noise of a traced reference with one light sample per pixel, rmse: below .002 with 1024 samples, except in foliage.
 const TRUTH_NOISE: f64 = 0.064;
 
-/// What no image shows: a twentieth of an 8-bit step.
+/// Invisible difference of an image: a twentieth of an 8-bit step.
 const UNSEEN: f64 = 0.0002;
 
-/// By such a part figures of an image change where its size does by one pixel.
+/// Relative change of an image's figures when its size changes by one pixel.
 const IMAGE_SPREAD: f64 = 0.01;
 
-/// By such a part flicker differs from run to run, where threads race for what they store.
+/// Relative variation of flicker between runs, where threads race to store values.
 const FLICKER_SPREAD: f64 = 0.05;
 
-/// By such a part medians of a row's time differ from run to run: on a graphics card, and on a processor that has other work.
+/// Relative variation of a row's median time between runs, on a graphics card and on a CPU with other load.
 const TIME_SPREAD: f64 = 0.03;
 const SOFTWARE_TIME_SPREAD: f64 = 0.1;
 
-/// Between what a figure lies.
+/// Uncertainty range of a figure.
 #[derive(Clone, Copy, Debug)]
 struct Range {
     low: f64,
@@ -300,7 +300,7 @@ impl Range {
             Figure::UmbraLeak | Figure::LitLoss | Figure::Noise => within(IMAGE_SPREAD, UNSEEN),
             Figure::Flicker => within(FLICKER_SPREAD, UNSEEN),
             Figure::Rmse => {
-                // The reference's noise adds to the square of what an image errs.
+                // The reference's noise adds to the square of an image's error.
                 let noise = truth_samples.map_or(0.0, |samples| TRUTH_NOISE / f64::from(samples.max(1)).sqrt());
                 let range = within(IMAGE_SPREAD, 0.0);
                 Self { low: (range.low * range.low - noise * noise).max(0.0).sqrt(), ..range }
@@ -317,7 +317,7 @@ impl Mul<Range> for f64 {
     }
 }
 
-/// Whether one is at most the other; `None` where that cannot be told.
+/// Returns whether `a` is at most `b`; `None` if the ranges overlap.
 fn at_most(a: Range, b: Range) -> Option<bool> {
     if a.high <= b.low {
         Some(true)
@@ -328,19 +328,19 @@ fn at_most(a: Range, b: Range) -> Option<bool> {
     }
 }
 
-/// Whether all are true; false where one is false, and unknown where one is unknown.
+/// Returns whether all are true: false if one is false, else unknown if one is unknown.
 fn all(of: impl IntoIterator<Item = Option<bool>>) -> Option<bool> {
     let of: Vec<Option<bool>> = of.into_iter().collect();
     if of.contains(&Some(false)) { Some(false) } else { of.into_iter().collect::<Option<Vec<_>>>().map(|_| true) }
 }
 
-/// Whether a rule is met by its rows' figures.
+/// Returns whether the rows' figures meet a rule.
 fn met(rule: &Rule, of: &[Range]) -> Option<bool> {
     let exact = |bound: f64| Range { low: bound, high: bound };
     match rule {
         Rule::AtMost(.., bound) => at_most(of[0], exact(*bound)),
         Rule::AtLeast(.., bound) => at_most(exact(*bound), of[0]),
-        // By products, so that nothing is divided by.
+        // Compares products, to avoid division by zero.
         Rule::RatioAtMost(.., bound) => at_most(of[0], *bound * of[1]),
         Rule::RatioAtLeast(.., bound) => at_most(*bound * of[1], of[0]),
         Rule::RatioWithin(.., [low, high]) => all([at_most(*low * of[1], of[0]), at_most(of[0], *high * of[1])]),
@@ -359,7 +359,7 @@ fn too_close(figure: Figure) -> String {
     }
 }
 
-/// The ratio, and what it is of.
+/// Returns the ratio, with its values.
 fn ratio_text(values: &[f64], all: &str) -> String {
     if values[1] > 0.0 { format!("{:.2} ({all})", values[0] / values[1]) } else { all.to_owned() }
 }

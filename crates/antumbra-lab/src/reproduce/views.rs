@@ -1,6 +1,6 @@
-//! Cameras of the papers: setup files for scenes whose file has no camera, or whose own is not the paper's view.
+//! Views of the papers: setup files for scenes without a camera, or with another one than the paper's.
 
-/// Each view's name, and its setup file.
+/// Name and setup file of each view.
 pub const VIEWS: &[(&str, &str)] = &[
     ("sponza-hall", include_str!("views/sponza-hall.toml")),
     ("sponza-atrium", include_str!("views/sponza-atrium.toml")),
@@ -11,10 +11,10 @@ pub const VIEWS: &[(&str, &str)] = &[
     ("fence-distant", include_str!("views/fence-distant.toml")),
 ];
 
-/// A view's setup file.
+/// Returns a view's setup file.
 ///
 /// # Panics
-/// Where there is none: rows and views are both ours, and a test looks.
+/// If there is no such view; a test checks that rows name existing ones.
 pub(super) fn view_named(name: &str) -> &'static str {
     VIEWS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text).expect("a row names a view that there is")
 }

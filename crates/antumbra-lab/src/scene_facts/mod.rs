@@ -1,19 +1,19 @@
-//! Facts about a scene's shadows: measured in one view, for one light, by rays alone.
+//! Facts about a scene's shadows: measured in one view, for one light, by rays only.
 //!
 //! ```text
 //! truth ─► lit, penumbra, umbra ─► some pixels of the penumbra ─► rays to the light ─► every occluder on them
 //! ```
 //!
-//! **An occluder's depth.** What sets occluders apart for a shadow technique is how wide a penumbra each casts. With D the light's
-//! extent across the ray and d of the ray's length L between receiver and occluder, that is w = D d / (L − d) (the intercept
-//! theorem; a sun's D is an angle, and w = D d). D is √12 times the standard deviation of the light's points along a direction: a
-//! square's side. A closed mesh that a ray enters and leaves is one occluder, midway.
+//! **Depth of an occluder.** For shadow techniques, occluders differ by the width of the penumbra that each casts. With D the light's
+//! extent across the ray and d of the ray's length L between receiver and occluder, the width is w = D d / (L − d) (the intercept theorem;
+//! a sun's D is an angle, and w = D d). D is √12 times the standard deviation of the light's points along a direction: the side of a
+//! square light. A closed mesh that a ray enters and leaves is one occluder, at the midpoint.
 //!
-//! **Distinct depths** of a pixel are how many widths it takes so that each occluder's is from one of them to half as wide again
-//! and half a pixel; a depth that hides less than a sixteenth of the light does not count. One depth is what techniques with one mean
-//! blocker assume.
+//! **Distinct depths** of a pixel are the number of widths needed so that each occluder's width is between one of them and
+//! 1.5 times it plus half a pixel. A depth that hides less than a sixteenth of the light does not count. Techniques with one
+//! mean blocker depth assume one depth.
 //!
-//! **Widths in pixels** are as seen face on; receivers that the light grazes stretch them.
+//! **Widths in pixels** are for surfaces seen face on; receivers at grazing light have wider ones.
 
 mod probe;
 #[cfg(test)]
@@ -28,86 +28,86 @@ use crate::metrics::{LIT_ABOVE, UMBRA_BELOW};
 use crate::truth::LightTruth;
 use probe::{Probe, Tally};
 
-/// What a view of a scene is like, for one light.
+/// Properties of a view of a scene, for one light.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneFacts {
-    /// What the picture shows, as shares of its pixels.
+    /// Shares of the image's pixels.
     pub picture: PictureShares,
-    /// What is in the penumbra; `None` without a pixel of it.
+    /// Properties of the penumbra; `None` without penumbra pixels.
     pub penumbra: Option<PenumbraFacts>,
-    /// Share of the judged pixels whose surface the light's centre sees at less than [`GRAZING_DEG`]; `None` without one.
+    /// Share of the judged pixels that the light's centre sees at less than [`GRAZING_DEG`]; `None` without judged pixels.
     pub grazing: Option<f64>,
-    /// How wide the light is, as its receivers see it, degrees.
+    /// Angular diameter of the light seen from its receivers, degrees.
     pub light_diameter_deg: Option<Spread>,
-    /// How far off the light's axis its receivers lie, degrees; `None` for a sun.
+    /// Angle between the light's axis and its receivers, degrees; `None` for a sun.
     pub off_axis_deg: Option<Spread>,
-    /// Share of the scene's triangles whose material is masked.
+    /// Share of the scene's triangles that are alpha-tested.
     pub masked_triangles: f64,
-    /// Share of the scene's triangles whose surface lets some light through.
+    /// Share of the scene's triangles that transmit light.
     pub tinted_triangles: f64,
 }
 
-/// Shares of a picture's pixels, one in all.
+/// Shares of an image's pixels; their sum is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PictureShares {
-    /// Judged, and V above 0.99.
+    /// Judged pixels with V above 0.99.
     pub lit: f64,
-    /// Judged, and V between.
+    /// Judged pixels with V between.
     pub penumbra: f64,
-    /// Judged, and V below 0.01.
+    /// Judged pixels with V below 0.01.
     pub umbra: f64,
-    /// Surfaces turned from the light or out of its reach, and pixels on edges.
+    /// Surfaces that face away from the light or are out of its reach, and pixels on edges.
     pub not_judged: f64,
-    /// Nothing there.
+    /// Pixels without a surface.
     pub background: f64,
 }
 
-/// What is in the penumbra; shares of its pixels, or of what blocks rays there.
+/// Properties of the penumbra, as shares of its pixels or of the blockers on its rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PenumbraFacts {
-    /// Pixels that were looked at.
+    /// Number of examined pixels.
     pub pixels: u64,
-    /// Share of the pixels with one distinct depth of occluders.
+    /// Share of the pixels with one distinct depth of blockers.
     pub one_depth: f64,
-    /// With two.
+    /// Share of the pixels with two distinct depths.
     pub two_depths: f64,
-    /// With more.
+    /// Share of the pixels with more distinct depths.
     pub more_depths: f64,
-    /// How wide the penumbrae are, pixels.
+    /// Widths of the penumbrae, pixels.
     pub width_px: Spread,
-    /// Share of what blocks that is narrower than a texel of a map of [`DEFAULT_MAP_TEXELS`] a side over all that is judged.
+    /// Share of blockers narrower than a texel of a map with [`DEFAULT_MAP_TEXELS`] per side that covers all judged pixels.
     pub thin: f64,
-    /// Share of what blocks that is alpha-masked.
+    /// Share of blockers that are alpha-tested.
     pub masked: f64,
-    /// Share of what blocks that lets some light through.
+    /// Share of blockers that transmit light.
     pub tinted: f64,
 }
 
-/// Middle and upper end of what varies.
+/// Median and 90th percentile of a distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Half are below.
+    /// Median.
     pub median: f64,
-    /// Nine of ten are below.
+    /// 90th percentile.
     pub p90: f64,
 }
 
-/// Texels along a side of most techniques' maps at their defaults.
+/// Texels per side of most techniques' maps by default.
 pub const DEFAULT_MAP_TEXELS: f32 = 1024.0;
 
-/// Light that comes in at less than this over a surface grazes it.
+/// Angle between light and surface below which light is grazing, degrees.
 pub const GRAZING_DEG: f32 = 15.0;
 
-/// Pixels of the penumbra that are looked at, at most: shares are known to 1.6 % (√(¼ / 1024)).
+/// Maximum number of examined penumbra pixels: shares are accurate to 1.6 % (√(¼ / 1024)).
 const MOST_PIXELS: usize = 1024;
-/// Rays from each, at most.
+/// Maximum number of rays per pixel.
 const RAYS: u32 = 32;
 
 impl SceneFacts {
-    /// Looks at a traced view. `receivers` are what `camera` sees through `tracer`, and `truth` is `light`'s there.
+    /// Measures a traced view. `receivers` are what `camera` sees through `tracer`, and `truth` is `light`'s there.
     ///
     /// # Errors
-    /// Where the light is invalid.
+    /// If the light is invalid.
     pub fn measure(
         scene: &Scene,
         tracer: &Tracer,
@@ -173,7 +173,7 @@ impl SceneFacts {
         })
     }
 
-    /// In words, a few lines.
+    /// Describes the facts in a few lines.
     pub fn lines(&self) -> Vec<String> {
         let p = &self.picture;
         let mut lines = vec![format!(
@@ -222,7 +222,7 @@ impl SceneFacts {
 }
 
 impl Spread {
-    /// `None` of nothing.
+    /// Returns the spread of some values; `None` if empty.
     fn of(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let at = |fraction: f64| values.get(((values.len() as f64 - 1.0) * fraction).round() as usize).copied();
@@ -230,7 +230,7 @@ impl Spread {
     }
 }
 
-/// Of a share.
+/// Formats a share as a percentage.
 pub(crate) fn percent(share: f64) -> String {
     match 100.0 * share {
         p if p > 0.0 && p < 0.5 => "under 1 %".into(),

@@ -1,4 +1,4 @@
-//! Rays from a pixel of the penumbra to the light, and every occluder on them.
+//! Rays from a penumbra pixel to the light, and all occluders on them.
 
 use antumbra_light::{Light, LightFrame, LightPoint};
 use antumbra_reference::{ReceiverPoint, Receivers, SampledLight, Tracer};
@@ -7,39 +7,39 @@ use glam::Vec3;
 
 use super::{DEFAULT_MAP_TEXELS, PenumbraFacts, RAYS, Spread};
 
-/// A depth hides so much of the light at least.
+/// Minimum fraction of the light that a depth hides.
 const LEAST_PART: f32 = 1.0 / 16.0;
-/// A width stands for those up to so many times itself.
+/// Ratio of the largest to the smallest width that count as one depth.
 const DISTINCT: f64 = 1.5;
-/// Surfaces on a ray that are looked at, at most: foliage has no end of them.
+/// Maximum number of surfaces examined per ray, because foliage has very many.
 const MOST_CROSSINGS: usize = 24;
-/// Blocked rays of a pixel whose occluder's width is looked at, at most.
+/// Maximum number of occluders per ray whose width is examined.
 const MOST_WIDTHS: usize = 8;
-/// How far before and behind an occluder its neighbourhood is looked at, in texels: a surface that tilts by 76° is still met
-/// a texel away.
+/// Half length, in texels, of the ray segment that looks for an occluder's neighbourhood: a surface
+/// tilted by 76° is still hit one texel away.
 const REACH_TEXELS: f32 = 4.0;
 
-/// What rays are shot into, and from where.
+/// Scene, receivers and light of the rays.
 pub(super) struct Probe<'a> {
     tracer: &'a Tracer,
     receivers: &'a Receivers,
     camera: &'a Camera,
     sampled: &'a SampledLight,
-    /// By instance.
+    /// Whether each instance's mesh is closed.
     is_closed: Vec<bool>,
-    /// By instance.
+    /// Occluder kind of each instance.
     occluders: Vec<Occluder>,
-    /// A texel of the default map: metres for a sun, metres a metre of distance for others.
+    /// Texel of the default map: metres for a sun, metres per metre of distance for other lights.
     texel: f32,
 }
 
-/// What pixels add up to.
+/// Sums over pixels.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
-    /// Pixels with one, two and more distinct depths.
+    /// Number of pixels with one, two and more distinct depths.
     depths: [u64; 3],
     widths_px: Vec<f64>,
-    /// Occluders whose width was looked at, and those of them that are thin.
+    /// Number of occluders whose width was examined, and of thin ones among them.
     looked_at: u64,
     thin: u64,
     crossings: u64,
@@ -47,9 +47,9 @@ pub(super) struct Tally {
     tinted: u64,
 }
 
-/// A surface, or a solid, on a ray.
+/// Surface or solid on a ray.
 struct Crossing {
-    /// Along the ray, metres.
+    /// Distance along the ray, metres.
     distance_m: f32,
     first_hit: ReceiverPoint,
 }
@@ -79,11 +79,11 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// Shoots a pixel's rays.
+    /// Traces a pixel's rays.
     pub(super) fn look(&self, pixel: usize, tally: &mut Tally) {
         let Some(receiver) = self.receivers.points[pixel] else { return };
         let points = self.sampled.points_for(pixel, receiver.position);
-        // A list of points has its own number.
+        // A list of points has its own number of samples.
         let step = points.len().div_ceil(RAYS as usize).max(1);
         let points: Vec<LightPoint> = points.into_iter().step_by(step).filter(|point| point.weight > 0.0).collect();
         let extent = extent_across(&points, receiver.position);
@@ -118,10 +118,11 @@ impl<'a> Probe<'a> {
         tally.depths[depths.clamp(1, 3) - 1] += 1;
     }
 
-    /// Everything on a ray up to the light, the nearest first; what goes into a closed mesh and out of it is one, midway.
+    /// Returns all surfaces and solids on a ray up to the light, nearest first. A closed mesh that is
+    /// entered and left counts once, midway.
     fn crossings(&self, origin: Vec3, direction: Vec3, length_m: f32) -> Vec<Crossing> {
         let mut crossings: Vec<Crossing> = Vec::new();
-        // Whether the last one is a surface of a closed mesh that the ray has not left yet.
+        // Whether the last crossing is a surface of a closed mesh that the ray has not left yet.
         let mut is_inside = false;
         let mut from_m = 0.0;
         for _ in 0..MOST_CROSSINGS {
@@ -145,8 +146,8 @@ impl<'a> Probe<'a> {
         crossings
     }
 
-    /// Whether nothing is there a texel to either side, in one of four directions across the ray: true of all that is narrower
-    /// than a texel, wherever it is met, and of nothing wider than two.
+    /// Returns whether both sides at a distance of one texel are empty, in one of four directions across the ray. This is true of
+    /// everything narrower than a texel, and of nothing wider than two.
     fn is_thin(&self, at: Vec3, direction: Vec3, point: &LightPoint) -> bool {
         let texel_m = if point.w == 0.0 { self.texel } else { self.texel * at.distance(point.xyz) };
         let right = direction.any_orthonormal_vector();
@@ -162,7 +163,7 @@ impl<'a> Probe<'a> {
         })
     }
 
-    /// How wide a pixel is at a place that it shows.
+    /// Returns the width of a pixel at a visible position, metres.
     fn pixel_m(&self, at: Vec3) -> f32 {
         let forward = (self.camera.target - self.camera.eye).normalize();
         let depth_m = (at - self.camera.eye).dot(forward);
@@ -188,8 +189,8 @@ impl Tally {
     }
 }
 
-/// The fewest widths that stand for all of these: from the least on, each for those up to [`DISTINCT`] times itself and half
-/// a pixel; what fewer than `least` rays meet does not count.
+/// Returns the number of widths that represent all: from the smallest on, each represents those up to [`DISTINCT`] times itself plus half
+/// a pixel. Groups hit by fewer than `least` rays do not count.
 fn distinct_depths(widths: &mut [f64], pixel: f64, least: usize) -> usize {
     widths.sort_by(f64::total_cmp);
     let mut depths = 0;
@@ -202,18 +203,18 @@ fn distinct_depths(widths: &mut [f64], pixel: f64, least: usize) -> usize {
     depths
 }
 
-/// The light's extent across the way to it, metres, or tangents for a sun: √12 standard deviations along a direction.
+/// Returns the light's extent across the direction to it, metres, or tangents for a sun: √12 standard deviations along a direction.
 fn extent_across(points: &[LightPoint], from: Vec3) -> f32 {
     let vectors = || points.iter().map(|point| point.vector_from(from));
     let mean = vectors().sum::<Vec3>() / points.len().max(1) as f32;
     let along = mean.normalize_or_zero();
     let variance: f32 =
         vectors().map(|v| (v - mean).reject_from(along).length_squared()).sum::<f32>() / points.len().max(1) as f32;
-    // Half of it along each of two directions.
+    // Half of the variance is along each of two directions.
     (6.0 * variance).sqrt()
 }
 
-/// How far what is seen reaches across a map from the light: metres for a sun, the tangent for others, up to that of a cube's face.
+/// Returns the extent of visible points in a map from the light: metres for a sun, tangents for others, at most that of a cube face.
 fn extent_of(light: &Light, frame: &LightFrame, seen: impl Iterator<Item = Vec3>) -> f32 {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for at in seen {

@@ -1,4 +1,4 @@
-//! A plate over a floor, whose penumbra is known, and built-in scenes that are built for one thing each.
+//! Tests with a plate above a floor, whose penumbra is known, and with built-in scenes that each show one property.
 
 use antumbra_light::{Light, LightShape};
 use antumbra_reference::{Tracer, VisibilityOptions};
@@ -23,7 +23,7 @@ fn builtin(name: &str) -> SceneFacts {
     facts_of(&scene, &setup.camera, &setup.lights[0], UVec2::new(96, 54))
 }
 
-/// A floor of 8 m, with square plates over it: their half sides and heights.
+/// Returns a floor of 8 m with square plates above it, given by half side and height.
 fn plates(plates: &[(f32, f32)]) -> Scene {
     let mut scene = Scene { materials: vec![Material::default()], ..Scene::default() };
     for (half_side_m, height_m) in [(4.0, 0.0)].iter().chain(plates) {
@@ -34,12 +34,12 @@ fn plates(plates: &[(f32, f32)]) -> Scene {
     scene
 }
 
-/// A square light of .4 m, ten metres up.
+/// Returns a square light of .4 m at a height of 10 m.
 fn lamp() -> Light {
     Light::new(LightShape::Rectangle { size_m: Vec2::splat(0.4) }, Vec3::new(0.0, 10.0, 0.0), Vec3::ZERO)
 }
 
-/// From the side, so that the floor under the plate is seen.
+/// Returns a camera at the side that sees the floor under the plate.
 fn camera() -> Camera {
     camera_at(Vec3::new(0.0, 3.0, 7.0))
 }
@@ -50,7 +50,7 @@ fn a_plate_s_penumbra_is_as_wide_as_geometry_says() {
     let facts = facts_of(&plates(&[(1.0, 2.0)]), &camera(), &lamp(), size_px);
     let penumbra = facts.penumbra.expect("a plate casts a penumbra");
     assert_eq!((penumbra.one_depth, penumbra.two_depths), (1.0, 0.0));
-    // .4 m · 2 / 8 = .1 m; a pixel is 2 tan(.4) / 90 of the distance, and the shadow's edges lie 6.3 to 8.8 m away.
+    // .4 m · 2 / 8 = .1 m; a pixel is 2 tan(.4) / 90 of the distance, and the shadow's edges are 6.3 to 8.8 m away.
     let pixels = |distance_m: f64| 0.1 / (2.0 * 0.4_f64.tan() / 90.0 * distance_m);
     assert!(
         (pixels(8.8)..pixels(6.2)).contains(&penumbra.width_px.median),
@@ -63,7 +63,7 @@ fn a_plate_s_penumbra_is_as_wide_as_geometry_says() {
     let p = facts.picture;
     assert!((p.lit + p.penumbra + p.umbra + p.not_judged + p.background - 1.0).abs() < 1e-12);
     assert!(p.umbra > 0.0 && p.penumbra > 0.0 && p.lit > p.penumbra && p.background > 0.0);
-    // The light is .57 m across its diagonal, ten metres from the middle.
+    // The light's diagonal is .57 m, ten metres from the middle.
     let diameter = facts.light_diameter_deg.unwrap().median;
     assert!((2.5..3.3).contains(&diameter), "{diameter}");
     assert!(facts.off_axis_deg.unwrap().p90 < 32.0 && facts.grazing == Some(0.0));
@@ -71,8 +71,8 @@ fn a_plate_s_penumbra_is_as_wide_as_geometry_says() {
 
 #[test]
 fn a_second_plate_is_a_second_depth() {
-    // On the floor, the first one's penumbra runs from 1.2 m to 1.3 m off the axis, and the second one's from .98 m to 1.47 m: of
-    // what the first leaves in penumbra, from 1.2 m on, some has both: a ninth as it is seen.
+    // On the floor, the first plate's penumbra extends from 1.2 m to 1.3 m off the axis, the second's from .98 m to 1.47 m. Of the
+    // penumbra that the first leaves, from 1.2 m on, some has both: a ninth as seen by the camera.
     let facts = facts_of(&plates(&[(1.0, 2.0), (0.55, 5.5)]), &camera(), &lamp(), UVec2::new(160, 90));
     let penumbra = facts.penumbra.unwrap();
     assert!(penumbra.two_depths > 0.08 && penumbra.more_depths == 0.0, "{penumbra:?}");
@@ -82,7 +82,7 @@ fn a_second_plate_is_a_second_depth() {
 fn a_wire_is_thin_and_a_board_is_not() {
     let bare = facts_of(&plates(&[]), &camera(), &lamp(), UVec2::new(64, 36));
     assert!(bare.penumbra.is_none() && bare.lines().iter().any(|line| line == "penumbra: none"));
-    // A texel of a map over the floor's 8 m is 6 mm where the wire hangs, which is 4 mm wide.
+    // A texel of a map over the floor's 8 m is 6 mm at the wire, which is 4 mm wide.
     let mut scene = plates(&[(1.0, 2.0)]);
     scene.instances[1].world_from_object *= Mat4::from_scale(Vec3::new(2e-3, 1.0, 1.0));
     let thin = facts_of(&scene, &camera_at(Vec3::new(4.0, 3.0, 6.0)), &lamp(), UVec2::new(160, 90));

@@ -1,4 +1,4 @@
-//! Irradiance against sums over light points, and pictures against what they must show.
+//! Tests of irradiance against sums over light samples, and of images against expected properties.
 
 use antumbra::Mask;
 use antumbra_light::{LightShape, SampleSet};
@@ -10,7 +10,7 @@ use crate::irradiance::analytic;
 use crate::picture::Visibility;
 use crate::test_support::{camera_at, lab_or_skip, quad};
 
-/// Irradiance by summing over points of the light, in double precision.
+/// Returns the irradiance as a sum over points of the light, in double precision.
 fn summed(light: &Light, x: Vec3, normal: Vec3) -> f64 {
     let frame = light.frame();
     let points = SampleSet::R2.points(1 << 15, 1);
@@ -18,7 +18,7 @@ fn summed(light: &Light, x: Vec3, normal: Vec3) -> f64 {
     let sum: f64 = points
         .iter()
         .map(|u| {
-            // A sphere's points are those of its surface, not of the disc that stands for it where visibility is meant.
+            // A sphere is sampled on its surface, not on the disc that represents it for visibility.
             if let LightShape::Sphere { radius_m } = light.shape {
                 let z = 1.0 - 2.0 * u.x;
                 let (s, c) = (std::f32::consts::TAU * u.y).sin_cos();
@@ -40,7 +40,7 @@ fn summed(light: &Light, x: Vec3, normal: Vec3) -> f64 {
                 LightShape::Ellipsoid { radii_m } => {
                     pi * f64::from(radii_m.element_product()).powf(2.0 / 3.0) * received / d2.powf(1.5)
                 }
-                // On the tangent disc, a distance of 1: the solid angle shrinks with the cosine's cube.
+                // On the tangent disc, at a distance of 1: the solid angle decreases with the cubed cosine.
                 LightShape::Sun { angular_diameter_rad } => {
                     pi * f64::from((0.5 * angular_diameter_rad).tan()).powi(2) * received / (d2 * d2)
                 }
@@ -52,7 +52,7 @@ fn summed(light: &Light, x: Vec3, normal: Vec3) -> f64 {
     sum / points.len() as f64
 }
 
-/// Receivers below, beside and behind the light, near and far, many with the light across their horizon.
+/// Returns receivers below, beside and behind the light, near and far, many with the light across their horizon.
 fn receivers() -> Vec<(Vec3, Vec3)> {
     let positions = [Vec3::ZERO, Vec3::new(1.5, 0.0, 0.5), Vec3::new(-3.0, 0.5, 2.0), Vec3::new(0.3, 1.0, 0.2)];
     let normals = [Vec3::Y, Vec3::new(1.0, 0.1, 0.0), Vec3::new(-1.0, 0.6, 0.3), Vec3::new(0.2, -0.3, 1.0), Vec3::Z];
@@ -63,7 +63,7 @@ fn assert_irradiance(lab: &LabDevice, light: &Light, tolerance: f64) {
     let receivers = receivers();
     for ((x, n), got) in receivers.iter().zip(analytic(lab, light, &receivers).unwrap()) {
         let want = summed(light, *x, *n);
-        // Of what the receiver would get if it faced the light: what is cut by the horizon may be small.
+        // The tolerance is relative to a receiver that faces the light, because the part above the horizon may be small.
         let facing = summed(light, *x, (light.center - *x).normalize());
         let facing = if light.is_distant() { summed(light, *x, -light.axis) } else { facing };
         let miss = (f64::from(got) - want).abs();
@@ -145,7 +145,7 @@ fn visibility_dims_and_tints_wherever_it_comes_from() {
     let middle_of = |source: VisibilitySource<'_>| shading.picture(lab, &images, &[source]).unwrap().linear_rgb[MIDDLE];
     let lit = middle_of(VisibilitySource::Lit);
     assert_eq!(middle_of(VisibilitySource::Image(&Visibility::one(SIZE, vec![1.0; n]))), lit);
-    // A mask is created black.
+    // A new mask is black.
     let umbra = middle_of(VisibilitySource::Mask(&Mask::new(&lab.device, SIZE)));
     assert_eq!(middle_of(VisibilitySource::Image(&Visibility::one(SIZE, vec![0.0; n]))), umbra);
     assert!(umbra.cmplt(0.4 * lit).all() && umbra.cmpgt(Vec3::ZERO).all(), "{umbra} against {lit}");
@@ -175,7 +175,7 @@ fn glass_lets_see_what_is_behind() {
     lab.check().unwrap();
 }
 
-/// A sphere of so few triangles that they show, with the normals of a smooth one.
+/// Returns a sphere of visibly few triangles, with smooth normals.
 fn coarse_sphere() -> Mesh {
     const RINGS: u32 = 6;
     const SEGMENTS: u32 = 10;
@@ -205,7 +205,7 @@ fn bent_normals_keep_light_off_triangles_that_face_away() {
     let mut coherent = Shading::new(lab, &uploaded, &camera, &images, std::slice::from_ref(&light)).unwrap();
     coherent.bend_normals(lab, &uploaded, &images);
 
-    // How much of the light is in front of each pixel's triangle: all the shadow that a convex body has.
+    // Fraction of the light in front of each pixel's triangle: the whole shadow of a convex body.
     let normals = read_rgba32f(lab, &images.geometric_normal).unwrap();
     let positions = images.read_positions(lab).unwrap();
     let frame = light.frame();
@@ -223,13 +223,13 @@ fn bent_normals_keep_light_off_triangles_that_face_away() {
     let n = visible.len();
     let dark = picture(&smooth, vec![0.0; n]);
 
-    // Unshadowed light on triangles turned from all of the light.
+    // Unshadowed light on triangles that face away from the whole light.
     let turned: Vec<usize> = (0..n).filter(|i| visible[*i] == Some(0.0)).collect();
     let [leak, bent_leak] = [&smooth, &coherent].map(|shading| {
         let lit = picture(shading, vec![1.0; n]);
         turned.iter().map(|i| (lit[*i] - dark[*i]).max_element()).sum::<f32>() / turned.len() as f32
     });
-    // Steps of shadowed light between neighbours of which one is turned away and the other is not.
+    // Differences of shadowed light between neighbours of which exactly one faces away.
     let width = SIZE.x as usize;
     let pairs = (0..n - width).flat_map(|i| [(i, i + 1), (i, i + width)]);
     let is_edge = |(a, b): &(usize, usize)| matches!((visible[*a], visible[*b]), (Some(a), Some(b)) if a.min(b) == 0.0 && a.max(b) > 0.5);

@@ -1,11 +1,11 @@
-//! Everything that BENCHMARKS shows, run in slices, with the results in one file.
+//! Suite: all measurements of BENCHMARKS, run in slices, with the results in one file.
 //!
 //! ```text
-//! plan ─► jobs that the file lacks ─► one after the other, the file written after each ─► tables
+//! plan ─► jobs missing in the file ─► one after the other, the file written after each ─► tables
 //! ```
 //!
-//! A slice begins no job after its time is over, so that some minutes on a machine are enough, and the same call
-//! goes on where it stopped. A file is of one adapter and one commit; a job's name says its table, scene and technique.
+//! A slice starts no job after its time is over, so a few minutes on a machine are enough; the same call resumes it. A file belongs to one
+//! adapter and one commit. A job's name has its table, scene and technique.
 
 mod plan;
 mod tables;
@@ -34,33 +34,33 @@ use crate::technique_run::{TechniqueChoice, Timing, create};
 use crate::truth::{LightTruth, trace};
 use crate::view::View;
 
-/// The file's format, and its version.
+/// Name and version of the file's format.
 const FORMAT: &str = "antumbra-suite";
 const VERSION: u32 = 1;
 
-/// Light points of every truth.
+/// Light samples of every ground truth.
 const TRUTH_SAMPLES: u32 = 1024;
-/// Times are medians of five frames after three at least, or of what a minute holds.
+/// Timing: medians of five frames after at least three, or of as many as fit into a minute.
 const TIMING: Timing =
     Timing { warm_up: 3, frames: 5, at_least: Duration::ZERO, at_most: Duration::from_secs(60), end: None };
-/// Frames and metres a frame of the motions.
+/// Number of frames of motions, and metres per frame.
 const MOTION_FRAMES: u32 = 16;
 const MOTION_STEP_M: f32 = 0.15;
 
-/// Results so far.
+/// Results in a file.
 #[derive(Clone, Debug)]
 pub struct Results(Map<String, Value>);
 
-/// How far a slice has come.
+/// Progress of a slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Done {
-    /// Jobs that have results.
+    /// Number of jobs with results.
     pub jobs: usize,
-    /// Jobs that there are.
+    /// Number of all jobs.
     pub of: usize,
 }
 
-/// Whose results these are: a file holds one adapter's and one commit's.
+/// Origin of results: a file has only those of one adapter and one commit.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 struct Origin {
     adapter: String,
@@ -74,7 +74,7 @@ impl Results {
     /// Reads a file of results.
     ///
     /// # Errors
-    /// Where it cannot be read or holds something else.
+    /// If the file cannot be read or has other content.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         const REMEDY: &str = "give a file that `antumbra bench --suite` wrote";
         match read_json(path, REMEDY)? {
@@ -87,7 +87,7 @@ impl Results {
         }
     }
 
-    /// The file's results, or none yet; a file of another adapter or commit is an error.
+    /// Returns the file's results, or none yet. A file of another adapter or commit is an error.
     fn of(path: &Path, origin: &Origin) -> Result<Self, LabError> {
         let about = json!(origin);
         if !path.exists() {
@@ -112,27 +112,27 @@ impl Results {
         Ok(read)
     }
 
-    /// A job's result.
+    /// Returns a job's result.
     pub fn row(&self, id: &str) -> Option<&Value> {
         self.0.get("rows")?.get(id)
     }
 
-    /// All results.
+    /// Returns all results.
     fn rows(&self) -> impl Iterator<Item = &Value> {
         self.0.get("rows").and_then(Value::as_object).into_iter().flat_map(Map::values)
     }
 
-    /// Names of all results.
+    /// Returns the names of all results.
     fn ids(&self) -> impl Iterator<Item = &str> {
         self.0.get("rows").and_then(Value::as_object).into_iter().flat_map(Map::keys).map(String::as_str)
     }
 
-    /// What the file says of itself: `adapter`, `commit`, `begun`.
+    /// Returns a property of the file: `adapter`, `commit`, `begun`.
     pub fn about(&self, key: &str) -> &str {
         self.0.get(key).and_then(Value::as_str).unwrap_or_default()
     }
 
-    /// Whether the adapter was a software renderer.
+    /// Returns whether the adapter was a software renderer.
     pub fn is_of_software(&self) -> bool {
         self.0.get("software") == Some(&true.into())
     }
@@ -148,18 +148,18 @@ impl Results {
         Ok(write_atomically(path, format!("{text}\n").as_bytes())?)
     }
 
-    /// How many of a plan's jobs have results.
+    /// Returns the progress of a plan.
     pub fn done(&self, plan: &Plan) -> Done {
         let (done, missing): (Vec<_>, Vec<_>) = plan.ids().partition(|id| self.row(id).is_some());
         Done { jobs: done.len(), of: done.len() + missing.len() }
     }
 }
 
-/// Runs what `path` lacks of a plan, for `at_most` and the job that runs then, and writes the file after each job.
+/// Runs jobs of a plan that `path` lacks, for `at_most` plus the last running job, and writes the file after each job.
 ///
 /// # Errors
-/// Where the file is of another adapter or commit or cannot be written, or the device fails. A technique that the device
-/// cannot run is a result that says so.
+/// If the file belongs to another adapter or commit or cannot be written, or the device fails. A technique that the device
+/// cannot run is a result with the reason.
 pub fn run_slice(
     lab: &LabDevice,
     plan: &Plan,
@@ -218,23 +218,23 @@ pub fn run_slice(
     Ok(results.done(plan))
 }
 
-/// A group's scene with what its jobs share.
+/// Scene of a group with the state that its jobs share.
 struct Bench<'a> {
     lab: &'a LabDevice,
     scene: Scene,
-    /// With the first light alone.
+    /// Setup with the first light only.
     setup: Setup,
     size_px: UVec2,
     truth: SharedTruth,
 }
 
-/// What the jobs of a group are held against.
+/// Reference that the jobs of a group share.
 enum SharedTruth {
-    /// Nothing: times alone are asked for.
+    /// No reference: only times are measured.
     None,
-    /// One frame's.
+    /// Ground truth of one frame.
     Still(LightTruth),
-    /// A motion's.
+    /// Ground truth of a motion.
     Moving(MotionOptions, MotionTruth),
 }
 
@@ -320,7 +320,7 @@ mod tests {
         assert!(
             hard["metrics"]["rmse"].as_f64().unwrap() > 0.05 && hard["timings"]["total_ms"].as_f64().unwrap() > 0.0
         );
-        // No time is no work, and none of what there was is lost.
+        // A slice without time runs nothing, and loses nothing.
         assert_eq!(run_slice(lab, &all, &path, "abc", Duration::ZERO, &Silent).unwrap(), Done { jobs: 1, of: 2 });
         assert_eq!(run_slice(lab, &all, &path, "abc", minute, &Silent).unwrap(), Done { jobs: 2, of: 2 });
         let results = Results::read(&path).unwrap();
@@ -345,7 +345,7 @@ mod tests {
         }
     }
 
-    /// No figure of the pages comes from elsewhere.
+    /// The pages' figures are up to date with the result files.
     #[test]
     fn benchmarks_are_what_the_suite_says() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

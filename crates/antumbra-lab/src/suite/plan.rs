@@ -1,4 +1,4 @@
-//! Plan of the suite: the rows of BENCHMARKS' tables, in groups that share a scene.
+//! Plan of the suite: the rows of BENCHMARKS' tables, grouped by scene.
 
 use antumbra::TechniqueKind;
 use glam::UVec2;
@@ -8,22 +8,22 @@ use crate::motion::Motion;
 use crate::reproduce::{Row, exhibits};
 use crate::technique_run::TechniqueChoice;
 
-/// A part of the suite: the rows of one table.
+/// Part of the suite: the rows of one table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Errors against rays.
+    /// Errors against the ray tracer.
     Errors,
-    /// Times, pass by pass.
+    /// Times of each pass.
     Times,
-    /// Times where one thing grows.
+    /// Times as one quantity grows.
     Growth,
-    /// What the papers say is cheaper than what.
+    /// Times of pairs that papers compare.
     Claims,
     /// Flicker and lag.
     Motion,
     /// `multi_view` with many views.
     Views,
-    /// The papers' exhibits.
+    /// Exhibits of the papers.
     Papers,
 }
 
@@ -32,7 +32,7 @@ impl Part {
     pub const ALL: [Self; 7] =
         [Self::Errors, Self::Times, Self::Growth, Self::Claims, Self::Motion, Self::Views, Self::Papers];
 
-    /// The first part of its jobs' names.
+    /// Returns the first part of its jobs' names.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Errors => "errors",
@@ -46,24 +46,24 @@ impl Part {
     }
 }
 
-/// A group of jobs on one scene and size.
+/// Jobs with one scene and size.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// The table that they are for.
+    /// Part of the suite.
     pub part: Part,
-    /// The scene, without `builtin:`.
+    /// Name of the scene, without `builtin:`.
     pub scene: &'static str,
     /// Width and height, pixels.
     pub size_px: UVec2,
-    /// The light is so many times as large as the scene's.
+    /// Factor of the light's size.
     pub light_scale: f32,
-    /// What is asked.
+    /// Kind of measurement.
     pub work: Work,
-    /// One job each: the last part of its name, and what runs.
+    /// Jobs: last part of the name, and technique.
     pub jobs: Vec<(String, TechniqueChoice)>,
 }
 
-/// What is asked of a technique.
+/// Kind of measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
     /// Error against the truth, time and memory.
@@ -75,7 +75,7 @@ pub enum Work {
 }
 
 impl Group {
-    /// A job's name in the results: `errors/overlap/pcss`.
+    /// Returns a job's name in the results: `errors/overlap/pcss`.
     pub fn id(&self, job: &str) -> String {
         match self.work {
             Work::Motion(motion) => format!("{}/{}/{}/{job}", self.part.name(), self.scene, motion.name()),
@@ -84,35 +84,35 @@ impl Group {
     }
 }
 
-/// A claim of a paper: what it says is cheaper, and than what.
+/// Claim of a paper that one technique takes less time than another.
 #[derive(Clone, Copy, Debug)]
 pub struct Claim {
-    /// In words.
+    /// Description in words.
     pub what: &'static str,
-    /// The shorter side.
+    /// Side claimed to be faster.
     pub ours: Side,
-    /// The longer one.
+    /// Side claimed to be slower.
     pub against: Side,
     /// Width and height, pixels.
     pub size_px: (u32, u32),
 }
 
-/// One side of a claim.
+/// Side of a claim.
 #[derive(Clone, Copy, Debug)]
 pub struct Side {
-    /// The scene, without `builtin:`.
+    /// Name of the scene, without `builtin:`.
     pub scene: &'static str,
-    /// The technique's name.
+    /// Name of the technique.
     pub technique: &'static str,
-    /// Parameters.
+    /// Parameters of the technique.
     pub settings: &'static [(&'static str, &'static str)],
 }
 
 impl Side {
-    /// The technique with its parameters.
+    /// Returns the technique with its parameters.
     ///
     /// # Panics
-    /// Where there is no technique of the name.
+    /// If there is no technique of this name.
     pub fn choice(&self) -> TechniqueChoice {
         let kind = TechniqueKind::from_name(self.technique).expect("the suite's techniques exist");
         let settings = self.settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
@@ -123,7 +123,7 @@ impl Side {
 /// Scenes of the table of errors.
 pub const ERROR_SCENES: [&str; 7] =
     ["overlap", "lantern-wall", "leaning-plank", "stacked-panels", "window", "columns", "tree"];
-/// Scenes of the table of times: few triangles, many thin things, one dense closed mesh.
+/// Scenes of the table of times: few triangles, many thin objects, one dense closed mesh.
 pub const TIME_SCENES: [&str; 3] = ["columns", "shanty", "knot"];
 /// Scenes of the table of `multi_view` with many views.
 pub const MANY_VIEW_SCENES: [&str; 20] = [
@@ -148,30 +148,30 @@ pub const MANY_VIEW_SCENES: [&str; 20] = [
     "hairball",
     "ring-in-grass",
 ];
-/// The scene of the table of motion.
+/// Scene of the table of motion.
 pub const MOTION_SCENE: &str = "lantern-wall";
 
-/// One of what grows in the table of growth, all else being at its defaults.
+/// Step of a quantity in the table of growth; everything else has its default.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// In words, and in its jobs' names.
+    /// Description, also used in the jobs' names.
     pub name: &'static str,
-    /// How much of it there is: texels, pixels, triangles, or times the light's own size.
+    /// Amount: texels, pixels, triangles, or factor of the light's size.
     pub amount: f64,
     scene: &'static str,
     size_px: (u32, u32),
     light_scale: f32,
-    /// Width of the light maps, where it is not the technique's own.
+    /// Width of the light maps; `None` uses the technique's default.
     map_px: Option<u32>,
 }
 
 impl Step {
-    /// A job's name within the table.
+    /// Returns a job's name within the table.
     pub fn job(&self, technique: &str) -> String {
         format!("{}/{technique}", self.name)
     }
 
-    /// A job's name in the results.
+    /// Returns a job's name in the results.
     pub fn id(&self, technique: &str) -> String {
         format!("{}/{}/{}", Part::Growth.name(), self.scene, self.job(technique))
     }
@@ -206,7 +206,7 @@ const fn pixel_step(name: &'static str, size_px: (u32, u32)) -> Step {
     Step { name, amount: size_px.0 as f64 * size_px.1 as f64, size_px, ..AS_IT_COMES }
 }
 
-/// What grows, each in steps of one factor.
+/// Growing quantities, each in steps of a constant factor.
 pub const GROWTH: [(&str, [Step; 3]); 4] = [
     ("map's texels", [map_step("512²", 512), map_step("1024²", 1024), map_step("2048²", 2048)]),
     ("light's size", [light_step("× ½", 0.5), light_step("× 1", 1.0), light_step("× 2", 2.0)]),
@@ -224,7 +224,7 @@ pub const GROWTH: [(&str, [Step; 3]); 4] = [
     ),
 ];
 
-/// Parameters that say how wide light maps are.
+/// Parameters that set the width of light maps.
 const MAP_SIZES: [&str; 2] = ["map_size", "view_size"];
 
 const REPROJECTION: &str = "reprojection";
@@ -232,7 +232,7 @@ const VIEWS: &str = "multi_view";
 const MAPS_512: &[(&str, &str)] = &[("view_size", "512")];
 const POINTS_256: &[(&str, &str)] = &[("samples", "256")];
 
-/// Claims of the papers, each pair measured one after the other.
+/// Claims of the papers; both sides are measured one after the other.
 pub const CLAIMS: &[Claim] = &[
     Claim {
         what: "64 depth maps of 512², 23 490 triangles (Marrs et al. 2014)",
@@ -286,33 +286,33 @@ pub const CLAIMS: &[Claim] = &[
     },
 ];
 
-/// What is to be run.
+/// Jobs of the suite.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Of BENCHMARKS' own tables.
+    /// Groups of BENCHMARKS' own tables.
     pub groups: Vec<Group>,
-    /// Of the papers'.
+    /// Rows of the papers' exhibits.
     pub papers: Vec<PaperRow>,
 }
 
-/// A row of a paper's exhibit.
+/// Row of a paper's exhibit.
 #[derive(Clone, Debug)]
 pub struct PaperRow {
-    /// The exhibit, `marrs-2014/figure3`.
+    /// Name of the exhibit, `marrs-2014/figure3`.
     pub exhibit: String,
-    /// The row's place there, from 0.
+    /// Index of the row in the exhibit.
     pub number: usize,
-    /// What to run.
+    /// Row to run.
     pub row: &'static Row,
 }
 
 impl PaperRow {
-    /// The row's name in the results: `papers/marrs-2014/figure4/reprojection`.
+    /// Returns the row's name in the results: `papers/marrs-2014/figure4/reprojection`.
     pub fn id(&self) -> String {
         format!("{}/{}/{}", Part::Papers.name(), self.exhibit, self.row.what)
     }
 
-    /// What is kept of it: with what it was, since rows of later commits may be others by the same name.
+    /// Returns the stored result, with a description of the row, because rows of later commits may differ under the same name.
     pub fn kept(&self, here: &str) -> Value {
         json!({
             "exhibit": self.exhibit,
@@ -326,7 +326,7 @@ impl PaperRow {
 }
 
 impl Plan {
-    /// Everything, cheap groups first.
+    /// Returns the whole suite, cheap groups first.
     pub fn whole() -> Self {
         let rows = |(exhibit, rows): (String, &'static [Row])| {
             rows.iter().enumerate().map(move |(number, row)| PaperRow { exhibit: exhibit.clone(), number, row })
@@ -337,7 +337,7 @@ impl Plan {
         }
     }
 
-    /// Some of its parts.
+    /// Returns the plan restricted to some parts.
     #[must_use]
     pub fn only(mut self, parts: &[Part]) -> Self {
         self.groups.retain(|group| parts.contains(&group.part));
@@ -347,7 +347,7 @@ impl Plan {
         self
     }
 
-    /// The names of all jobs.
+    /// Returns the names of all jobs.
     pub fn ids(&self) -> impl Iterator<Item = String> {
         let own = self.groups.iter().flat_map(|group| group.jobs.iter().map(|(job, _)| group.id(job)));
         own.chain(self.papers.iter().map(PaperRow::id))
@@ -389,7 +389,7 @@ fn groups() -> Vec<Group> {
     errors.into_iter().chain(times).chain(growth).chain(claims).chain(motions).chain(views).collect()
 }
 
-/// A claim's job: `3-ours`.
+/// Returns the name of a claim's job: `3-ours`.
 pub(super) fn claim_job(claim: usize, side: &str) -> String {
     format!("{claim}-{side}")
 }

@@ -1,4 +1,4 @@
-//! Results as BENCHMARKS' tables, in Markdown.
+//! BENCHMARKS' tables of results, in Markdown.
 
 use std::fmt::Write;
 
@@ -11,8 +11,8 @@ use super::plan::{
 use super::{Done, MOTION_FRAMES, MOTION_STEP_M, Results, TIMING, TRUTH_SAMPLES};
 use crate::motion::Motion;
 
-/// BENCHMARKS.md: every table of which there is a result, with what it is of and how it is made again. What is not measured yet
-/// is an empty cell, what the adapter cannot run a dash. Techniques without any result have no rows and are named once.
+/// Returns BENCHMARKS.md: every table with a result, its origin, and the command that reproduces it. A cell is empty if not measured yet,
+/// and a dash if the adapter cannot run it. Techniques without any result have no rows and are listed once.
 pub fn markdown(results: &Results) -> String {
     let plan = Plan::whole();
     let Done { jobs, of } = results.done(&plan);
@@ -54,7 +54,7 @@ pub fn markdown(results: &Results) -> String {
     text
 }
 
-/// Which techniques have no row, and why.
+/// Lists the techniques without a row, with the reason.
 fn absent(results: &Results) -> String {
     let names = TechniqueKind::ALL.iter().filter(|kind| !is_measured(results, kind.name()));
     let names = names.map(|kind| format!("`{kind}`")).collect::<Vec<_>>();
@@ -64,12 +64,12 @@ fn absent(results: &Results) -> String {
     format!(" Without a row, since the commit is older or the run ended before: {}.", names.join(", "))
 }
 
-/// Whether there is any result of a technique at its defaults.
+/// Returns whether there is a result of a technique with its defaults.
 fn is_measured(results: &Results, name: &str) -> bool {
     results.ids().any(|id| id.rsplit('/').next() == Some(name))
 }
 
-/// `5 frames (2 for long ones) after 3 to 6 warm-up frames`: number of frames of which times are medians, and of frames before them.
+/// Returns `5 frames (2 for long ones) after 3 to 6 warm-up frames`: the numbers of timed and warm-up frames.
 fn counts(results: &Results) -> String {
     let of = |key: &str| {
         let counts = results.rows().filter_map(|row| row["timings"][key].as_u64()).collect::<Vec<_>>();
@@ -83,7 +83,7 @@ fn counts(results: &Results) -> String {
     format!("{most} frames{long} after {warm_up} warm-up frames")
 }
 
-/// A cell: the number that `value` finds in a result, with so many decimals.
+/// Formats a cell: the number that `value` finds in a result, with `decimals` decimals.
 fn cell(row: Option<&Value>, decimals: usize, value: impl Fn(&Value) -> Option<f64>) -> String {
     match row {
         None => String::new(),
@@ -103,12 +103,12 @@ fn mib(row: &Value) -> Option<f64> {
     row["memory_bytes"].as_f64().map(|bytes| bytes / f64::from(1 << 20))
 }
 
-/// A table's head; nothing else is written of a table without a result.
+/// Returns a table's head. A table without a result is omitted completely.
 fn head(title: &str, columns: &[String]) -> String {
     format!("\n## {title}\n\n| {} |\n|{}\n", columns.join(" | "), "---|".repeat(columns.len()))
 }
 
-/// A table of techniques, if one of its cells holds something.
+/// Returns a table of techniques; empty if all its cells are.
 fn of_techniques(results: &Results, title: &str, columns: &[String], cells: impl Fn(&str) -> Vec<String>) -> String {
     let measured = TechniqueKind::ALL.iter().map(|kind| kind.name()).filter(|name| is_measured(results, name));
     let rows: Vec<_> = measured.map(|name| (name, cells(name))).collect();
@@ -158,7 +158,7 @@ fn growth(results: &Results) -> String {
             let row = |step: &Step| results.row(&step.id(name));
             let times = steps.each_ref().map(|step| cell(row(step), 1, total_ms));
             let ms = |step: &Step| row(step).and_then(total_ms);
-            // Steps are of one factor, so that the line of least squares has the slope between first and last.
+            // Steps have a constant factor, so the least-squares line has the slope between first and last.
             let ends = ms(&steps[0]).zip(ms(&steps[2]));
             let exponent = ends.map(|(first, last)| (last / first).ln() / (steps[2].amount / steps[0].amount).ln());
             let times = if times.iter().all(String::is_empty) { String::new() } else { times.join(", ") };
@@ -173,7 +173,7 @@ fn growth(results: &Results) -> String {
         + "\nThe exponent is that of the column's quantity: 1 is proportional, 0.5 grows with the square root. Everything else is at its default.\n"
 }
 
-/// The passes of a result with their times.
+/// Formats the passes of a result with their times.
 fn passes(row: &Value) -> String {
     let pass = |pass: &Value| Some(format!("{} {:.2}", pass["label"].as_str()?, pass["ms"].as_f64()?));
     let passes = row["timings"]["passes"].as_array();
@@ -243,7 +243,7 @@ fn views(results: &Results) -> String {
     head("Many views", &columns) + &rows
 }
 
-/// The papers' own figures beside these: of the rows that were run, as they were then.
+/// Returns the table of the papers' figures beside ours, for rows with results, described as they were run.
 fn papers(results: &Results, plan: &Plan) -> String {
     let place =
         |row: &Value| plan.papers.iter().position(|paper| Some(paper.exhibit.as_str()) == row["exhibit"].as_str());
@@ -267,7 +267,7 @@ mod tests {
 
     use super::*;
 
-    /// Each kind of result lands in its table, and what is not there leaves no table.
+    /// Each kind of result appears in its table, and tables without results are omitted.
     #[test]
     fn results_become_tables() {
         let still = json!({ "metrics": { "rmse": 0.0123 }, "timings": { "total_ms": 8.0, "passes": [{ "label": "resolve", "ms": 7.5 }] },

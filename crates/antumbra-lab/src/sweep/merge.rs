@@ -1,4 +1,4 @@
-//! Results of shards, put together.
+//! Merging of the shards' results.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,21 +9,21 @@ use super::plan::{Plan, Shard};
 use super::{JobResult, PLAN_NAME, results_in};
 use crate::error::LabError;
 
-/// All results of a plan.
+/// Merged results of a plan.
 #[derive(Clone, Debug)]
 pub struct Merged {
-    /// As JSON, in the plan's order.
+    /// Results as JSON, in the plan's order.
     pub json: Value,
-    /// How many there are.
+    /// Number of results.
     pub jobs: usize,
-    /// How many of them could not be run.
+    /// Number of jobs that could not run.
     pub skipped: usize,
 }
 
-/// Puts together the results of a sweep's folder, or of its copies on several machines.
+/// Merges the results of a sweep's folder, or of its copies on several machines.
 ///
 /// # Errors
-/// Where plans, commits, adapters or sizes differ, a job has two results that differ, or one has none.
+/// If plans, commits, adapters or sizes differ, a job has two different results, or one has none.
 pub fn merge(dirs: &[PathBuf]) -> Result<Merged, LabError> {
     let (plan, fingerprint) = Plan::read(&dirs[0])?;
     let mut results: BTreeMap<usize, (JobResult, &Path)> = BTreeMap::new();
@@ -78,7 +78,7 @@ pub fn merge(dirs: &[PathBuf]) -> Result<Merged, LabError> {
     })
 }
 
-/// Whether a result is of this plan's job; else why not.
+/// Checks that a result belongs to the plan's job. The error is the reason.
 fn check(plan: &Plan, fingerprint: &str, result: &JobResult) -> Result<(), String> {
     if result.plan != fingerprint {
         return Err("it is of another plan".into());
@@ -121,7 +121,7 @@ fn row(plan: &Plan, result: &JobResult) -> Value {
 }
 
 impl Shard {
-    /// The shard that holds a job, of so many.
+    /// Returns the shard, out of `of`, that contains a job.
     pub fn of_job(job: usize, jobs: usize, of: usize) -> Self {
         let index = (1..=of).find(|index| Self { index: *index, of }.range(jobs).contains(&job)).unwrap_or(1);
         Self { index, of }

@@ -1,13 +1,13 @@
-//! Comparisons that outgrow a machine: many scenes, sizes and settings as independent jobs in files.
+//! Sweep: comparisons too large for one machine. Many scenes, sizes and settings are independent jobs in files.
 //!
 //! ```text
 //! plan.json ─► shard 1/n ─► results/00000.json … ─┐
 //!          └─► shard 2/n ─► results/00400.json … ─┴─► merged: one file
 //! ```
 //!
-//! There is no scheduler here and no state but files: a shard runs those of its jobs that have no result yet, each result appears
-//! whole or not at all, and whoever starts shards (a cluster's array, GNU parallel, a loop) may start them again. Shards are
-//! runs of neighbouring jobs, so that those on one scene and size share its truth.
+//! There is no scheduler and no state but files. A shard runs those of its jobs that have no result yet, and each result appears
+//! completely or not at all. So a cluster's job array, GNU parallel or a loop may start and restart shards. A shard consists of
+//! consecutive jobs, so that jobs with the same scene and size share its ground truth.
 
 mod merge;
 mod plan;
@@ -27,12 +27,12 @@ pub use run::{Done, run_shard};
 use crate::device::LabDevice;
 use crate::output_files::{FileError, read_json};
 
-/// The plan in a sweep's folder.
+/// File name of the plan in a sweep's folder.
 pub const PLAN_NAME: &str = "plan.json";
-/// The results beside it.
+/// Folder name of the results beside it.
 const RESULTS_NAME: &str = "results";
 
-/// Where a result comes from: results of two origins are not put together.
+/// Origin of a result. Results of different origins are not merged.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Origin {
     commit: String,
@@ -53,7 +53,7 @@ impl Origin {
         }
     }
 
-    /// The first thing in which another one differs: what, there and here.
+    /// Returns the first difference to another origin: its name, and the values there and here.
     fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
         let pairs = [
             ("commit", &other.commit, &self.commit),
@@ -68,23 +68,23 @@ impl Origin {
     }
 }
 
-/// A job's result.
+/// Result of a job.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct JobResult {
     format: String,
     version: u32,
-    /// Of the plan's text.
+    /// Fingerprint of the plan's text.
     plan: String,
     #[serde(flatten)]
     origin: Origin,
     job: Job,
-    /// Why it could not be run; the rest is empty then.
+    /// Reason why the job could not run; the following fields are empty then.
     skipped: Option<String>,
     parameters: Map<String, Value>,
     metrics: Value,
     timings: Value,
     memory_bytes: Option<u64>,
-    /// Of maps whose size is `auto`; missing in older results.
+    /// Sizes of maps whose size is `auto`; missing in older results.
     #[serde(default)]
     auto_map_sizes: Vec<u32>,
 }
@@ -101,12 +101,12 @@ fn read_result(path: &Path) -> Result<JobResult, FileError> {
     Ok(result)
 }
 
-/// All results of a folder, in the jobs' order; none before the first shard has run.
+/// Reads all results of a folder in the order of jobs; empty before the first shard has run.
 fn results_in(dir: &Path) -> Result<Vec<JobResult>, FileError> {
     let folder = dir.join(RESULTS_NAME);
     let Ok(entries) = std::fs::read_dir(&folder) else { return Ok(Vec::new()) };
     let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    // What is hidden is being written.
+    // Hidden files are unfinished.
     let is_result = |path: &std::path::PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         name.ends_with(".json") && !name.starts_with('.')

@@ -15,63 +15,63 @@ use crate::technique_run::TechniqueChoice;
 const FORMAT: &str = "antumbra-sweep";
 const VERSION: u32 = 1;
 
-/// Jobs, and what they are about.
+/// Jobs of a sweep and their inputs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     format: String,
     version: u32,
-    /// The program's: another one runs other jobs.
+    /// Commit of the program. Another commit does not run this plan.
     pub commit: String,
     /// The command line.
     pub command: String,
-    /// Light points of every truth.
+    /// Light samples of every ground truth.
     pub samples: u32,
     /// Timed frames of every job.
     pub frames: u32,
-    /// What jobs look at.
+    /// Scenes of the jobs.
     pub scenes: Vec<PlannedScene>,
-    /// What is run, in the order of scenes and sizes.
+    /// Jobs in the order of scenes and sizes.
     pub jobs: Vec<Job>,
 }
 
 /// A scene with its camera and lights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlannedScene {
-    /// `builtin:street`, or a path as shards find it.
+    /// Scene: `builtin:street`, or a path as seen by shards.
     pub scene: String,
-    /// Where animations are sampled, seconds.
+    /// Time at which animations are sampled, seconds.
     pub time_s: f32,
-    /// It stands on a ground that we put there.
+    /// Whether a ground plane was added to the scene.
     pub ground: bool,
-    /// Its triangles, by which another file of that name is known.
+    /// Number of triangles, which detects another file of the same name.
     pub triangles: usize,
-    /// The setup file's text.
+    /// Text of the setup file.
     pub setup: String,
-    /// The light that is judged, by name.
+    /// Name of the judged light.
     pub light: String,
 }
 
-/// A technique on a scene at a size.
+/// A technique with a scene and an image size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Job {
-    /// Its place in the plan, and its result's name.
+    /// Index in the plan, and name of the result.
     pub id: usize,
     /// Index into the plan's scenes.
     pub scene: usize,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// With its quality: `pcss:fast`.
+    /// Name of the technique with its quality: `pcss:fast`.
     pub technique: String,
-    /// Keys and values, set after what the quality sets.
+    /// Parameters as keys and values, set after those of the quality.
     pub settings: Vec<(String, String)>,
 }
 
-/// A part of the jobs: the first of four is 1/4.
+/// Part of the jobs: the first of four is 1/4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// From 1 on.
+    /// Number of the shard, from 1.
     pub index: usize,
-    /// How many there are.
+    /// Number of shards.
     pub of: usize,
 }
 
@@ -79,7 +79,7 @@ impl Shard {
     /// All jobs.
     pub const WHOLE: Self = Self { index: 1, of: 1 };
 
-    /// Which of so many jobs are its own.
+    /// Returns the range of jobs, out of `jobs`, that belong to the shard.
     pub fn range(self, jobs: usize) -> std::ops::Range<usize> {
         (self.index - 1) * jobs / self.of..self.index * jobs / self.of
     }
@@ -92,7 +92,7 @@ impl fmt::Display for Shard {
 }
 
 impl PlannedScene {
-    /// A loaded scene as a plan has it.
+    /// Creates the plan's description of a loaded scene.
     pub fn new(spec: &str, time_s: f32, ground: bool, scene: &Scene, setup: &Setup, light: usize) -> Self {
         Self {
             scene: spec.to_owned(),
@@ -106,7 +106,7 @@ impl PlannedScene {
 }
 
 impl Plan {
-    /// Every scene at every size by every technique.
+    /// Creates a plan of every scene at every size with every technique.
     pub fn new(
         scenes: Vec<PlannedScene>,
         sizes_px: &[UVec2],
@@ -145,7 +145,7 @@ impl Plan {
     /// Writes the plan into a folder.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn write(&self, dir: &Path) -> Result<(), FileError> {
         let text = serde_json::to_string_pretty(self).expect("a plan has text");
         write_atomically(&dir.join(PLAN_NAME), format!("{text}\n").as_bytes())
@@ -154,7 +154,7 @@ impl Plan {
     /// Reads a folder's plan, and the fingerprint of its text.
     ///
     /// # Errors
-    /// Where there is none, or what it names does not exist.
+    /// If there is no plan, or a technique or scene in it does not exist.
     pub fn read(dir: &Path) -> Result<(Self, String), FileError> {
         const REMEDY: &str = "give a folder that `antumbra sweep plan` wrote";
         let path = dir.join(PLAN_NAME);
@@ -175,13 +175,13 @@ impl Plan {
 }
 
 impl Job {
-    /// As it is run; `None` where there is no such technique.
+    /// Returns the technique choice to run; `None` if there is no such technique.
     pub fn choice(&self) -> Option<TechniqueChoice> {
         let choice = TechniqueChoice::from_name(&self.technique)?;
         Some(TechniqueChoice { settings: self.settings.clone(), ..choice })
     }
 
-    /// Where its result stands in a sweep's folder.
+    /// Returns the path of its result in a sweep's folder.
     pub(super) fn result_path(&self, dir: &Path) -> std::path::PathBuf {
         dir.join(RESULTS_NAME).join(format!("{:05}.json", self.id))
     }

@@ -1,4 +1,4 @@
-//! A shard at work.
+//! Running of a shard.
 
 use std::path::Path;
 use std::time::Duration;
@@ -19,25 +19,25 @@ use crate::technique_run::{Timing, create, parameters_of};
 use crate::truth::{LightTruth, trace};
 use crate::view::View;
 
-/// However many frames a plan has, no job is timed for longer.
+/// Maximum total time of a job's timed frames, whatever their number.
 const AT_MOST: Duration = Duration::from_secs(3);
-/// And however few, short ones are timed for as long.
+/// Minimum total time of a job's timed frames, whatever their number.
 const AT_LEAST: Duration = Duration::from_millis(250);
 
-/// How far a shard is.
+/// Progress of a shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Done {
-    /// Jobs that this call ran.
+    /// Number of jobs that this call ran.
     pub ran: usize,
-    /// Jobs of the shard that had results.
+    /// Number of the shard's jobs that had results already.
     pub had: usize,
 }
 
-/// Runs those of a shard's jobs that have no result, and writes each one's as it is there.
+/// Runs those of a shard's jobs that have no result, and writes each result when it is available.
 ///
 /// # Errors
-/// Where the folder has no plan, the plan or earlier results are of another commit or adapter, a scene is not what it was, or
-/// the device fails. A technique that the device cannot run is a result that says so.
+/// If the folder has no plan, the plan or earlier results have another commit or adapter, a scene has changed, or the device fails. A
+/// technique that the device cannot run is a result with the reason.
 pub fn run_shard(
     lab: &LabDevice,
     dir: &Path,
@@ -54,7 +54,7 @@ pub fn run_shard(
     if plan.commit != commit {
         return Err(refuse("commit", &plan.commit, commit));
     }
-    // Before hours of work that could not be merged.
+    // Checked before hours of work that could not be merged.
     for result in results_in(dir)? {
         if let Some((what, there, here)) = here.difference(&result.origin) {
             return Err(refuse(&format!("results' {what}"), &there, &here));
@@ -86,12 +86,12 @@ pub fn run_shard(
     Ok(Done { ran, had })
 }
 
-/// A scene at a size, with its truth.
+/// A scene at one size, with its ground truth.
 struct Bench<'a> {
     lab: &'a LabDevice,
     scene: antumbra_scene::Scene,
     setup: Setup,
-    /// Index into the setup's lights.
+    /// Index of the judged light in the setup.
     light: usize,
     size_px: UVec2,
     truth: LightTruth,
@@ -122,7 +122,7 @@ impl<'a> Bench<'a> {
         };
         let size_px = UVec2::from_array(job.size);
         let options = VisibilityOptions { samples: plan.samples, ..VisibilityOptions::default() };
-        // Of all lights, so that pixels have the light points that `compare` gives them.
+        // All lights are traced, so that pixels have the same light samples as in `compare`.
         let mut truth = trace(&scene, &setup, size_px, &options, progress)?.swap_remove(light);
         let seen = View::new(lab, &scene, &setup, size_px)?.surface_points()?;
         truth.judge_what_is_seen(&seen, setup.camera.eye);
@@ -130,7 +130,7 @@ impl<'a> Bench<'a> {
         Ok(Self { lab, scene, setup, light, size_px, truth, timing })
     }
 
-    /// A job's result, without plan and origin.
+    /// Returns a job's result, without plan and origin.
     fn run(&self, job: &Job) -> Result<JobResult, LabError> {
         let choice = job.choice().expect("a plan that was read has techniques");
         let mut result = JobResult {

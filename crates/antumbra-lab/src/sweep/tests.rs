@@ -1,4 +1,4 @@
-//! Shards against one process, one of them killed on the way; and results that do not belong together.
+//! Tests: shards equal a single process, also if one is killed; results of different origins are not merged.
 
 use std::fs;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ fn plan_in(dir: &Path, samples: u32) -> Plan {
     plan
 }
 
-/// The errors of all rows: all that does not depend on the clock.
+/// Returns the errors of all rows, which do not depend on time.
 fn errors(merged: &Merged) -> Vec<(Value, Value, Value)> {
     let rows = merged.json["rows"].as_array().unwrap();
     rows.iter().map(|row| (row["scene"].clone(), row["technique"].clone(), row["metrics"].clone())).collect()
@@ -49,7 +49,7 @@ fn shards_merged_are_one_process_to_the_last_digit() {
     let shard = |index| Shard { index, of: 2 };
     run_shard(lab, dirs[1], shard(1), "abc", &Silent).unwrap();
     run_shard(lab, dirs[2], shard(2), "abc", &Silent).unwrap();
-    // The second was killed: a result is lost, and another was being written.
+    // The second shard was killed: a result is lost, and another is unfinished.
     fs::remove_file(plan.jobs[4].result_path(dirs[2])).unwrap();
     fs::write(dirs[2].join("results/.00004.json.1-0.unfinished"), "{").unwrap();
     let both: Vec<PathBuf> = dirs[1..].iter().map(|dir| dir.to_path_buf()).collect();

@@ -1,4 +1,4 @@
-//! Choice of a technique: its quality, its settings, and passes beside its own; how it is named.
+//! Choice of a technique: quality, settings, additional passes, and its name.
 
 use antumbra::contract::{ParamSpec, SampleWeights};
 use antumbra::{Quality, TechniqueKind};
@@ -6,22 +6,22 @@ use antumbra::{Quality, TechniqueKind};
 /// A technique with the parameters that a user set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TechniqueChoice {
-    /// Which technique.
+    /// Technique.
     pub kind: TechniqueKind,
-    /// How much it may spend.
+    /// Quality preset.
     pub quality: Quality,
-    /// Keys and values as written, set after what the quality sets; later ones win.
+    /// Keys and values as written, set after those of the quality; later ones take precedence.
     pub settings: Vec<(String, String)>,
-    /// Passes beside its own.
+    /// Additional passes.
     pub extras: Extras,
 }
 
-/// Passes that any technique can have beside its own: what its name ends with.
+/// Additional passes that any technique can have, as suffixes of its name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
-    /// Masks of half the width and height, interpolated: `+half`.
+    /// Whether masks have half the width and height and are interpolated: `+half`.
     pub is_half: bool,
-    /// Masks made smooth over frames and pixels, as the library does by default where it is asked to: `+denoised`.
+    /// Whether masks are denoised over frames and pixels, with the library's defaults: `+denoised`.
     pub is_denoised: bool,
 }
 
@@ -29,12 +29,12 @@ impl Extras {
     const HALF: &str = "+half";
     const DENOISED: &str = "+denoised";
 
-    /// Of masks that are made smooth, and nothing else.
+    /// Returns denoising as the only additional pass.
     pub const fn denoised() -> Self {
         Self { is_half: false, is_denoised: true }
     }
 
-    /// A technique's name without its ends, and what these say, in any case and order.
+    /// Splits a technique's name into base name and suffixes, in any case and order.
     pub fn split(name: &str) -> (&str, Self) {
         let (mut name, mut extras) = (name, Self::default());
         loop {
@@ -48,41 +48,41 @@ impl Extras {
         }
     }
 
-    /// What a name ends with.
+    /// Returns the suffix of a name.
     pub fn suffix(self) -> String {
         let ends = [(self.is_half, Self::HALF), (self.is_denoised, Self::DENOISED)];
         ends.into_iter().filter_map(|(is, end)| is.then_some(end)).collect()
     }
 }
 
-/// A name without an end in any case; `None` where it has another.
+/// Removes a suffix in any case; `None` if the name does not end with it.
 fn without_end<'n>(name: &'n str, end: &str) -> Option<&'n str> {
     let (head, tail) = name.split_at_checked(name.len().checked_sub(end.len())?)?;
     tail.eq_ignore_ascii_case(end).then_some(head)
 }
 
 impl TechniqueChoice {
-    /// A technique at its defaults.
+    /// Returns a technique with its defaults.
     pub fn default_of(kind: TechniqueKind) -> Self {
         Self::of_quality(kind, Quality::Balanced)
     }
 
-    /// A technique that may spend so much.
+    /// Returns a technique with a quality.
     pub fn of_quality(kind: TechniqueKind, quality: Quality) -> Self {
         Self { kind, quality, settings: Vec::new(), extras: Extras::default() }
     }
 
-    /// A technique at its defaults, with settings.
+    /// Returns a technique with its defaults and settings.
     pub fn with_settings(kind: TechniqueKind, settings: Vec<(String, String)>) -> Self {
         Self { settings, ..Self::default_of(kind) }
     }
 
-    /// The same with passes beside its own.
+    /// Returns the choice with additional passes.
     pub fn with_extras(self, extras: Extras) -> Self {
         Self { extras, ..self }
     }
 
-    /// Name of the technique, with its quality where that is not the default, and its extras: `pcss`, `pcss:fast+half+denoised`.
+    /// Returns the name of the technique, with its quality unless it is the default, and suffixes: `pcss`, `pcss:fast+half+denoised`.
     pub fn name(&self) -> String {
         let extras = self.extras.suffix();
         match self.quality {
@@ -91,7 +91,7 @@ impl TechniqueChoice {
         }
     }
 
-    /// The technique that [`name`](Self::name) names, in any case; `None` where there is none.
+    /// Returns the technique of a [`name`](Self::name), in any case; `None` if there is none.
     pub fn from_name(name: &str) -> Option<Self> {
         let (name, extras) = Extras::split(name);
         let (kind, quality) = name.split_once(':').map_or((name, None), |(kind, quality)| (kind, Some(quality)));
@@ -100,8 +100,8 @@ impl TechniqueChoice {
         Some(Self::of_quality(kind, quality).with_extras(extras))
     }
 
-    /// The same technique with exact comparisons under its own kernel in its basis's place: the truth of techniques with
-    /// a kernel of fixed width. `None` for the others.
+    /// Returns the same technique with exact comparisons under its own kernel instead of its basis: the reference of techniques with a
+    /// kernel of fixed width. `None` for others.
     pub fn filtered_truth(&self) -> Option<Self> {
         let is_exact = |spec: &&ParamSpec| spec.key == "resolve" && spec.choices.contains(&"exact");
         self.kind.param_specs().iter().find(is_exact)?;
@@ -114,8 +114,8 @@ impl TechniqueChoice {
         })
     }
 
-    /// The same with masks for shading alone: the part of a light's own irradiance that arrives ([`SampleWeights::Irradiance`]), where the
-    /// technique has it and no setting says otherwise.
+    /// Returns the choice with masks for shading only: the arriving fraction of a light's irradiance ([`SampleWeights::Irradiance`]), if
+    /// the technique has it and no setting overrides it.
     pub fn for_shading(&self) -> Self {
         let (key, irradiance) = (SampleWeights::KEY, SampleWeights::Irradiance.to_string());
         let is_set = self.settings.iter().any(|(set, _)| set == key);
@@ -126,7 +126,7 @@ impl TechniqueChoice {
         Self { settings: self.settings.iter().cloned().chain(weights).collect(), ..self.clone() }
     }
 
-    /// The settings as they would be given to `compare` or `bench`: ` --set pcss.map_size=2048`.
+    /// Returns the settings as arguments of `compare` or `bench`: ` --set pcss.map_size=2048`.
     pub fn as_arguments(&self) -> String {
         self.settings.iter().map(|(key, value)| format!(" --set {}.{key}={value}", self.name())).collect()
     }

@@ -1,4 +1,4 @@
-//! Frames of a technique: drawn one after the other until an observer has enough, each waited for.
+//! Frames of a technique: drawn synchronously one after the other until an observer has enough.
 
 use std::time::Instant;
 
@@ -13,20 +13,20 @@ use crate::picture::Visibility;
 use crate::readback::read_f32_layer;
 use crate::stopwatch::{Seen, Stopwatch};
 
-/// A technique that still lacks room after so many frames that made more will not find it.
+/// Maximum number of overflows, after each of which lists are enlarged, before a technique fails.
 const MOST_OVERFLOWS: u32 = 8;
 
-/// Observer of frames as they are drawn, which decides when there are enough.
+/// Observer of drawn frames, which decides when there are enough.
 pub(super) trait Audience {
-    /// The frames so far lacked room: they do not count.
+    /// Discards the frames so far, because their lists overflowed.
     fn begin_anew(&mut self);
-    /// Whether there are enough.
+    /// Returns whether there are enough frames.
     fn is_done(&self) -> bool;
-    /// One more is drawn.
+    /// Adds a drawn frame.
     fn see(&mut self, frame: FrameTimes) -> Result<(), LabError>;
 }
 
-/// So many frames.
+/// Observer that takes a fixed number of frames.
 pub(super) struct Counted {
     pub(super) frames: u32,
     pub(super) drawn: u32,
@@ -46,13 +46,13 @@ impl Audience for Counted {
     }
 }
 
-/// As many as a stopwatch takes, their times, and the mask after so many as were asked for.
+/// Observer that takes as many frames as a stopwatch needs, with their times and the mask after the requested number.
 pub(super) struct Timed<'a> {
     pub(super) lab: &'a LabDevice,
     pub(super) mask: &'a Mask,
     pub(super) watch: Stopwatch,
     pub(super) asked_for: usize,
-    /// Drawn in any case.
+    /// Minimum number of frames.
     pub(super) least: usize,
     pub(super) frames: Vec<FrameTimes>,
     pub(super) visibility: Option<Visibility>,
@@ -77,7 +77,7 @@ impl Audience for Timed<'_> {
     }
 }
 
-/// Draws frames one after the other, each waited for, for as long as they are wanted.
+/// Draws frames one after the other, each synchronously, until the observer is done.
 pub(super) fn draw_frames(
     lab: &LabDevice,
     technique: &mut AnyShadow,
@@ -93,7 +93,7 @@ pub(super) fn draw_frames(
         let prepare_began = Instant::now();
         let work = technique.prepare(frame)?;
         let prepare_ms = prepare_began.elapsed().as_secs_f64() * 1e3;
-        // What `prepare` learns is of the frame before.
+        // `prepare` reports the overflow of the previous frame.
         if let Some(overflow) = work.overflow() {
             overflows += 1;
             if overflows > MOST_OVERFLOWS {
@@ -111,7 +111,7 @@ pub(super) fn draw_frames(
     }
 }
 
-/// A mask's visibility, of one channel or three.
+/// Reads a mask's visibility, with one channel or three.
 pub(super) fn read_mask(lab: &LabDevice, mask: &Mask) -> Result<Visibility, LabError> {
     let layer = |layer| read_f32_layer(lab, mask.texture(), layer);
     Ok(match mask.channels() {
@@ -136,7 +136,7 @@ pub(super) fn one_frame(
     if let Some(timer) = &timer {
         timer.resolve(&mut encoder);
     }
-    // Uploads of `prepare` go with the submission; what is left of them must not count.
+    // Uploads of `prepare` go with the submission; earlier work must not be timed.
     lab.check()?;
     let began = Instant::now();
     lab.queue.submit([encoder.finish()]);

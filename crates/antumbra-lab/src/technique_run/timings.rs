@@ -1,71 +1,71 @@
-//! Times of a technique: medians and percentiles over frames, by pass and in all.
+//! Times of a technique: medians and percentiles over frames, per pass and in total.
 
 use antumbra::PassTime;
 use serde::{Deserialize, Serialize};
 
 use crate::stopwatch::FrameCount;
 
-/// A pass's time over the timed frames.
+/// Times of a pass over the timed frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassStatistics {
-    /// The pass's label.
+    /// Label of the pass.
     pub label: String,
-    /// Median, milliseconds.
+    /// Median time, milliseconds.
     pub ms: f64,
-    /// 10th percentile, milliseconds.
+    /// 10th percentile of the time, milliseconds.
     pub p10_ms: f64,
-    /// 90th percentile, milliseconds.
+    /// 90th percentile of the time, milliseconds.
     pub p90_ms: f64,
 }
 
-/// Which clock measured.
+/// Clock of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Clock {
-    /// The GPU's own timestamps about every pass.
+    /// GPU timestamps around every pass.
     GpuTimestamps,
-    /// The processor's, from submission to completion: the device has no timestamps.
+    /// CPU clock from submission to completion, because the device has no timestamps.
     SubmitToDone,
-    /// The device's timestamps for passes, the processor's clock for the frame: a software device dates the ends of
-    /// passes when it gets to them, so that some come out as nothing and their sum as too little.
+    /// Device timestamps for passes, CPU clock for the frame. A software device may date the ends of passes late, so some passes take zero
+    /// time and their sum is too small.
     SoftwareTimestamps,
 }
 
-/// The times of one technique.
+/// Times of one technique.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timings {
-    /// By pass, in the order of recording; empty where the device has no timestamps.
+    /// Passes in the order of recording; empty if the device has no timestamps.
     pub passes: Vec<PassStatistics>,
-    /// Median over the frames of a frame's whole time, milliseconds.
+    /// Median time of a whole frame, milliseconds.
     pub total_ms: f64,
-    /// The frames' 10th percentile, milliseconds.
+    /// 10th percentile of the frames' times, milliseconds.
     pub total_p10_ms: f64,
-    /// The frames' 90th percentile, milliseconds.
+    /// 90th percentile of the frames' times, milliseconds.
     pub total_p90_ms: f64,
-    /// Median over the frames of the processor's time for preparing and recording, milliseconds.
+    /// Median CPU time for preparing and recording a frame, milliseconds.
     pub processor_ms: f64,
-    /// Which clock measured.
+    /// Clock of the measurement.
     pub clock: Clock,
-    /// Frames before the timed ones.
+    /// Number of warm-up frames.
     pub warm_up: u32,
-    /// Timed frames.
+    /// Number of timed frames.
     pub frames: u32,
 }
 
 impl Timings {
-    /// What stands beside its times.
+    /// Returns the numbers of timed and warm-up frames.
     pub fn count(&self) -> FrameCount {
         FrameCount { frames: self.frames, warm_up: self.warm_up }
     }
 }
 
-/// One frame's times.
+/// Times of one frame.
 pub(super) struct FrameTimes {
     pub(super) passes: Option<Vec<PassTime>>,
     pub(super) submit_to_done_ms: f64,
-    /// Preparing and recording.
+    /// CPU time for preparing and recording, milliseconds.
     pub(super) processor_ms: f64,
-    /// It made objects of the library's.
+    /// Whether the frame created wgpu resources of the library.
     pub(super) has_made: bool,
 }
 
@@ -106,7 +106,7 @@ impl PassStatistics {
     }
 }
 
-/// The middle of some times; 0 for none.
+/// Returns the median of some values; 0 if empty.
 pub(crate) fn median(values: Vec<f64>) -> f64 {
     percentile(&sorted(values), 0.5)
 }
@@ -116,7 +116,7 @@ fn sorted(mut values: Vec<f64>) -> Vec<f64> {
     values
 }
 
-/// The value at rank `fraction · (n − 1)` of sorted values, interpolated between its neighbours; 0 for none.
+/// Returns the value at rank `fraction · (n − 1)` of sorted values, interpolated between its neighbours; 0 if empty.
 fn percentile(sorted: &[f64], fraction: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return 0.0 };
     let rank = fraction * last as f64;

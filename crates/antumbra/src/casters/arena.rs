@@ -1,4 +1,4 @@
-//! Buffers that many meshes share: ranges of items that are given, taken back, and moved nowhere.
+//! Buffers that many meshes share: ranges of items that are allocated and freed, but never moved.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use range_alloc::RangeAllocator;
 
 use crate::gpu::Gpu;
 
-/// Ranges of items, each of which has a place in one buffer or in several.
+/// Allocator of ranges of items, each with data in one or several buffers.
 #[derive(Debug)]
 pub(super) struct Arena {
     usage: wgpu::BufferUsages,
@@ -14,7 +14,7 @@ pub(super) struct Arena {
     columns: Vec<Column>,
 }
 
-/// What one buffer holds of every item.
+/// Buffer with one kind of data for every item.
 #[derive(Debug)]
 struct Column {
     label: &'static str,
@@ -22,11 +22,11 @@ struct Column {
     buffer: Option<wgpu::Buffer>,
 }
 
-/// The least number of items of a buffer.
+/// Minimum number of items of a buffer.
 const LEAST_ITEMS: u64 = 1024;
 
 impl Arena {
-    /// Of buffers with these labels and so many bytes an item.
+    /// Creates an arena with one buffer per label, without allocating them yet. The second values are bytes per item.
     pub(super) fn new(columns: &[(&'static str, u64)], usage: wgpu::BufferUsages) -> Self {
         let usage = usage | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         let column =
@@ -35,8 +35,8 @@ impl Arena {
         Self { usage, ranges: RangeAllocator::new(0..LEAST_ITEMS), columns }
     }
 
-    /// A range of `count` items; where the arena is to grow, no buffer will hold more than `most_bytes`. `Err`: the
-    /// bytes that would be needed.
+    /// Allocates a range of `count` items. If the arena must grow, no buffer exceeds `most_bytes`. Returns the number
+    /// of bytes needed as the error.
     pub(super) fn take(&mut self, count: u64, most_bytes: u64) -> Result<Range<u32>, u64> {
         let item_bytes = self.columns.iter().map(|column| column.item_bytes).max().unwrap_or(1);
         loop {
@@ -53,13 +53,13 @@ impl Arena {
         }
     }
 
-    /// Takes a range back.
+    /// Frees a range.
     pub(super) fn give_back(&mut self, range: &Range<u32>) {
         let start = u64::from(range.start);
         self.ranges.free_range(start..start + u64::from(range.end - range.start).max(1));
     }
 
-    /// Makes the buffers as large as the ranges ask; what they held is copied by `encoder`.
+    /// Resizes the buffers to the size of the arena; `encoder` copies their content.
     pub(super) fn grow(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) {
         let items = self.ranges.initial_range().end;
         for Column { label, item_bytes, buffer } in &mut self.columns {
@@ -79,12 +79,12 @@ impl Arena {
         }
     }
 
-    /// The first buffer, once [`grow`](Self::grow) has made it.
+    /// First buffer; `None` before [`grow`](Self::grow).
     pub(super) fn buffer(&self) -> Option<&wgpu::Buffer> {
         self.column(0)
     }
 
-    /// One of the buffers, where the arena has as many.
+    /// Buffer of a column; `None` before [`grow`](Self::grow), or if there are fewer columns.
     pub(super) fn column(&self, index: usize) -> Option<&wgpu::Buffer> {
         self.columns.get(index)?.buffer.as_ref()
     }

@@ -1,4 +1,4 @@
-//! Casters of a set as frames see them: which they are, and the key that changes with them.
+//! Casters of a set as frames see them, and the cache key that changes with them.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -11,7 +11,7 @@ impl CasterSet {
         self.updated == Some(self.version)
     }
 
-    /// Refuses a set with changes that were not brought to the GPU.
+    /// Refuses a set with changes since its last update.
     pub(crate) fn check_updated(&self) -> Result<(), Error> {
         if self.is_updated() {
             return Ok(());
@@ -23,7 +23,7 @@ impl CasterSet {
         ))
     }
 
-    /// The casters of some layers, or of these what reaches into a ball, in the order in which they are drawn.
+    /// Casters of some layers, in drawing order; with a ball, only those that reach into it.
     fn entries(&self, layers: u32, within: Option<Ball>) -> impl Iterator<Item = (CasterId, &CasterEntry)> {
         let all = self.order.iter().filter_map(|id| Some((*id, self.casters.get(*id)?)));
         all.filter(move |(_, caster)| {
@@ -31,7 +31,7 @@ impl CasterSet {
         })
     }
 
-    /// The casters of some layers, or of these what reaches into a ball, as techniques take them.
+    /// Casters of some layers as techniques receive them; with a ball, only those that reach into it.
     pub(crate) fn meshes(&self, layers: u32, within: Option<Ball>) -> Result<Vec<MeshCaster<'_>>, Error> {
         self.check_updated()?;
         let Some(((indices, instances), plain)) =
@@ -61,9 +61,9 @@ impl CasterSet {
             .collect())
     }
 
-    /// Key of the casters of some layers. That of the casters in a ball stays while others change.
+    /// Cache key of the casters of some layers. With a ball, it depends only on the casters that reach into it.
     pub(crate) fn key(&self, layers: u32, within: Option<Ball>) -> CastersKey {
-        // Before an update the order is not that of the casters there are.
+        // Before an update, `order` may not match the casters.
         let version = match within.filter(|_| self.is_updated()) {
             Some(_) => self.version_of(layers, within),
             None => self.version,
@@ -71,7 +71,7 @@ impl CasterSet {
         CastersKey::new(self.number, version, layers)
     }
 
-    /// Hash of which casters these are, and in which versions.
+    /// Hash of the selected casters and their versions.
     fn version_of(&self, layers: u32, within: Option<Ball>) -> u64 {
         let mut hasher = DefaultHasher::new();
         for (id, caster) in self.entries(layers, within) {

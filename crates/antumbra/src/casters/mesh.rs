@@ -1,12 +1,12 @@
-//! A mesh as a host has it: where its vertices and indices lie, and how they are written.
+//! Mesh as a host provides it: places and formats of its vertices and indices.
 
 use antumbra_light::Aabb;
 use glam::{Affine2, Vec3};
 
-/// A mesh in a host's buffers, for [`CasterSet::add_mesh`](super::CasterSet::add_mesh).
+/// Mesh in a host's buffers, for [`CasterSet::add_mesh`](super::CasterSet::add_mesh).
 ///
-/// The set packs it into buffers of its own. To that end buffers need the usage `STORAGE` or `COPY_SRC`, which vertex and
-/// index buffers that engines grow have anyway.
+/// The set packs it into its own buffers. To be readable, the host's buffers need the usage `STORAGE` or `COPY_SRC`, which
+/// vertex and index buffers that engines grow have anyway.
 #[derive(Clone, Copy, Debug)]
 pub struct Mesh<'a> {
     /// Number of vertices.
@@ -15,15 +15,15 @@ pub struct Mesh<'a> {
     pub positions: Positions<'a>,
     /// Vertex texture coordinates, for casters whose surface has a texture.
     pub texture_coordinates: Option<TextureCoordinates<'a>>,
-    /// Corners in the order of `topology`; `None`: vertices are in that order.
+    /// Indices of the corners, in the order of `topology`; `None` if the vertices are in that order.
     pub indices: Option<Indices<'a>>,
-    /// `TriangleList`, or `TriangleStrip`, in which the index of all ones begins another strip. Others cast nothing, and are
-    /// refused.
+    /// `TriangleList`, or `TriangleStrip`, in which an index with all bits set starts a new strip. Other topologies cast no
+    /// shadow and are refused.
     pub topology: wgpu::PrimitiveTopology,
-    /// Triangles counter-clockwise from outside bound a solid, which holds no receivers but where the camera's near plane is
-    /// within its box. Some techniques then need no bias. Strips are taken for open.
+    /// Whether the triangles, counter-clockwise from outside, bound a solid that contains no receivers, except where the
+    /// camera's near plane is within its box. Some techniques then need no bias. Strips count as open.
     pub closed: bool,
-    /// Object-space box of all positions, of every pose where they change; infinite on sides that are not known.
+    /// Object-space box of all positions, in every pose if they change; infinite on unknown sides.
     pub bounds: Aabb,
 }
 
@@ -46,24 +46,24 @@ pub struct Positions<'a> {
 pub enum PositionFormat {
     /// Three 32-bit floats.
     Float32x3,
-    /// Four 16-bit integers, of which three count: −32767 to 32767 stand for −1 to 1, times `scale`, plus `offset`.
+    /// Four 16-bit integers, the fourth ignored: −32767 to 32767 map to −1 to 1, then × `scale` + `offset`.
     Snorm16x4 {
-        /// Half the mesh's sides, as a rule.
+        /// Usually half the sides of the mesh's box.
         scale: Vec3,
-        /// The mesh's middle, as a rule.
+        /// Usually the centre of the mesh's box.
         offset: Vec3,
     },
-    /// Four 16-bit integers, of which three count: 0 to 65535 stand for 0 to 1, times `scale`, plus `offset`.
+    /// Four 16-bit integers, the fourth ignored: 0 to 65535 map to 0 to 1, then × `scale` + `offset`.
     Unorm16x4 {
-        /// The mesh's sides, as a rule.
+        /// Usually the sides of the mesh's box.
         scale: Vec3,
-        /// The mesh's least corner, as a rule.
+        /// Usually the minimum corner of the mesh's box.
         offset: Vec3,
     },
 }
 
 impl PositionFormat {
-    /// Bytes of one.
+    /// Size of a position, bytes.
     pub(super) fn bytes(self) -> u64 {
         match self {
             Self::Float32x3 => 12,
@@ -95,14 +95,14 @@ pub enum TextureCoordinateFormat {
     Float32x2,
     /// Two 16-bit floats.
     Float16x2,
-    /// Two 16-bit integers: 0 to 65535 stand for 0 to 1.
+    /// Two 16-bit integers: 0 to 65535 map to 0 to 1.
     Unorm16x2,
-    /// Two 16-bit integers: −32767 to 32767 stand for −1 to 1.
+    /// Two 16-bit integers: −32767 to 32767 map to −1 to 1.
     Snorm16x2,
 }
 
 impl TextureCoordinateFormat {
-    /// Bytes of a pair.
+    /// Size of a pair, bytes.
     pub(super) fn bytes(self) -> u64 {
         if self == Self::Float32x2 { 8 } else { 4 }
     }
@@ -128,7 +128,7 @@ pub struct Indices<'a> {
 pub enum Instances<'a> {
     /// World-from-object matrices, affine.
     Matrices(&'a [glam::Mat4]),
-    /// The same on the GPU, read with the next [`CasterSet::update`](super::CasterSet::update).
+    /// World-from-object matrices in a GPU buffer, read with the next [`CasterSet::update`](super::CasterSet::update).
     Buffer(InstanceBuffer<'a>),
 }
 
@@ -145,8 +145,8 @@ pub struct InstanceBuffer<'a> {
     pub layout: InstanceLayout,
     /// Number of matrices.
     pub count: u32,
-    /// World-space box of all of them, infinite on sides that are not known; `None` where nothing is. What of it lies behind all that
-    /// receives, or beside, changes nothing; say where that is (`Receivers::bounds`), for maps are as fine as they are small.
+    /// World-space box of all instances, infinite on unknown sides; `None` if unknown. Parts behind or beside all receivers
+    /// have no effect. Set `Receivers::bounds`, too: maps over smaller areas are finer.
     pub bounds: Option<Aabb>,
 }
 
@@ -161,7 +161,7 @@ pub enum InstanceLayout {
 }
 
 impl InstanceLayout {
-    /// Bytes of one.
+    /// Size of a matrix, bytes.
     pub(super) fn bytes(self) -> u64 {
         match self {
             Self::Columns4x4 => 64,

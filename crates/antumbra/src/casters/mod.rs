@@ -1,14 +1,13 @@
-//! Caster set: casters that lights share, in which meshes and casters are added, moved, changed and removed by
-//! handle.
+//! Caster set: casters that lights share. Meshes and casters are added, moved, changed and removed by handle.
 //!
 //! Hosts' vertices come in many formats, and every technique reads every caster, many of them in compute. So the set packs
-//! meshes into buffers of its own, once: positions as three floats, texture coordinates as two, 32-bit indices, 4 × 4
-//! matrices. Passes then draw all casters from a few buffers, one command each, and read them in one dispatch. It costs 12
-//! bytes a vertex (20 with texture coordinates), 4 an index, 64 an instance.
+//! each mesh once into its own buffers: positions as three floats, texture coordinates as two, 32-bit indices, 4 × 4
+//! matrices. Passes then draw all casters from a few buffers with one command each, or read them in one dispatch. This
+//! costs 12 bytes per vertex (20 with texture coordinates), 4 per index and 64 per instance.
 //!
 //! ```no_run
 //! # use antumbra::casters::*; use antumbra::*; use glam::*;
-//! # fn example(gpu: &Gpu, mesh: &Mesh<'_>, recorder: &mut Recorder<'_>) -> Result<(), Error> {
+//! Once.
 //! // Once.
 //! let mut casters = CasterSet::new(gpu);
 //! let crate_mesh = casters.add_mesh(mesh)?;
@@ -67,13 +66,13 @@ pub struct Caster<'a> {
     pub instances: Instances<'a>,
     /// Surface.
     pub surface: Surface,
-    /// A bit for each layer that it is in. Lights see casters of the layers that
+    /// Layer mask: one bit per layer that contains the caster. Lights see casters of the layers that
     /// [`Casters::Set`](crate::Casters::Set) names.
     pub layers: u32,
 }
 
 impl<'a> Caster<'a> {
-    /// An opaque caster in all layers.
+    /// Creates an opaque caster in all layers.
     pub fn new(mesh: MeshId, instances: Instances<'a>) -> Self {
         Self { mesh, instances, surface: Surface::Opaque, layers: u32::MAX }
     }
@@ -86,24 +85,24 @@ pub struct CasterSet {
     packer: Packer,
     meshes: SlotMap<MeshId, MeshEntry>,
     casters: SlotMap<CasterId, CasterEntry>,
-    /// Vertices of meshes without texture coordinates, and of those with.
+    /// Vertices of meshes without texture coordinates, and with them.
     vertices: [Arena; 2],
     indices: Arena,
     instances: Arena,
-    /// The matrices of all casters whose matrices the processor knows, at their places.
+    /// Matrices of all casters whose matrices are known on the CPU, at their places.
     matrices: Vec<Mat4>,
-    /// Casters in the order in which they are drawn: by vertex buffers, then by mesh.
+    /// Casters in drawing order: by vertex buffer, then by mesh.
     order: Vec<CasterId>,
-    /// The order is that of the casters there are.
+    /// Whether `order` is up to date with the casters.
     is_sorted: bool,
     keep: Keep,
-    /// No other set has it.
+    /// Unique number of the set.
     number: u64,
-    /// Counts the changes.
+    /// Number of changes.
     version: u64,
-    /// The version that the last update brought to the GPU.
+    /// Version that the last update uploaded.
     updated: Option<u64>,
-    /// Commands of an update were never submitted.
+    /// Commands of the updates, to detect any that were never submitted.
     commands: Commands,
 }
 
@@ -114,7 +113,7 @@ struct MeshEntry {
     indices: Range<u32>,
     closed: bool,
     bounds: Aabb,
-    /// To be packed with the next update.
+    /// Whether the next update packs the mesh.
     is_changed: bool,
     version: MeshVersion,
     users: u32,
@@ -123,27 +122,27 @@ struct MeshEntry {
 #[derive(Debug)]
 struct CasterEntry {
     mesh: MeshId,
-    /// Their places in the arena.
+    /// Places of the instances in the arena.
     places: Range<u32>,
-    /// Where matrices come from the GPU.
+    /// Source of the matrices if they come from a GPU buffer.
     source: Option<InstanceSource>,
     surface: Surface,
     layers: u32,
     bounds: Aabb,
-    /// An instance turns the mesh inside out.
+    /// Whether an instance mirrors the mesh.
     is_mirrored: bool,
-    /// Matrices are to be brought to the GPU with the next update.
+    /// Whether the next update uploads or packs the matrices.
     is_moved: bool,
-    /// The set's version in which it was changed last.
+    /// Version of the set with the last change of this caster.
     version: u64,
 }
 
-/// What errors name in place of a technique.
+/// Name in errors, in place of a technique's.
 const WHO: &str = "casters";
 
-/// The number of the next set.
+/// Number of the next set.
 static NEXT_SET: AtomicU64 = AtomicU64::new(0);
-/// The number of the next mesh of any set.
+/// Number of the next mesh of any set.
 static NEXT_MESH: AtomicU64 = AtomicU64::new(0);
 
 impl CasterSet {
@@ -157,7 +156,7 @@ impl CasterSet {
             meshes: SlotMap::with_key(),
             casters: SlotMap::with_key(),
             vertices: [vertices(&columns[..1]), vertices(&columns)],
-            // Triangles begin at multiples of three indices.
+            // One item holds the three indices of a triangle.
             indices: Arena::new(&[("antumbra caster indices", 12)], wgpu::BufferUsages::INDEX),
             instances: Arena::new(&[("antumbra caster instances", 64)], wgpu::BufferUsages::VERTEX),
             matrices: Vec::new(),
@@ -171,16 +170,16 @@ impl CasterSet {
         }
     }
 
-    /// The handle on the device that it was made with.
+    /// Handle of the device that the set was created with.
     pub(crate) fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Adds a mesh; its buffers are read with the next [`update`](Self::update), and not after it unless
-    /// [`mesh_changed`](Self::mesh_changed) says so.
+    /// Adds a mesh. Its buffers are read once, with the next [`update`](Self::update), and again after
+    /// [`mesh_changed`](Self::mesh_changed).
     ///
     /// # Errors
-    /// Where buffers are too short or cannot be read, or all meshes together are more than a binding holds.
+    /// If buffers are too short or unreadable, or all meshes together exceed the size of a binding.
     pub fn add_mesh(&mut self, mesh: &Mesh<'_>) -> Result<MeshId, Error> {
         let source = source_of(mesh)?;
         let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
@@ -206,11 +205,11 @@ impl CasterSet {
         }))
     }
 
-    /// Says that a mesh's buffers hold something else now, or that it is in other buffers: skinned, morphed, rebuilt. As
-    /// many vertices and indices as before.
+    /// Notifies the set that a mesh's content or buffers have changed: skinned, morphed, rebuilt. The numbers of vertices
+    /// and indices must stay the same.
     ///
     /// # Errors
-    /// Where there is no such mesh, or it is as [`add_mesh`](Self::add_mesh) refuses, or of another size.
+    /// If there is no such mesh, [`add_mesh`](Self::add_mesh) would refuse the new one, or its size differs.
     pub fn mesh_changed(&mut self, id: MeshId, mesh: &Mesh<'_>) -> Result<(), Error> {
         let source = source_of(mesh)?;
         let entry = self.meshes.get_mut(id).ok_or_else(|| gone("the mesh"))?;
@@ -242,7 +241,7 @@ impl CasterSet {
     /// Removes a mesh.
     ///
     /// # Errors
-    /// Where there is no such mesh, or casters still have it.
+    /// If there is no such mesh, or casters still use it.
     pub fn remove_mesh(&mut self, id: MeshId) -> Result<(), Error> {
         let users = self.meshes.get(id).ok_or_else(|| gone("the mesh"))?.users;
         if users > 0 {
@@ -263,8 +262,8 @@ impl CasterSet {
     /// Adds a caster.
     ///
     /// # Errors
-    /// Where there is no such mesh, its surface has a texture and the mesh no coordinates, or matrices are not finite or
-    /// cannot be read.
+    /// If there is no such mesh, the surface has a texture and the mesh no texture coordinates, or matrices are not finite
+    /// or not readable.
     pub fn add(&mut self, caster: &Caster<'_>) -> Result<CasterId, Error> {
         let mesh = self.meshes.get(caster.mesh).ok_or_else(|| gone("the caster's mesh"))?;
         check_surface(&self.gpu, &caster.surface, mesh)?;
@@ -289,10 +288,10 @@ impl CasterSet {
         Ok(self.casters.insert(entry))
     }
 
-    /// Moves a caster. Storage is reallocated only if the number of instances grows.
+    /// Moves a caster. Its instances get another place in the buffer if their number changes.
     ///
     /// # Errors
-    /// Where there is no such caster, or matrices are not finite or cannot be read.
+    /// If there is no such caster, or matrices are not finite or not readable.
     pub fn set_instances(&mut self, id: CasterId, instances: Instances<'_>) -> Result<(), Error> {
         let entry = self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?;
         let of_instances = PlacedInstances::new(&instances, self.meshes[entry.mesh].bounds)?;
@@ -311,7 +310,7 @@ impl CasterSet {
     /// Changes a caster's surface.
     ///
     /// # Errors
-    /// Where there is no such caster, or the surface has a texture and the mesh no coordinates.
+    /// If there is no such caster, or the surface has a texture and the mesh no texture coordinates.
     pub fn set_surface(&mut self, id: CasterId, surface: Surface) -> Result<(), Error> {
         let entry = self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?;
         check_surface(&self.gpu, &surface, &self.meshes[entry.mesh])?;
@@ -324,7 +323,7 @@ impl CasterSet {
     /// Changes a caster's layers.
     ///
     /// # Errors
-    /// Where there is no such caster.
+    /// If there is no such caster.
     pub fn set_layers(&mut self, id: CasterId, layers: u32) -> Result<(), Error> {
         let entry = self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?;
         entry.layers = layers;
@@ -336,7 +335,7 @@ impl CasterSet {
     /// Removes a caster.
     ///
     /// # Errors
-    /// Where there is no such caster.
+    /// If there is no such caster.
     pub fn remove(&mut self, id: CasterId) -> Result<(), Error> {
         let entry = self.casters.remove(id).ok_or_else(|| gone("the caster"))?;
         self.instances.give_back(&entry.places);
@@ -356,7 +355,7 @@ impl CasterSet {
         self.casters.is_empty()
     }
 
-    /// World-space box of a caster's instances.
+    /// World-space box of a caster's instances; `None` if there is no such caster.
     pub fn bounds(&self, id: CasterId) -> Option<Aabb> {
         self.casters.get(id).map(|caster| caster.bounds)
     }
@@ -369,7 +368,7 @@ impl CasterSet {
 }
 
 impl CasterEntry {
-    /// Takes instances to the entry's places.
+    /// Stores instances at the places of the entry.
     fn place(&mut self, instances: PlacedInstances<'_>, matrices: &mut Vec<Mat4>) {
         let PlacedInstances { count, matrices: known, source, bounds, is_mirrored } = instances;
         debug_assert_eq!(count, self.places.end - self.places.start, "a place for each");
@@ -390,12 +389,12 @@ fn source_of(mesh: &Mesh<'_>) -> Result<MeshSource, Error> {
     Ok(source)
 }
 
-/// Whether triangles are known to bound a solid: those of a strip turn either way.
+/// Whether the triangles are known to bound a solid. A strip's triangles may have either winding.
 fn is_closed(mesh: &Mesh<'_>) -> bool {
     mesh.closed && mesh.topology == wgpu::PrimitiveTopology::TriangleList
 }
 
-/// Refuses a box that holds nothing, though there is something.
+/// Refuses an invalid box of a mesh or instances that are not empty.
 fn check_box(what: &'static str, bounds: Aabb, holds_any: bool) -> Result<(), Error> {
     let problem = bounds.problem().filter(|_| holds_any);
     problem.map_or(Ok(()), |problem| {
@@ -403,7 +402,7 @@ fn check_box(what: &'static str, bounds: Aabb, holds_any: bool) -> Result<(), Er
     })
 }
 
-/// A range that was taken, or what more room it would need.
+/// Returns the allocated range, or an error with the bytes that would be needed.
 fn room(range: Result<Range<u32>, u64>, most_bytes: u64) -> Result<Range<u32>, Error> {
     range.map_err(|bytes| Error::Unsupported {
         technique: WHO,

@@ -1,4 +1,4 @@
-//! Packing hosts' vertices and matrices into the set's own buffers, by a compute pass.
+//! Packing of hosts' vertices and matrices into the set's own buffers by compute passes.
 
 use glam::{Vec2, Vec3};
 
@@ -8,7 +8,7 @@ use crate::gpu::{Bindings, Gpu, Stage, bindings, compute_pipeline, dispatch_thre
 use crate::shaders;
 
 gpu_structs! {
-    /// A mesh to pack.
+    /// Description of a mesh to pack.
     pub(crate) struct PackMesh {
         position_scale: Vec3,
         vertex_count: u32,
@@ -33,7 +33,7 @@ gpu_structs! {
         padding_1: u32,
     }
 
-    /// Matrices to pack.
+    /// Description of matrices to pack.
     pub(crate) struct PackInstances {
         first: u32,
         stride: u32,
@@ -70,30 +70,30 @@ shared_constants! {
     const SNORM_16: u32 = 1, as in PACK_MESH;
     const UNORM_16: u32 = 2, as in PACK_MESH;
     const FLOAT_16: u32 = 3, as in PACK_MESH;
-    /// Format of texture coordinates that a mesh does not have.
+    /// Value of `uv_format` for meshes without texture coordinates.
     const NO_UVS: u32 = 4, as in PACK_MESH;
     /// Formats of indices.
     const NO_INDICES: u32 = 0, as in PACK_MESH;
     const INDICES_16: u32 = 1, as in PACK_MESH;
 }
 
-/// Format of indices that are neither.
+/// Format of 32-bit indices; the shader does not compare with it.
 const INDICES_32: u32 = 2;
 
-/// What errors name in place of a technique.
+/// Name in errors, in place of a technique's.
 const WHO: &str = "casters";
 
-/// A part of a host's buffer that is read as words.
+/// Part of a host's buffer, read as 32-bit words.
 #[derive(Clone, Debug)]
 pub(super) struct Words {
     buffer: wgpu::Buffer,
-    /// Bytes, from a multiple of four.
+    /// Offset, bytes, a multiple of four.
     offset: u64,
     bytes: u64,
 }
 
 impl Words {
-    /// `count` items of `item_bytes`, `stride` bytes apart. Refuses what lies beyond the buffer or cannot be read.
+    /// Words of `count` items, `stride` bytes apart. Refuses ranges beyond the buffer and unreadable buffers.
     fn of_items(
         what: &'static str,
         buffer: &wgpu::Buffer,
@@ -130,8 +130,8 @@ impl Words {
         Ok(Self { buffer: buffer.clone(), offset, bytes: bytes.next_multiple_of(4).min(buffer.size() - offset) })
     }
 
-    /// Something to bind, and the first of the words in it: the buffer's own part where shaders can read it, or else a
-    /// copy.
+    /// Returns buffer, offset, size and the index of the first word within that range: the buffer itself if shaders can
+    /// read it, otherwise a copy.
     fn bind(&self, stage: &Stage<'_>, encoder: &mut wgpu::CommandEncoder) -> (wgpu::Buffer, u64, u64, u32) {
         let alignment = u64::from(stage.device.limits().min_storage_buffer_offset_alignment);
         let begin = self.offset / alignment * alignment;
@@ -151,13 +151,13 @@ fn bad(what: &'static str, had: String, needed: String) -> Error {
     Error::BadFrame { technique: WHO, what, had, needed }
 }
 
-/// A mesh's vertices and indices as they are packed.
+/// Source of a mesh's vertices and indices for packing.
 #[derive(Clone, Debug)]
 pub(super) struct MeshSource {
     positions: Words,
     uvs: Option<Words>,
     indices: Option<Words>,
-    /// All but where things begin.
+    /// Uniform, without start positions in source and target.
     pack: PackMesh,
 }
 
@@ -227,7 +227,7 @@ impl MeshSource {
     }
 }
 
-/// Indices of the packed triangles of so many corners.
+/// Returns the number of indices of the packed triangles of `corner_count` corners.
 fn index_count_of(topology: wgpu::PrimitiveTopology, corner_count: u32) -> Result<u32, Error> {
     match topology {
         wgpu::PrimitiveTopology::TriangleList if corner_count.is_multiple_of(3) => Ok(corner_count),
@@ -241,7 +241,7 @@ fn index_count_of(topology: wgpu::PrimitiveTopology, corner_count: u32) -> Resul
     }
 }
 
-/// The words that hold the indices; 16-bit ones may begin in the middle of a word.
+/// Words that contain the indices; 16-bit indices may start in the middle of a word.
 fn index_words(indices: &Indices<'_>) -> Result<Words, Error> {
     let size = match indices.format {
         wgpu::IndexFormat::Uint16 => 2,
@@ -252,18 +252,18 @@ fn index_words(indices: &Indices<'_>) -> Result<Words, Error> {
     Words::new("the indices", indices.buffer, begin, end - begin.min(end))
 }
 
-/// Where a mesh is packed to.
+/// Target of a packed mesh.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PackTargets<'a> {
     pub(super) positions: &'a wgpu::Buffer,
-    /// Any buffer, where the mesh has no texture coordinates.
+    /// Any buffer if the mesh has no texture coordinates.
     pub(super) uvs: &'a wgpu::Buffer,
     pub(super) indices: &'a wgpu::Buffer,
     pub(super) first_vertex: u32,
     pub(super) first_index: u32,
 }
 
-/// A dispatch that waits for a pass.
+/// Prepared dispatch, to be recorded in a pass.
 #[derive(Debug)]
 pub(super) struct PackDispatch {
     pipeline: wgpu::ComputePipeline,
@@ -279,7 +279,7 @@ impl PackDispatch {
     }
 }
 
-/// The programs that pack.
+/// Pipelines for packing.
 #[derive(Debug)]
 pub(super) struct Packer {
     mesh_layout: wgpu::BindGroupLayout,
@@ -299,7 +299,7 @@ impl Packer {
         }
     }
 
-    /// Makes ready to pack a mesh.
+    /// Prepares the packing of a mesh.
     pub(super) fn mesh(
         &self,
         stage: &Stage<'_>,
@@ -321,7 +321,7 @@ impl Packer {
             ..source.pack
         };
         let uniform = stage.uniform("antumbra pack mesh", &pack);
-        // Where there are none nothing reads them.
+        // Placeholders, not read by the shader.
         let uvs = uvs.as_ref().unwrap_or(&positions);
         let indices = indices.as_ref().unwrap_or(&positions);
         let packed = PackedMesh {
@@ -340,7 +340,7 @@ impl Packer {
         }
     }
 
-    /// Makes ready to pack matrices.
+    /// Prepares the packing of matrices.
     pub(super) fn instances(
         &self,
         stage: &Stage<'_>,
@@ -372,7 +372,7 @@ fn binding((buffer, offset, bytes, _): &(wgpu::Buffer, u64, u64, u32)) -> wgpu::
     wgpu::BufferBinding { buffer, offset: *offset, size: std::num::NonZeroU64::new(*bytes) }
 }
 
-/// A host's matrices as they are packed.
+/// Source of a host's matrices for packing.
 #[derive(Clone, Debug)]
 pub(super) struct InstanceSource {
     words: Words,

@@ -1,4 +1,4 @@
-//! Instances of a caster: matrices that the processor knows, or a buffer of the host's.
+//! Instances of a caster: matrices known on the CPU, or a buffer of the host.
 
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec3};
@@ -7,7 +7,7 @@ use super::pack::InstanceSource;
 use super::{Instances, bad, check_box};
 use crate::contract::Error;
 
-/// Instances that were found to be good.
+/// Validated instances.
 pub(super) struct PlacedInstances<'a> {
     pub(super) count: u32,
     pub(super) matrices: Option<&'a [Mat4]>,
@@ -17,10 +17,10 @@ pub(super) struct PlacedInstances<'a> {
 }
 
 impl<'a> PlacedInstances<'a> {
-    /// Checks instances of a mesh with an object-space box.
+    /// Validates instances of a mesh with an object-space box.
     ///
     /// # Errors
-    /// Where matrices are not finite, or a buffer cannot be read.
+    /// If matrices are not finite, or a buffer is not readable.
     pub(super) fn new(instances: &Instances<'a>, mesh: Aabb) -> Result<Self, Error> {
         match instances {
             Instances::Matrices(matrices) => {
@@ -42,7 +42,7 @@ impl<'a> PlacedInstances<'a> {
                     matrices: None,
                     source: Some(InstanceSource::new(buffer)?),
                     bounds: buffer.bounds.unwrap_or(Aabb::EVERYTHING),
-                    // Nobody knows; what is taken for open is right either way.
+                    // Unknown. Assuming a mirrored instance makes the mesh count as open, which is always correct.
                     is_mirrored: true,
                 })
             }
@@ -50,8 +50,8 @@ impl<'a> PlacedInstances<'a> {
     }
 }
 
-/// World-space box of an object-space box under each matrix: of the turned box, which may be larger than that of what is in
-/// it.
+/// World-space box of an object-space box under each matrix. It bounds the transformed box, so it may be larger than the
+/// box of the transformed content.
 pub(super) fn world_bounds(mesh: Aabb, matrices: &[Mat4]) -> Aabb {
     if mesh.is_empty() {
         return Aabb::EMPTY;

@@ -1,4 +1,4 @@
-//! Surfaces of casters: what of the light they stop.
+//! Surfaces of casters: how much light they block.
 
 use glam::Vec3;
 
@@ -10,25 +10,25 @@ use crate::gpu::{Gpu, ViewKind};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Surface {
-    /// Blocks all.
+    /// Blocks all light.
     Opaque,
-    /// Blocks all where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, nothing elsewhere.
+    /// Blocks all light where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, and none elsewhere.
     Masked {
-        /// With alpha.
+        /// Texture with alpha.
         texture: Texture,
         /// Multiplies the texture's alpha.
         alpha_factor: f32,
         /// Coverage threshold, 0 to 1.
         cutoff: f32,
     },
-    /// Lets pass `(1 − coverage) + coverage · transmitted` of each colour.
+    /// Transmits `(1 − coverage) + coverage · transmitted` of each colour.
     Translucent {
-        /// How much of the surface is there.
+        /// Coverage of the surface.
         coverage: SurfaceCoverage,
-        /// What passes where it is, linear, 0 to 1: transmission × tint. [`Vec3::ZERO`] for surfaces that are blended by
-        /// their alpha and transmit nothing: they cover, and never tint.
+        /// Transmittance of the covered part, linear RGB, 0 to 1: transmission × tint. [`Vec3::ZERO`] for alpha-blended
+        /// surfaces that transmit nothing: they cover, and never tint.
         transmitted: Vec3,
-        /// Its RGB multiplies `transmitted`, its alpha the coverage's.
+        /// Texture whose RGB multiplies `transmitted` and whose alpha multiplies the coverage's.
         texture: Option<Texture>,
     },
 }
@@ -50,13 +50,13 @@ impl Surface {
 /// Texture of a caster.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// A 2D view of a filterable colour format.
+    /// 2D view of a filterable colour format.
     pub view: wgpu::TextureView,
-    /// Filtering sampler; it also sets the texture's address modes.
+    /// Filtering sampler, with the address modes.
     pub sampler: wgpu::Sampler,
 }
 
-/// Refuses a surface that a mesh cannot have.
+/// Refuses a surface that is not finite or does not suit the mesh.
 pub(super) fn check_surface(gpu: &Gpu, surface: &Surface, mesh: &MeshEntry) -> Result<(), Error> {
     let is_finite = match surface {
         Surface::Opaque => true,
@@ -84,7 +84,7 @@ pub(super) fn check_surface(gpu: &Gpu, surface: &Surface, mesh: &MeshEntry) -> R
     })
 }
 
-/// The surface as techniques take it, with the mesh's texture coordinates.
+/// Returns the surface as techniques receive it, with the mesh's texture coordinates.
 pub(super) fn opacity_of<'a>(surface: &'a Surface, uvs: Option<&'a wgpu::Buffer>) -> Opacity<'a> {
     let textured =
         |texture: &'a Texture| uvs.map(|uvs| SurfaceTexture { uvs, view: &texture.view, sampler: &texture.sampler });
@@ -94,7 +94,7 @@ pub(super) fn opacity_of<'a>(surface: &'a Surface, uvs: Option<&'a wgpu::Buffer>
             Some(texture) => Opacity::Masked { texture, alpha_factor: *alpha_factor, cutoff: *cutoff },
             None => Opacity::Opaque,
         },
-        // As hosts write a material that is blended in name alone: what stops all is opaque.
+        // Hosts mark some opaque materials as blended. A surface that blocks everything is opaque.
         Surface::Translucent { coverage, transmitted, texture: None }
             if *transmitted == Vec3::ZERO && is_whole_without_texture(*coverage) =>
         {

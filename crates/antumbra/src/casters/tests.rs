@@ -41,7 +41,7 @@ fn bounds() -> Aabb {
     Aabb::of(POSITIONS)
 }
 
-/// The positions that a set has packed, in the order of its indices.
+/// Positions and texture coordinates that a set has packed, in the order of its indices.
 fn packed(gpu: &Gpu, set: &CasterSet, id: MeshId) -> (Vec<Vec3>, Vec<Vec2>) {
     let mesh = &set.meshes[id];
     let arena = &set.vertices[usize::from(mesh.source.has_uvs())];
@@ -57,7 +57,7 @@ fn packed(gpu: &Gpu, set: &CasterSet, id: MeshId) -> (Vec<Vec3>, Vec<Vec2>) {
     )
 }
 
-/// A mesh of a set, what it is to be packed as, and how nearly.
+/// Mesh of a set, with its expected packed content and tolerance.
 struct Packed {
     id: MeshId,
     positions: Vec<Vec3>,
@@ -79,8 +79,8 @@ fn expected() -> Vec<Vec3> {
     TRIANGLES.iter().map(|i| POSITIONS[*i as usize]).collect()
 }
 
-/// Twelve bytes of something else, the position, texture coordinates; 16-bit indices from the third, of vertices counted from
-/// 100 on.
+/// Adds a mesh of interleaved vertices (twelve unused bytes, position, texture coordinates), with 16-bit indices that start
+/// at index 3 and count vertices from 100.
 fn add_interleaved(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> Packed {
     let interleaved: Vec<f32> = POSITIONS
         .iter()
@@ -115,7 +115,7 @@ fn add_interleaved(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) ->
     Packed { id: set.add_mesh(&mesh).expect("a good mesh"), positions: expected(), uvs, tolerance: 0.0 }
 }
 
-/// Integers of both kinds, 32-bit indices.
+/// Adds meshes of both integer formats, with 32-bit indices.
 fn add_integers(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> [Packed; 2] {
     let (scale, offset) = (Vec3::new(2.0, 1.0, 4.0), Vec3::new(0.25, 0.0, -1.0));
     let components = || POSITIONS.iter().flat_map(|p| [p.x, p.y, p.z, 0.0]);
@@ -147,7 +147,7 @@ fn add_integers(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> [P
     })
 }
 
-/// No indices: every three vertices are a triangle.
+/// Adds a mesh without indices: every three vertices are a triangle.
 fn add_soup(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> Packed {
     let triangles: Vec<f32> = expected().iter().flat_map(|p| p.to_array()).collect();
     let soup = host_buffer(gpu, bytemuck::cast_slice(&triangles), usage);
@@ -164,8 +164,8 @@ fn add_soup(gpu: &Gpu, set: &mut CasterSet, usage: wgpu::BufferUsages) -> Packed
     Packed { id, positions: expected(), uvs: Vec::new(), tolerance: 0.0 }
 }
 
-/// Interleaved and apart, 32 and 16 bits, with and without indices, from any place of buffers that shaders can read and of
-/// others that they cannot: all are packed to the same triangles.
+/// Interleaved and separate, 32 and 16 bits, with and without indices, at any offset, in buffers that shaders can read and in
+/// others: all are packed to the same triangles.
 #[test]
 fn every_format_is_packed_alike() {
     let Some(gpu) = gpu() else { return };
@@ -181,7 +181,7 @@ fn every_format_is_packed_alike() {
     meshes.iter().enumerate().for_each(|(i, mesh)| mesh.is_held(gpu, &set, i));
 }
 
-/// The case's meshes in a set.
+/// Returns the meshes of a test case in a set.
 pub(crate) fn set_of(gpu: &Gpu, case: &Case) -> (CasterSet, Vec<CasterId>) {
     let mut set = CasterSet::new(gpu);
     let ids = case.meshes.iter().map(|mesh| {
@@ -220,7 +220,7 @@ fn shadow(gpu: &Gpu, kind: TechniqueKind) -> AnyShadow {
     shadow
 }
 
-/// A set gives the bits that the host's own buffers give.
+/// A set gives bit-identical masks to those from the host's own buffers.
 #[test]
 fn a_set_casts_as_its_meshes_do() {
     let Some(gpu) = gpu() else { return };
@@ -264,13 +264,13 @@ fn casters_move_leave_and_hide() {
         run(gpu, &mut shadow(gpu, TechniqueKind::Pcf), frame).expect("a good frame")
     });
     assert_ne!(whole, without, "nothing to tell");
-    // The occluder in a layer of its own, which the light does not see.
+    // Put the occluder in a layer that the light does not see.
     set.set_layers(ids[0], 1).expect("there");
     set.set_layers(ids[1], 2).expect("there");
     update(gpu, &mut set);
     assert!(mask(&set, 1) == without);
     assert!(mask(&set, 3) == whole);
-    // Away, back, gone.
+    // Move away, move back, remove.
     let away = [Mat4::from_translation(Vec3::new(100.0, 0.0, 0.0))];
     set.set_instances(ids[1], Instances::Matrices(&away)).expect("there");
     update(gpu, &mut set);
@@ -284,7 +284,7 @@ fn casters_move_leave_and_hide() {
     assert!(set.set_layers(ids[1], 1).unwrap_err().to_string().contains("the caster is not in this set"));
 }
 
-/// Matrices of the processor and of a host's buffer, as columns and as rows, are one.
+/// Matrices from the CPU and from a host's buffer, as columns and as rows, are packed alike.
 #[test]
 fn instances_of_every_layout_are_alike() {
     let Some(gpu) = gpu() else { return };

@@ -1,4 +1,4 @@
-//! Update of a caster set: uploads and packing of what has changed.
+//! Update of a caster set: uploads and packing of changes.
 
 use std::ops::Range;
 
@@ -8,11 +8,11 @@ use crate::contract::Error;
 use crate::gpu::{Recorder, Span, Stage};
 
 impl CasterSet {
-    /// Brings what has changed to the GPU: records uploads and packing. Before lights are prepared, and in commands that are
+    /// Uploads changes to the GPU: records uploads and packing. Call it before lights are prepared, in commands that are
     /// submitted before theirs.
     ///
     /// # Errors
-    /// None today; devices may refuse in later versions.
+    /// None at present; later versions may report errors of the device.
     pub fn update(&mut self, recorder: &mut Recorder<'_>) -> Result<(), Error> {
         if self.updated == Some(self.version) && !self.commands.are_dropped() {
             return Ok(());
@@ -44,11 +44,11 @@ impl CasterSet {
         Ok(())
     }
 
-    /// Has the next update bring everything: what an earlier one recorded came to nothing.
+    /// Makes the next update upload everything, because the commands of an earlier one were dropped.
     fn bring_all(&mut self) {
         for mesh in self.meshes.values_mut() {
             mesh.is_changed = true;
-            // What was made of the buffers meanwhile is of what they held before.
+            // Results derived from the buffers in the meantime used the old content.
             mesh.version.vertices += 1;
         }
         self.casters.values_mut().for_each(|caster| caster.is_moved = true);
@@ -70,7 +70,7 @@ impl CasterSet {
                 continue;
             }
             let uvs = arena.column(1);
-            // Bound, but not written, where there are none: not a buffer that the same pass writes.
+            // Placeholder if there are none: bound, but not written. It must not be a buffer that the same pass writes.
             let uvs = uvs.or(self.instances.buffer()).unwrap_or(positions);
             let (first_vertex, first_index) = (mesh.vertices.start, 3 * mesh.indices.start);
             let targets = PackTargets { positions, uvs, indices, first_vertex, first_index };
@@ -78,7 +78,7 @@ impl CasterSet {
         }
     }
 
-    /// Matrices that the processor knows go up in as few pieces as they lie in; the others are packed.
+    /// Uploads matrices known on the CPU, merging adjacent ranges, and packs the others.
     fn upload_instances(
         &mut self,
         stage: &Stage<'_>,
@@ -106,7 +106,7 @@ impl CasterSet {
         }
     }
 
-    /// Casters by vertex buffers, then by mesh, then by place, so that passes change buffers seldom.
+    /// Sorts casters by vertex buffer, then by mesh, then by place, so that passes rarely change buffers.
     fn sort(&mut self) {
         let Self { order, casters, meshes, .. } = self;
         order.clear();

@@ -92,15 +92,15 @@ impl<'a> MeshCaster<'a> {
 
 /// Indexed triangles of one surface, drawn `instance_count` times.
 ///
-/// Buffers stay the host's. They need the usages `VERTEX`, and `INDEX` for the indices; techniques that read
-/// triangles in compute (`ray_traced`, `alias_free`, `sample_based`, `multi_view` unless it compares otherwise) also need `STORAGE` on all
-/// three, and `multi_layer` sees parts of texels where positions and indices have it.
+/// The host owns the buffers. They need the usages `VERTEX`, and `INDEX` for the indices. Techniques that read triangles in compute
+/// (`ray_traced`, `alias_free`, `sample_based`, `multi_view` unless it compares otherwise) also need `STORAGE` on all three.
+/// `multi_layer` computes partial coverage of texels if positions and indices have it.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct MeshCaster<'a> {
     /// Object-space positions: `[f32; 3]` each, tightly packed from offset 0.
     pub positions: &'a wgpu::Buffer,
-    /// `u32` each, three a triangle, from offset 0.
+    /// Vertex indices: `u32` each, three per triangle, from offset 0.
     pub indices: &'a wgpu::Buffer,
     /// First triangle to draw.
     pub first_triangle: u32,
@@ -112,33 +112,33 @@ pub struct MeshCaster<'a> {
     pub first_instance: u32,
     /// Number of instances to draw.
     pub instance_count: u32,
-    /// Triangles counter-clockwise from outside bound a solid, which holds no receivers but where the camera's near plane is
-    /// within `bounds`. Some techniques then need no bias.
+    /// Whether the mesh is closed: its triangles, counter-clockwise from outside, bound a solid that contains no receivers unless
+    /// the camera's near plane is within `bounds`. Some techniques then need no bias.
     pub closed: bool,
     /// Effect of the surface on light.
     pub opacity: Opacity<'a>,
-    /// World-space box of all instances, infinite on sides that are not known ([`Aabb::EVERYTHING`] on all).
+    /// World-space box of all instances; unknown sides are infinite ([`Aabb::EVERYTHING`]: all sides).
     pub bounds: Aabb,
-    /// What tells the mesh from what it was, for a technique that keeps something of a mesh from frame to frame (`ray_traced`); `None`
-    /// where nothing does: all of it may be another in each frame.
+    /// Version key, for a technique that caches data of a mesh across frames (`ray_traced`); `None` if the mesh may differ in every
+    /// frame.
     pub version: Option<MeshVersion>,
 }
 
 /// Version key of a mesh's positions and indices: equal versions mean equal meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MeshVersion {
-    /// No other mesh has it, nor has the same place in buffers once it holds another mesh.
+    /// Identifier, unique among meshes; change it when the same range of the buffers receives another mesh.
     pub mesh: u64,
-    /// Pose counter: another number for each skinned or morphed pose.
+    /// Pose counter: a different number for each skinned or morphed pose.
     pub vertices: u64,
 }
 
 /// Effect of a surface on light.
 #[derive(Clone, Copy, Debug)]
 pub enum Opacity<'a> {
-    /// Blocks all.
+    /// Blocks all light.
     Opaque,
-    /// Blocks all where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, nothing elsewhere.
+    /// Blocks all light where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, none elsewhere.
     Masked {
         /// Texture with alpha.
         texture: SurfaceTexture<'a>,
@@ -147,15 +147,15 @@ pub enum Opacity<'a> {
         /// Coverage threshold, 0 to 1.
         cutoff: f32,
     },
-    /// Lets pass `(1 − coverage) + coverage · transmitted` of each colour. Techniques that know only opaque casters count
-    /// it as opaque where it stops at least half of white light.
+    /// Transmits `(1 − coverage) + coverage · transmitted` of each colour. Techniques for opaque casters only treat it as opaque
+    /// where it blocks at least half of white light.
     Translucent {
-        /// How much of the surface is there.
+        /// Fraction of the surface that is present.
         coverage: SurfaceCoverage,
-        /// What passes where it is, linear, 0 to 1: transmission × tint. [`Vec3::ZERO`] for surfaces that are blended by
-        /// their alpha and transmit nothing: they cover, and never tint.
+        /// Transmittance where the surface is present, linear RGB, 0 to 1: transmission × tint. [`Vec3::ZERO`] for alpha-blended
+        /// surfaces that transmit nothing: they block, and never tint.
         transmitted: Vec3,
-        /// Its RGB multiplies `transmitted`, its alpha the coverage's.
+        /// Texture whose RGB multiplies `transmitted` and whose alpha multiplies the coverage's.
         texture: Option<SurfaceTexture<'a>>,
     },
 }
@@ -163,21 +163,21 @@ pub enum Opacity<'a> {
 /// Coverage of a translucent surface. Without a texture alpha is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SurfaceCoverage {
-    /// All of it, whatever the texture's alpha.
+    /// Full coverage; the texture's alpha is ignored.
     Whole,
-    /// So much × the texture's filtered alpha: alpha blending.
+    /// Alpha blending: this factor × the texture's filtered alpha.
     Alpha(f32),
-    /// All where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, none elsewhere.
+    /// Alpha test: full coverage where `alpha_factor` × the texture's filtered alpha ≥ `cutoff`, none elsewhere.
     Cutoff {
         /// Multiplies the texture's alpha.
         alpha_factor: f32,
-        /// 0 to 1.
+        /// Coverage threshold, 0 to 1.
         cutoff: f32,
     },
 }
 
 impl SurfaceCoverage {
-    /// Whether all of its numbers are finite.
+    /// Whether all numbers of the coverage are finite.
     pub(crate) fn is_finite(self) -> bool {
         match self {
             Self::Whole => true,
@@ -206,7 +206,7 @@ impl<'a> Opacity<'a> {
     }
 }
 
-/// Whether a translucent surface may change light's colour.
+/// Whether a translucent surface can change the colour of light.
 pub(crate) fn tints(transmitted: Vec3, is_textured: bool) -> bool {
     let is_grey = transmitted == Vec3::splat(transmitted.x);
     transmitted != Vec3::ZERO && (is_textured || !is_grey)
@@ -215,9 +215,9 @@ pub(crate) fn tints(transmitted: Vec3, is_textured: bool) -> bool {
 /// Texture of a caster.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceTexture<'a> {
-    /// Texture coordinates: `[f32; 2]` a vertex, tightly packed from offset 0.
+    /// Texture coordinates: `[f32; 2]` per vertex, tightly packed from offset 0.
     pub uvs: &'a wgpu::Buffer,
-    /// A 2D view of a filterable colour format.
+    /// Texture view: 2D, of a filterable colour format.
     pub view: &'a wgpu::TextureView,
     /// Filtering sampler; it also sets the texture's address modes.
     pub sampler: &'a wgpu::Sampler,
@@ -226,12 +226,12 @@ pub struct SurfaceTexture<'a> {
 /// Depth map of a light, rendered by the host.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthMapCaster<'a> {
-    /// `Depth32Float` (depth aspect), 2D, one layer.
+    /// Texture view: `Depth32Float` (depth aspect), 2D, one layer.
     pub view: &'a wgpu::TextureView,
     /// Size, texels.
     pub size_px: UVec2,
-    /// The matrix it was rendered with: a perspective from the light's centre along its axis, or for a sun an
-    /// orthographic one along its axis. Any roll and any window of either.
+    /// Matrix with which the map was rendered: a perspective projection from the light's centre along its axis, or for a sun an
+    /// orthographic projection along its axis. Any roll and any window are allowed.
     pub clip_from_world: Mat4,
     /// Depth convention.
     pub depth_convention: DepthConvention,

@@ -10,38 +10,38 @@
 //! shade  = α l_f + (1 − α) l_bend                    l_f: by the smooth normal
 //! ```
 //!
-//! so that a triangle which faces away, of whose corners each has it among its neighbours, is black, and what faces the
-//! light well is shaded as ever. [`VertexFaces`] is what the host's vertex shader needs; [`COHERENT_WGSL`] the rest. In the
-//! place of a point light's cosine an area light's irradiance does as well, over what the surface would get if it faced the
-//! light: then only triangles turned from all of the light are black.
+//! A triangle that faces away is adjacent to all of its own vertices, so it is black. Surfaces that face the light well keep their
+//! shading. [`VertexFaces`] has the data for the host's vertex shader, [`COHERENT_WGSL`] the rest. For an area light, replace the
+//! cosine by its irradiance divided by that of a surface facing the light: then only triangles turned away from all of the light
+//! are black.
 
 use std::collections::HashMap;
 
 use glam::Vec3;
 
-/// `fn coherent_cosine(smooth_cosine: f32, bent_cosine: f32) -> f32`: the last two lines of the formula, not below 0.
+/// WGSL of `fn coherent_cosine(smooth_cosine: f32, bent_cosine: f32) -> f32`: the last two lines of the formula, at least 0.
 pub const COHERENT_WGSL: &str = include_str!("coherent.wgsl");
 
 /// Face normals around each vertex.
 ///
-/// Triangles are around a vertex where they have a corner at its position with its normal: seams of texture coordinates
-/// do not part them, hard edges do.
+/// A triangle is adjacent to a vertex if one of its corners has the vertex's position and normal: seams of texture coordinates do
+/// not separate triangles, hard edges do.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VertexFaces {
-    /// Vertex `v` has the normals from `first[v]` up to `first[v + 1]`; one entry more than vertices.
+    /// Offsets into `normals`: vertex `v` has those from `first[v]` up to `first[v + 1]`; one entry more than vertices.
     pub first: Vec<u32>,
-    /// Unit, in the space of the positions, counter-clockwise side.
+    /// Unit normals in the space of the positions, on the counter-clockwise side.
     pub normals: Vec<Vec3>,
 }
 
 impl VertexFaces {
-    /// Gathers the triangles around each vertex. Triangles without area count for none.
+    /// Gathers the triangles around each vertex. Triangles without area are ignored.
     ///
     /// # Panics
-    /// Where there are not as many normals as positions, or an index is beyond them.
+    /// If the numbers of normals and positions differ, or an index is out of range.
     pub fn new(positions: &[Vec3], normals: &[Vec3], indices: &[u32]) -> Self {
         assert_eq!(positions.len(), normals.len(), "a normal for each position");
-        // Adding zero makes one of the two zeroes.
+        // Adding zero turns −0 into +0, so that both have one key.
         let key = |v: usize| [positions[v], normals[v]].map(|p| (p + Vec3::ZERO).to_array().map(f32::to_bits));
         let mut places = HashMap::with_capacity(positions.len());
         let place_of: Vec<usize> = (0..positions.len())
@@ -70,7 +70,7 @@ impl VertexFaces {
     /// Face normals around one vertex; empty for a vertex without triangles.
     ///
     /// # Panics
-    /// Where there is no such vertex.
+    /// If there is no such vertex.
     pub fn of(&self, vertex: usize) -> &[Vec3] {
         &self.normals[self.first[vertex] as usize..self.first[vertex + 1] as usize]
     }

@@ -2,13 +2,12 @@
 
 use glam::UVec2;
 
-/// Lists of a light's map, one a texel, as the frame that was prepared last makes them; the next one of the same light writes
-/// over them.
+/// Lists of a light's map, one per texel, of the frame prepared last. The light's next frame overwrites them.
 ///
-/// Masks want none of it: it is for tools that show how long lists are and where.
+/// They are for tools that show the lengths of lists; rendering does not need them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnLists {
-    /// 32-bit words, with usage `STORAGE`; how long a list is they say by `lengths`.
+    /// Buffer of 32-bit words, with usage `STORAGE`; `lengths` is the encoding of the lists' lengths.
     pub words: wgpu::Buffer,
     /// Encoding of the lengths.
     pub lengths: ListLengths,
@@ -20,27 +19,27 @@ pub struct DrawnLists {
     pub levels: Vec<ListLevel>,
 }
 
-/// Encoding of the length of list *i*, counted from the buffer's first.
+/// Encoding of the length of list *i*, counted from the buffer's first list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ListLengths {
-    /// Word 2 i + 1; the word before says where the list begins.
+    /// Word 2 i + 1 is the length; the word before it is the list's offset.
     Counted,
-    /// Word i + 1 less word i, which say where lists begin.
+    /// Word i + 1 minus word i: the words are the lists' offsets.
     Between,
 }
 
 /// Mapping from texels to lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ListOrder {
-    /// Row after row.
+    /// Row-major order.
     Rows,
-    /// Of cells of space, that halve what is seen from the light again and again, and not of directions alone. As a picture they
-    /// lie along a curve whose neighbours are neighbours in space, or nearly: the list's number has the bits of the texel's
-    /// column and row in turn, the row's first.
+    /// Cells of space, by repeated halving of what the light sees, instead of directions alone. As an image they follow a Morton
+    /// curve, whose neighbours are mostly neighbours in space: the list's index interleaves the bits of the texel's column and row,
+    /// the row's first.
     Halvings,
-    /// One or the other, as the device has chosen.
+    /// Rows or halvings, as chosen on the GPU.
     Told {
-        /// The buffer's word that tells: 0 for rows, 1 for halvings.
+        /// Index of the word in the buffer that has the choice: 0 for rows, 1 for halvings.
         word: u32,
     },
 }

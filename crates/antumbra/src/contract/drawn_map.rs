@@ -2,13 +2,13 @@
 
 use glam::UVec2;
 
-/// A depth map that was drawn from a light, by the frame that was prepared last; the next one of the same light draws over it.
+/// Depth map drawn from a light by the frame prepared last. The light's next frame overwrites it.
 ///
-/// Masks want none of it: it is for tools that show what a technique sees.
+/// It is for tools that show what a technique sees; rendering does not need it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnMap {
-    /// Depth of `size_px` texels and `sample_count` samples, to be bound as a depth texture, multisampled where there are
-    /// several. Rows run against the light's up.
+    /// Depth of `size_px` texels and `sample_count` samples. Bind it as a depth texture, multisampled if there are several samples.
+    /// Rows run against the light's up.
     pub depth: wgpu::TextureView,
     /// Width and height, texels.
     pub size_px: UVec2,
@@ -16,25 +16,24 @@ pub struct DrawnMap {
     pub sample_count: u32,
     /// Clear value: the depth of texels without a caster.
     pub empty_depth: f32,
-    /// The nearest and the farthest place that it has room for, metres along the light's axis from where it is seen from.
+    /// Nearest and farthest depth that the map can hold, metres along the light's axis from the view's origin.
     pub range_m: [f32; 2],
-    /// How it holds them: metres along the axis are `(depth − depth_offset) / depth_scale`, of a lamp's map the reciprocal of
-    /// that.
+    /// Whether the map is perspective (a lamp's). Metres along the axis are `(depth − depth_offset) / depth_scale`, or the
+    /// reciprocal of that if it is.
     pub is_perspective: bool,
     /// See [`is_perspective`](Self::is_perspective).
     pub depth_scale: f32,
     /// See [`is_perspective`](Self::is_perspective).
     pub depth_offset: f32,
-    /// Of a window that is warped towards what the camera sees, what its depths were multiplied with before they were stored: of
-    /// the place (u, v), rows downwards, `warp[0] + warp[1] u + warp[2] v`. Of all others (1, 0, 0). Layers behind have it, levels
-    /// do not.
+    /// Factor of the stored depths of a window that is warped towards what the camera sees: at (u, v), rows downwards, depth was
+    /// multiplied by `warp[0] + warp[1] u + warp[2] v`. (1, 0, 0) without a warp. Layers behind have the factor, levels do not.
     pub depth_warp: [f32; 3],
-    /// Of which of the light's points it is seen, counted from 0, where each has a map of its own; maps take turns, so that
-    /// those of the last points are there.
+    /// Index of the light sample from which the map is seen, if each sample has a map of its own. Textures are reused, so only the
+    /// maps of the last samples remain.
     pub light_point: Option<u32>,
-    /// Layers of casters behind the map's, the nearest first: to be bound as `depth`, with one sample.
+    /// Peeled layers behind the map, the nearest first. Bind them as `depth`, with one sample.
     pub layers_behind: Vec<wgpu::TextureView>,
-    /// What was made of the map and is read besides it or in its place, the finest first.
+    /// Levels derived from the map that are read in addition to it or in its place, the finest first.
     pub levels: Vec<MapLevel>,
 }
 
@@ -45,7 +44,7 @@ pub struct MapLevel {
     pub view: wgpu::TextureView,
     /// Corner of the level in the texture, texels.
     pub origin_px: UVec2,
-    /// Width and height of the level: the texels that stand for the map.
+    /// Width and height of the level: the texels that represent the map.
     pub size_px: UVec2,
     /// Content of the texels.
     pub texels: LevelTexels,
@@ -54,14 +53,14 @@ pub struct MapLevel {
 /// Content of the texels of a [`MapLevel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LevelTexels {
-    /// Floats: the least and the greatest depth of a square of the map's texels, stored as the map's are.
+    /// Floats: minimum and maximum depth of a square of the map's texels, encoded as the map's depths.
     Extremes,
-    /// Words of 32 bits with channels of a filtered map; the first channel has all of the word.
+    /// 32-bit words of a filtered map's channels; the first channel is a 32-bit float.
     Float32,
-    /// The same: a float in the word's lower half.
+    /// 32-bit words of a filtered map's channels; the first channel is a 16-bit float in the lower half.
     Float16,
-    /// The same: a fraction of 1 in the word's lower half.
+    /// 32-bit words of a filtered map's channels; the first channel is a 16-bit fraction of 1 in the lower half.
     Unorm16,
-    /// The same: a fraction of 1 in the word's lowest byte.
+    /// 32-bit words of a filtered map's channels; the first channel is an 8-bit fraction of 1 in the lowest byte.
     Unorm8,
 }

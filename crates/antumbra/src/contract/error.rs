@@ -5,36 +5,36 @@ use antumbra_light::LightError;
 /// Reason why a technique cannot be created or a frame cannot be prepared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// The device lacks something.
+    /// The device lacks a feature or a limit is too low.
     #[error("{technique}: needs {needed}, and this device has {had}; {remedy}")]
     Unsupported {
-        /// Which technique.
+        /// Name of the technique.
         technique: &'static str,
         /// The feature or limit.
         needed: String,
-        /// What there is.
+        /// What the device has.
         had: String,
-        /// What to do.
+        /// Suggested remedy.
         remedy: &'static str,
     },
-    /// The frame's parts do not fit one another.
+    /// An input of the frame is unusable or does not fit the others.
     #[error("{technique}: {what} is {had}, and must be {needed}")]
     BadFrame {
-        /// Which technique.
+        /// Name of the technique.
         technique: &'static str,
-        /// Which part.
+        /// Name of the input.
         what: &'static str,
-        /// What it is.
+        /// Value found.
         had: String,
-        /// What would be right.
+        /// Value required.
         needed: String,
     },
     /// The light is unusable.
     #[error("{technique}: {source}")]
     Light {
-        /// Which technique.
+        /// Name of the technique.
         technique: &'static str,
-        /// Which number, and its range.
+        /// Faulty quantity, with its range.
         source: LightError,
     },
     /// A parameter is unknown or out of range.
@@ -48,23 +48,23 @@ pub enum ParamError {
     /// No such key.
     #[error("{technique} has no parameter `{key}`; it has: {known}")]
     UnknownKey {
-        /// Which technique.
+        /// Name of the technique.
         technique: &'static str,
         /// The key given.
         key: String,
-        /// The keys there are.
+        /// Keys of the technique.
         known: String,
     },
     /// The value does not parse or lies outside the range.
     #[error("{technique}: `{key}` cannot be `{value}`; it takes {expected}")]
     BadValue {
-        /// Which technique.
+        /// Name of the technique.
         technique: &'static str,
         /// The key.
         key: &'static str,
         /// The value given.
         value: String,
-        /// What would be right.
+        /// Accepted values.
         expected: String,
     },
 }

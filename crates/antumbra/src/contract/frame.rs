@@ -1,4 +1,4 @@
-//! One light's work for one frame, and what it may come short of.
+//! Frame of one light as techniques receive it, and overflow of its structures.
 
 use std::fmt;
 
@@ -6,27 +6,27 @@ use antumbra_light::{Aabb, Light};
 
 use super::{Mask, PreparedCasters, PreparedReceivers, Surfaces};
 
-/// One light's work for one frame, as techniques receive it: casters are drawn as they are, places are counted from the frame's
+/// Frame of one light as techniques receive it: a set's casters are resolved to meshes, and positions are relative to the frame's
 /// anchor.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedFrame<'a> {
-    /// The light.
+    /// Light.
     pub light: &'a Light,
-    /// What casts.
+    /// Casters.
     pub casters: PreparedCasters<'a>,
-    /// What receives.
+    /// Receivers.
     pub receivers: PreparedReceivers<'a>,
-    /// Where visibility goes; the receivers' size.
+    /// Output mask, of the receivers' size.
     pub mask: &'a Mask,
-    /// Where it goes instead, with how far it may be smoothed: of techniques whose visibility [is noisy](crate::techniques::Technique::is_noisy).
-    /// They write the receivers' pixels and no others.
+    /// Output in place of `mask` for techniques whose visibility [is noisy](crate::techniques::Technique::is_noisy): visibility and
+    /// the magnification that limits its smoothing. They write the receivers' pixels and no others.
     pub noisy: Option<&'a wgpu::TextureView>,
 }
 
 impl PreparedFrame<'_> {
-    /// Whether receivers may lie within a box of a closed caster, or the camera may see it from there, while the light is outside. A
-    /// room's box, which holds both its lamp and the camera, tells nothing of the walls, which hold neither; where points may lie
-    /// anywhere, it does not matter whether it holds the lamp.
+    /// Returns a test of a closed caster's box: whether receivers or the camera's near plane may be inside while the light is
+    /// outside. A room's box contains both its lamp and the camera and says nothing about the walls, which contain neither. For
+    /// points, the lamp's position is ignored.
     #[cfg_attr(not(any(feature = "ray_traced", feature = "receiver_lists")), allow(dead_code))]
     pub(crate) fn sees_within(&self) -> impl Fn(&Aabb) -> bool + use<> {
         let within = self.receivers.box_within();
@@ -43,11 +43,11 @@ impl PreparedFrame<'_> {
 /// A structure of variable length that was too short for a frame. The frame used what fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Overflow {
-    /// What there was too much of, in the plural: `fragments`.
+    /// Plural noun of the elements: `fragments`.
     pub what: &'static str,
-    /// How many the frame had.
+    /// Number of elements in the frame.
     pub needed: u64,
-    /// How many there was room for.
+    /// Capacity, elements.
     pub had: u64,
 }
 

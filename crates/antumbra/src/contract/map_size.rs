@@ -1,4 +1,4 @@
-//! Number of texels of a light's map: a number, or as many as the image asks for.
+//! Size of a light's map: fixed, or chosen from the image.
 
 use std::fmt;
 
@@ -7,11 +7,11 @@ use super::{ParamType, ParamValue};
 /// Texels along a side of a light's map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MapSize {
-    /// As many as make a texel about half as wide as a pixel where receivers are seen, within a share of the memory budget
-    /// ([`Gpu::set_map_budget`](crate::Gpu::set_map_budget)). [`Shadow::auto_map_sizes`](crate::Shadow::auto_map_sizes) has the
-    /// number of the last frame.
+    /// A texel is about half as wide as a pixel at the visible receivers, within a share of the memory budget
+    /// ([`Gpu::set_map_budget`](crate::Gpu::set_map_budget)). [`Shadow::auto_map_sizes`](crate::Shadow::auto_map_sizes) returns the
+    /// size of the last frame.
     Auto,
-    /// So many.
+    /// Fixed number of texels.
     Texels(u32),
 }
 

@@ -1,4 +1,4 @@
-//! Visibility mask, the output, of the receivers' size.
+//! Visibility mask: the output, of the receivers' size.
 
 use glam::UVec2;
 
@@ -6,10 +6,10 @@ use super::Error;
 
 /// The visibility mask: 1 lit, 0 umbra. Every pixel is written once per light; the host multiplies.
 ///
-/// It lies in a texture of its own, or in [a part](MaskPlace) of a host's: in layers of an array, in a rectangle of an atlas, in
-/// one component of four. Techniques write and accumulate in `R32Float`, the one format that every WebGPU adapter can read and
-/// write in compute. A mask of [another format](Mask::FORMATS) is drawn from one of that format, which belongs to the device and
-/// serves all lights of like size: a pass more, of 4 bytes read and 1 to 8 written a pixel.
+/// It has a texture of its own, or [a part](MaskPlace) of a host's texture: layers of an array, a rectangle of an atlas, one
+/// component of four. Techniques write and accumulate in `R32Float`, the only format that every WebGPU adapter can read and write
+/// in compute. A mask of [another format](Mask::FORMATS) is converted from an `R32Float` mask, which belongs to the device and
+/// serves all lights of the same size. The conversion is one more pass, with 4 bytes read and 1 to 8 written per pixel.
 #[derive(Clone, Debug)]
 pub struct Mask {
     texture: wgpu::Texture,
@@ -19,39 +19,39 @@ pub struct Mask {
     layers_view: wgpu::TextureView,
 }
 
-/// Where in a host's texture a mask lies.
+/// Location of a mask in a host's texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MaskPlace {
-    /// The layer of the first channel.
+    /// Layer of the first channel.
     pub layer: u32,
-    /// The corner of its rectangle.
+    /// Corner of the rectangle, pixels.
     pub origin_px: UVec2,
-    /// The rectangle's size: the receivers'.
+    /// Size of the rectangle, pixels: the receivers' size.
     pub size_px: UVec2,
-    /// In formats of four components, which of them a mask of one channel goes to: 0 to 3, red to alpha. The others stay as
-    /// they are, and so does alpha under a mask of three channels.
+    /// Component of a mask of one channel in a format of four components: 0 to 3, red to alpha. The other components keep their
+    /// values, as does alpha under a mask of three channels.
     pub component: u32,
 }
 
 impl MaskPlace {
-    /// All of a layer.
+    /// Creates the location of a whole layer.
     pub fn layer(texture: &wgpu::Texture, layer: u32) -> Self {
         let size_px = UVec2::new(texture.width(), texture.height());
         Self { layer, origin_px: UVec2::ZERO, size_px, component: 0 }
     }
 }
 
-/// How many channels a mask has.
+/// Number of channels of a mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaskChannels {
-    /// Visibility alone. Techniques that know colour write its luminance.
+    /// Visibility alone. Techniques that compute colour write its luminance.
     One,
-    /// Red, green and blue. Techniques that know no colour write the same to all.
+    /// Red, green and blue. Techniques that compute no colour write the same value to all.
     Three,
 }
 
 impl MaskChannels {
-    /// 1 or 3.
+    /// Number of channels: 1 or 3.
     pub fn count(self) -> u32 {
         match self {
             Self::One => 1,
@@ -61,10 +61,10 @@ impl MaskChannels {
 }
 
 impl Mask {
-    /// The format that techniques write themselves.
+    /// Format that techniques write directly.
     pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-    /// The formats that a mask may have: 32 bits, 16, 8, alone or as components of four.
+    /// Formats that a mask can have: one component of 32, 16 or 8 bits, or four of 16 or 8 bits.
     pub const FORMATS: [wgpu::TextureFormat; 5] = [
         Self::FORMAT,
         wgpu::TextureFormat::R16Float,
@@ -73,21 +73,21 @@ impl Mask {
         wgpu::TextureFormat::Rgba8Unorm,
     ];
 
-    /// A mask of `size_px` pixels and one channel.
+    /// Creates a mask of `size_px` pixels and one channel.
     pub fn new(device: &wgpu::Device, size_px: UVec2) -> Self {
         Self::with_channels(device, size_px, MaskChannels::One)
     }
 
-    /// A mask of `size_px` pixels. [`Casters::mask_channels`](super::Casters::mask_channels) says how many channels
-    /// the casters have a use for.
+    /// Creates a mask of `size_px` pixels. [`Casters::mask_channels`](crate::Casters::mask_channels) returns the number of channels
+    /// that the casters need.
     pub fn with_channels(device: &wgpu::Device, size_px: UVec2, channels: MaskChannels) -> Self {
         Self::with_format(device, size_px, channels, Self::FORMAT)
     }
 
-    /// A mask of `size_px` pixels in one of the [`FORMATS`](Self::FORMATS).
+    /// Creates a mask of `size_px` pixels in one of the [`FORMATS`](Self::FORMATS).
     ///
     /// # Panics
-    /// Where the format is another one.
+    /// If the format is another one.
     pub fn with_format(
         device: &wgpu::Device,
         size_px: UVec2,
@@ -98,8 +98,8 @@ impl Mask {
         Self::of_own_layers(&texture, 0, channels)
     }
 
-    /// A mask in the host's own texture array: its layers from `first_layer` on, as many as there are channels; in formats of
-    /// four components one.
+    /// Creates a mask in the host's own texture array, from layer `first_layer` on: one layer per channel, or one layer in formats
+    /// of four components.
     ///
     /// # Errors
     /// As [`within`](Self::within).
@@ -107,10 +107,11 @@ impl Mask {
         Self::within(texture, MaskPlace::layer(texture, first_layer), channels)
     }
 
-    /// A mask in part of a host's texture, which has one of the [`FORMATS`](Self::FORMATS) and its [`usages`](Self::usages).
+    /// Creates a mask in part of a host's texture, which has one of the [`FORMATS`](Self::FORMATS) and its
+    /// [`usages`](Self::usages).
     ///
     /// # Errors
-    /// [`Error::BadFrame`] if the texture has another format, lacks a usage, or does not hold the place.
+    /// [`Error::BadFrame`] if the texture has another format, lacks a usage, or does not contain the place.
     pub fn within(texture: &wgpu::Texture, place: MaskPlace, channels: MaskChannels) -> Result<Self, Error> {
         let bad = |what, had: String, needed: String| Err(Error::BadFrame { technique: "mask", what, had, needed });
         let format = texture.format();
@@ -165,12 +166,12 @@ impl Mask {
         Self { texture: texture.clone(), place, channels, first_view, layers_view }
     }
 
-    /// Masks of so many lights in one texture array, so that a host's shader binds one texture. In formats of four components masks of one
-    /// channel lie in the components of a layer: that of light `i` is in component `i % 4` of layer `i / 4`. All others have layers of their
-    /// own, one after the other, as many as a mask takes.
+    /// Creates masks of `count` lights in one texture array, so that a host's shader binds one texture. In formats of four
+    /// components, masks of one channel share layers: light `i` has component `i % 4` of layer `i / 4`. All other masks have
+    /// consecutive layers of their own.
     ///
     /// # Panics
-    /// Where the format is not one of the [`FORMATS`](Self::FORMATS), or the count is zero.
+    /// If the format is not one of the [`FORMATS`](Self::FORMATS), or the count is zero.
     pub fn packed(
         device: &wgpu::Device,
         size_px: UVec2,
@@ -189,7 +190,7 @@ impl Mask {
         (0..count).map(of_light).collect()
     }
 
-    /// Whether both write some texel's component.
+    /// Whether two masks share a component of a texel.
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         let layers = |mask: &Self| {
             let first = mask.place.layer;
@@ -208,7 +209,7 @@ impl Mask {
             && is_before(&other.place, &self.place)
     }
 
-    /// The usages that a mask's texture needs: to be read, and written by compute or drawn to.
+    /// Usages that a mask's texture needs: reading, and writing in compute or as a render target.
     pub fn usages(format: wgpu::TextureFormat) -> wgpu::TextureUsages {
         let written = if format == Self::FORMAT {
             wgpu::TextureUsages::STORAGE_BINDING
@@ -218,43 +219,43 @@ impl Mask {
         wgpu::TextureUsages::TEXTURE_BINDING | written
     }
 
-    /// Size in pixels.
+    /// Size, pixels.
     pub fn size_px(&self) -> UVec2 {
         self.place.size_px
     }
 
-    /// How many channels it has.
+    /// Number of channels.
     pub fn channels(&self) -> MaskChannels {
         self.channels
     }
 
-    /// The texture, for copies.
+    /// Texture, for copies.
     pub fn texture(&self) -> &wgpu::Texture {
         &self.texture
     }
 
-    /// Where in the texture it lies.
+    /// Location in the texture.
     pub fn place(&self) -> MaskPlace {
         self.place
     }
 
-    /// The first channel's layer, for shaders: `texture_2d<f32>`, read by `textureLoad` from the [place](Self::place) on.
+    /// View of the first channel's layer, for shaders: `texture_2d<f32>`, read by `textureLoad` from the [place](Self::place) on.
     pub fn view(&self) -> &wgpu::TextureView {
         &self.first_view
     }
 
-    /// All of its layers, for shaders: `texture_2d_array<f32>`, read by `textureLoad`.
+    /// View of all layers, for shaders: `texture_2d_array<f32>`, read by `textureLoad`.
     pub fn layers_view(&self) -> &wgpu::TextureView {
         &self.layers_view
     }
 }
 
-/// The layers that a mask takes.
+/// Number of layers that a mask occupies.
 fn layers_of(format: wgpu::TextureFormat, channels: MaskChannels) -> u32 {
     if format.components() == 1 { channels.count() } else { 1 }
 }
 
-/// A texture for masks, which may be copied from.
+/// Creates a texture for masks, with `COPY_SRC`.
 fn texture_of_layers(
     device: &wgpu::Device,
     size_px: UVec2,

@@ -1,12 +1,12 @@
-//! The contract between a host and every technique: what goes in, what comes out. No pipelines here.
+//! Contract between a host and every technique: inputs and outputs. It contains no pipelines.
 //!
 //! # Conventions
 //! - World space: metres, right-handed, +Y up. Angles in radians. Colours linear.
 //! - An image's first row is the top; the sample of pixel (i, j) lies at (i + ½, j + ½).
-//! - Clip space as WebGPU's: x right, y up, depth 0 to 1. Whether depth is reversed is said where a depth buffer is
-//!   handed over ([`DepthConvention`]); the library's own light maps are reversed: 1 at the near plane, 0 at the far.
+//! - Clip space as WebGPU's: x right, y up, depth 0 to 1. Each depth buffer of a host comes with its [`DepthConvention`]; the
+//!   library's own light maps are reversed: 1 at the near plane, 0 at the far.
 //! - A light looks along its axis; [`LightFrame`](antumbra_light::LightFrame)'s (right, up, −axis) is right-handed.
-//! - *Visibility* is 1 where lit and 0 in the umbra; *occlusion* is its complement and a different word.
+//! - *Visibility* is 1 where lit and 0 in the umbra; *occlusion* is 1 − visibility.
 
 mod casters;
 mod casters_key;

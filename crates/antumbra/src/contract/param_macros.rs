@@ -1,18 +1,18 @@
 //! Macros that declare parameters, and the parameters that several techniques share.
 
-/// Declares a technique's parameters; see [`ParamSpec`] for the facts each states. Behind the struct may stand what the steps of
-/// [`Quality`] set otherwise than the defaults: `Fast { samples: 16, }`; and behind those what the technique's paper prints
-/// otherwise, with what ours does in its place, and the departures that no parameter turns off:
+/// Declares a technique's parameters; [`ParamSpec`] lists the facts of each. Two optional parts follow the struct. First, the
+/// values of each [`Quality`] that differ from the defaults: `Fast { samples: 16, }`. Second, the published values that differ,
+/// each with what our default does instead, and the departures that no parameter turns off:
 /// `=> Paper { samples: 1, ours "64 of them."; } kept { "A warped window.", }`.
 ///
-/// A parameter that several techniques have is declared in [`params_in_full`] once, and named: `shared bias_scale;`.
+/// A parameter of several techniques is declared once, in [`params_in_full`], and named: `shared bias_scale;`.
 macro_rules! params {
     ($(#[$outer:meta])* pub struct $name:ident { $($body:tt)+ } $($rest:tt)*) => {
         $crate::contract::params_in_full! { [$(#[$outer])* pub struct $name] [] [$($rest)*] $($body)+ }
     };
 }
 
-/// Writes `shared` parameters out: each has its one declaration here.
+/// Expands `shared` parameters, each of which is declared here once.
 macro_rules! params_in_full {
     ([$($head:tt)*] [$($done:tt)*] [$($rest:tt)*]) => {
         $crate::contract::declare_params! { $($head)* { $($done)* } $($rest)* }
@@ -24,15 +24,15 @@ macro_rules! params_in_full {
     };
     ($head:tt [$($done:tt)*] $rest:tt shared map_size = $size:expr, more $more:literal; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
-            /// Texels along a side of the shadow map; with `auto` as many as make a texel about half as wide as a pixel where
-            /// receivers are seen, and 1024 at least.
+            /// Texels along a side of the shadow map; `auto` makes a texel about half as wide as a pixel at the visible receivers,
+            /// with at least 1024 texels.
             map_size: $crate::contract::MapSize = $size, in 16..=8192, unit "texels", scale Log, more $more;
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared map_size of lists; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
-            /// Texels along a side of a shadow map with as many texels as there are lists of receivers; rounded up to a power of
-            /// two. The lists take space by distance from the light too.
+            /// Texels along a side of a map with one texel per list of receivers; rounded up to a power of two. The lists divide
+            /// space by distance from the light too.
             map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
                 more "Shorter lists, which changes the time and never the shadow.";
         ] $rest $($body)* }
@@ -46,7 +46,7 @@ macro_rules! params_in_full {
     };
     ($head:tt [$($done:tt)*] $rest:tt shared edge_goes_on; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
-            /// Whether what the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.
+            /// Whether casters at the map's edge are extended beyond it, for blockers nearer to the light than the map holds.
             edge_goes_on: bool = true,
                 more "false is as published: light passes beside the map where a cover is nearer to the light than the light is large.";
         ] $rest $($body)* }
@@ -58,10 +58,10 @@ macro_rules! params_in_full {
                 more "Another set of samples of the same quality.";
         ] $rest $($body)* }
     };
-    // By the name that the caller imports: the type is declared by one of these macros itself.
+    // The type is named as the caller imports it, because one of these macros declares it.
     ($head:tt [$($done:tt)*] $rest:tt shared weights, more $more:literal; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
-            /// What each light sample counts in a receiver's visibility.
+            /// Weight of each light sample in a receiver's visibility.
             weights: SampleWeights = SampleWeights::Emission, more $more;
         ] $rest $($body)* }
     };
@@ -92,7 +92,7 @@ macro_rules! params_in_full {
     };
 }
 
-/// Declares parameters that are all written out.
+/// Declares parameters after `shared` ones are expanded.
 macro_rules! declare_params {
     ($(#[$outer:meta])* pub struct $name:ident { $(
         $(#[doc = $doc:literal])+
@@ -183,7 +183,7 @@ macro_rules! declare_params {
     };
 }
 
-/// Declares an enum as a parameter's choice; each variant's name is what users write.
+/// Declares an enum as a parameter's choice; each variant's text is its name in commands and files.
 macro_rules! param_choice {
     ($(#[$outer:meta])* pub enum $name:ident { $( $(#[$inner:meta])* $variant:ident = $text:literal, )+ }) => {
         $(#[$outer])*

@@ -1,11 +1,11 @@
-//! Parameters, declared once: name, meaning, unit, range, default, scale, and what more of it does. Documentation,
-//! `--set`, setup files, sliders and searches all read that one declaration.
+//! Parameters, declared once: name, meaning, unit, range, default, scale, and the effect of larger values. Documentation, `--set`,
+//! setup files, sliders and searches all read that one declaration.
 
 use std::fmt;
 
 use super::{ParamError, Printed, Quality};
 
-/// How a slider over a parameter should run.
+/// Scale of a parameter's slider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParamScale {
     /// Equal steps.
@@ -14,7 +14,7 @@ pub enum ParamScale {
     Log,
 }
 
-/// A parameter's value, whatever its type.
+/// Value of a parameter of any type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParamValue {
     /// A count or size.
@@ -29,7 +29,7 @@ pub enum ParamValue {
     List(ParamList),
 }
 
-/// Up to [`CAPACITY`](Self::CAPACITY) numbers, written with commas between them.
+/// List of up to [`CAPACITY`](Self::CAPACITY) numbers, written with commas between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParamList {
     numbers: [f32; Self::CAPACITY],
@@ -37,12 +37,12 @@ pub struct ParamList {
 }
 
 impl ParamList {
-    /// The most numbers of a list.
+    /// Maximum length.
     pub const CAPACITY: usize = 15;
-    /// No numbers.
+    /// Empty list.
     pub const EMPTY: Self = Self { numbers: [0.0; Self::CAPACITY], count: 0 };
 
-    /// A list; `None` where there are too many numbers or one is not finite.
+    /// Creates a list; `None` if there are too many numbers or one is not finite.
     pub fn new(values: &[f32]) -> Option<Self> {
         let mut list = Self { count: values.len(), ..Self::EMPTY };
         list.numbers.get_mut(..values.len())?.copy_from_slice(values);
@@ -64,7 +64,7 @@ impl fmt::Display for ParamList {
     }
 }
 
-/// Values of each type that a parameter can have, for [`Params::set_value`].
+/// Conversions from each type that a parameter can have, for [`Params::set_value`].
 macro_rules! into_values {
     ($( $ty:ty as $variant:ident, )+) => { $(
         impl From<$ty> for ParamValue {
@@ -95,29 +95,29 @@ impl fmt::Display for ParamValue {
     }
 }
 
-/// The declaration of one parameter.
+/// Declaration of one parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct ParamSpec {
-    /// The key.
+    /// Key.
     pub key: &'static str,
-    /// What it is.
+    /// Description.
     pub meaning: &'static str,
-    /// Its unit; empty for pure numbers, switches and choices.
+    /// Unit; empty for pure numbers, switches and choices.
     pub unit: &'static str,
-    /// Smallest and largest number; `None` for switches and choices.
+    /// Smallest and largest number; `None` for switches, choices and lists.
     pub range: Option<(f64, f64)>,
-    /// The names a choice can take; of what has a range, too, what may be given in place of a number; empty for others.
+    /// Names of a choice; for a parameter with a range, names accepted in place of a number; empty for others.
     pub choices: &'static [&'static str],
-    /// The value it has unless set.
+    /// Default value.
     pub default: ParamValue,
-    /// How a slider should run.
+    /// Scale of a slider.
     pub scale: ParamScale,
-    /// What more of it does, or what the choices differ in.
+    /// Effect of a larger value, or how the choices differ.
     pub more: &'static str,
 }
 
 impl ParamSpec {
-    /// What the parameter takes, for messages: `a whole number from 64 to 8192`.
+    /// Accepted values, for messages: `a whole number from 64 to 8192`.
     pub fn expected(&self) -> String {
         let other = if self.choices.is_empty() { String::new() } else { format!(", or {}", self.choices.join(", ")) };
         match (self.default, self.range) {
@@ -129,8 +129,8 @@ impl ParamSpec {
         }
     }
 
-    /// Whether a mask is in colour at this value, whatever the casters: a debug view that paints layers or levels, or light that
-    /// is weighted by channel.
+    /// Whether a mask is in colour at this value, regardless of the casters: a debug view that paints layers or levels, or light
+    /// that is weighted by channel.
     pub fn colors_mask(&self, value: ParamValue) -> bool {
         matches!(
             (self.key, value),
@@ -138,21 +138,21 @@ impl ParamSpec {
         )
     }
 
-    /// Whether it takes whole numbers, be it with names in place of some.
+    /// Whether the parameter takes whole numbers, possibly with names in place of some.
     pub fn is_whole(&self) -> bool {
         self.range.is_some() && !matches!(self.default, ParamValue::F32(_))
     }
 }
 
-/// A type that a parameter can have. Names are read in any case: `TRUE`, `Ranges`.
+/// Type of a parameter. Names are case-insensitive: `TRUE`, `Ranges`.
 pub trait ParamType: Copy {
-    /// The names of a choice; empty for other types.
+    /// Names of a choice; empty for other types.
     const CHOICES: &'static [&'static str] = &[];
-    /// Reads a value; `None` where the text is not one.
+    /// Parses a value; `None` if the text is not one.
     fn parse(text: &str) -> Option<Self>;
-    /// The value, untyped.
+    /// Converts to an untyped value.
     fn value(self) -> ParamValue;
-    /// A value of this type; `None` of a value of another, or one that is not finite.
+    /// Converts from an untyped value; `None` if it has another type or is not finite.
     fn from_value(value: ParamValue) -> Option<Self>;
     /// The value as a number, for range checks; `None` for switches and choices.
     fn number(self) -> Option<f64> {
@@ -220,23 +220,23 @@ impl ParamType for ParamList {
 
 /// A technique's parameters.
 pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
-    /// What a quality sets; the defaults for [`Quality::Balanced`].
+    /// Parameters of a quality; the defaults for [`Quality::Balanced`].
     fn of_quality(quality: Quality) -> Self;
-    /// What [`Quality::Paper`] turns off; `None` where there is no such setting.
+    /// Departures from the paper, for [`Quality::Paper`]; `None` if there is no such setting.
     fn printed() -> Option<&'static Printed>;
-    /// The declarations, in the order of documentation.
+    /// Declarations, in the order of documentation.
     fn specs() -> &'static [ParamSpec];
-    /// The value of a key of [`Self::specs`].
+    /// Value of a key of [`Self::specs`].
     fn get(&self, key: &str) -> Option<ParamValue>;
-    /// The value that a text stands for as that of a key of [`Self::specs`]; `None` where it stands for none.
+    /// Parses a value of a key of [`Self::specs`]; `None` if the text is not one.
     fn parse(key: &str, text: &str) -> Option<ParamValue>;
-    /// Sets a key of [`Self::specs`], in range or not; `None`, and nothing is set, where the value is of another type.
+    /// Sets a key of [`Self::specs`] without checking the range. Returns `None` and sets nothing if the value has another type.
     fn put(&mut self, key: &str, value: ParamValue) -> Option<()>;
 
-    /// Sets a key from text. Keys, choices and switches are read in any case.
+    /// Sets a key from text. Keys, choices and switches are case-insensitive.
     ///
     /// # Errors
-    /// Names the keys there are, or what the key takes.
+    /// Lists the technique's keys, or the values that the key accepts.
     fn set(&mut self, technique: &'static str, key: &str, text: &str) -> Result<(), ParamError> {
         let spec = spec_of::<Self>(technique, key)?;
         put_in_range(self, technique, spec, Self::parse(spec.key, text), || text.into())
@@ -256,7 +256,7 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
         put_in_range(self, technique, spec, Some(value), || value.to_string())
     }
 
-    /// Checks every number against its range; fields are public and can be set past [`Self::set`].
+    /// Checks every number against its range, because fields are public and can be set without [`Self::set`].
     ///
     /// # Errors
     /// Names the first key out of range, and its range.
@@ -270,7 +270,7 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
         Ok(())
     }
 
-    /// What a quality sets otherwise than the defaults.
+    /// Parameters whose values in a quality differ from the defaults.
     fn quality_settings(quality: Quality) -> Vec<(&'static str, ParamValue)> {
         let (set, default) = (Self::of_quality(quality), Self::default());
         let differs = |spec: &ParamSpec| {
@@ -280,7 +280,7 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
     }
 }
 
-/// The declaration of a key, read in any case.
+/// Returns the declaration of a key; case-insensitive.
 fn spec_of<P: Params>(technique: &'static str, key: &str) -> Result<&'static ParamSpec, ParamError> {
     let named = P::specs().iter().find(|spec| spec.key.eq_ignore_ascii_case(key));
     named.ok_or_else(|| ParamError::UnknownKey {
@@ -290,7 +290,7 @@ fn spec_of<P: Params>(technique: &'static str, key: &str) -> Result<&'static Par
     })
 }
 
-/// Sets a key to a value that is one of its type and in range. `written` is the value as it was given.
+/// Sets a key if the value has its type and is in range. `written` is the value as given, for the error.
 fn put_in_range<P: Params>(
     params: &mut P,
     technique: &'static str,

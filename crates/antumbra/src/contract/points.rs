@@ -26,7 +26,7 @@ impl<'a> PointBuffer<'a> {
     }
 }
 
-/// Widths of points. A point represents a square of its plane, over which techniques filter that filter over a pixel's footprint.
+/// Widths of points. A point represents a square of its plane; techniques that filter over a pixel's footprint filter over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointWidths<'a> {
     /// One width for all points, metres; zero, the default, for points without extent.
@@ -46,29 +46,30 @@ impl Default for PointWidths<'_> {
 pub struct PointReceivers<'a> {
     /// Number of points.
     pub count: u32,
-    /// World-space positions, three floats each. One that is not finite receives nothing, and is lit.
+    /// World-space positions, three floats each. A point that is not finite is no receiver and is lit.
     pub positions: PointBuffer<'a>,
-    /// World-space normals, three floats each, of any length. A point with a normal lies on a surface, which shades itself where
-    /// it faces away from the light. `None`, or a normal of length zero: the point faces the light's centre. Without normals points may lie
-    /// anywhere, within closed casters too; with them they lie on or outside closed casters.
+    /// World-space normals, three floats each, of any length. A point with a normal lies on a surface, which shades itself where it
+    /// faces away from the light. `None`, or a normal of length zero: the point faces the light's centre. Without normals, points
+    /// may lie anywhere, even inside closed casters; with them, they lie on or outside closed casters.
     pub normals: Option<PointBuffer<'a>>,
     /// Widths of the points.
     pub widths: PointWidths<'a>,
-    /// Points in a row, of points that lie in rows as pixels do: a lightmap's, say. Random numbers are those of pixels there, and
-    /// workgroups take 8 × 8. `None`: a workgroup takes 64 points that follow one another, so order them by place if you can.
+    /// Number of points in a row, if they lie in rows as the texels of a lightmap do. Random numbers are then those of pixels
+    /// there, and workgroups take 8 × 8 points. `None`: a workgroup takes 64 consecutive points, so order them by position if you
+    /// can.
     pub row_length: Option<u32>,
-    /// World-space box that holds every point: light maps are fitted to it. Sides that are not known may be infinitely far.
+    /// World-space box that holds every point: light maps are fitted to it. Unknown sides may be infinite.
     pub bounds: Aabb,
-    /// World-space points whose convex hull holds every point, for hosts that know it tighter than `bounds`; empty for all others.
+    /// World-space points whose convex hull holds every point, for hosts that have one tighter than `bounds`; otherwise empty.
     pub hull: &'a [Vec3],
-    /// Some hundreds of the points. Maps whose texels may differ in size have the small ones there. Empty: anywhere in the hull.
+    /// A few hundred of the points. Maps whose texels differ in size place the small ones there. Empty: anywhere in the hull.
     pub seen: &'a [Vec3],
-    /// A number that is another one whenever the buffers hold something else: as [`Receivers::version`](super::Receivers::version).
+    /// Generation counter: change it whenever the buffers' contents change; see [`Receivers::version`](super::Receivers::version).
     pub version: Option<u64>,
 }
 
 impl<'a> PointReceivers<'a> {
-    /// Buffers of positions, normals and widths.
+    /// Buffers of positions, normals and widths; `None` for absent ones.
     pub(crate) fn buffers(&self) -> [Option<PointBuffer<'a>>; 3] {
         let widths = match self.widths {
             PointWidths::Same(_) => None,
@@ -77,7 +78,7 @@ impl<'a> PointReceivers<'a> {
         [Some(self.positions), self.normals, widths]
     }
 
-    /// Creates receivers without normals or widths, in no order.
+    /// Creates receivers without normals or widths, in any order.
     pub fn new(count: u32, positions: PointBuffer<'a>, bounds: Aabb) -> Self {
         Self {
             count,

@@ -2,20 +2,20 @@
 
 use std::fmt;
 
-/// How much a technique may spend. Each step is a set of its parameters, chosen from measured fronts of error against time;
-/// single parameters may be set after it.
+/// Quality of a technique: a set of its parameters, chosen from measured fronts of error against time. Single parameters may be set
+/// afterwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quality {
-    /// What a game with many lights can spend.
+    /// Cost that a game with many lights can afford.
     Fast,
-    /// The defaults: what is left of the error is hard to see.
+    /// The defaults: the remaining error is hard to see.
     #[default]
     Balanced,
-    /// Twice to four times the time for what error that takes away.
+    /// Less error for two to four times the time.
     High,
-    /// The least error that the technique's parameters reach, whatever the time: for stills, and to compare with.
+    /// Least error that the technique's parameters reach, regardless of time: for stills and comparison.
     Best,
-    /// No step of the ladder: the algorithm as its paper prints it, to compare with; see [`Printed`]. Techniques that do not follow one paper
+    /// The algorithm as published, for comparison; not on the ladder. See [`Printed`]. Techniques that do not follow one paper
     /// closely have no such setting.
     Paper,
 }
@@ -37,13 +37,13 @@ impl Quality {
         }
     }
 
-    /// Quality of this name, in any case.
+    /// Quality of this name; case-insensitive.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quality| quality.name().eq_ignore_ascii_case(name))
     }
 }
 
-/// A technique as its paper prints it: what of ours [`Quality::Paper`] turns off, and what nothing turns off.
+/// Departures of a technique from its paper: those that [`Quality::Paper`] turns off, and those that nothing turns off.
 #[derive(Clone, Copy, Debug)]
 pub struct Printed {
     /// Departures that a parameter turns off.

@@ -3,7 +3,7 @@
 use antumbra_light::{Aabb, ShadowDistance, hash_u32, polytope_corners, unit_f32};
 use glam::{DMat4, DVec3, DVec4, Mat4, UVec2, Vec3, Vec4};
 
-/// A point that may be seen, and how many pixels see the like.
+/// Point that may be visible, weighted by the relative number of pixels that it represents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SeenPoint {
     pub(crate) pos_in_world: Vec3,
@@ -40,8 +40,8 @@ pub struct Receivers<'a> {
     pub size_px: UVec2,
     /// Corner of the viewport in depth buffer and normals, pixels; zero if it fills them.
     pub origin_px: UVec2,
-    /// `Depth32Float` or `R32Float`, single-sampled, usage `TEXTURE_BINDING`; a 2D view of the depth aspect alone, be it of one
-    /// layer of an array. `Depth24Plus` and the formats with a stencil do, too; 16 bits are too few.
+    /// Depth buffer: `Depth32Float` or `R32Float`, single-sampled, usage `TEXTURE_BINDING`; a 2D view of the depth aspect alone,
+    /// possibly of one layer of an array. `Depth24Plus` and the formats with a stencil work, too; 16 bits are too few.
     pub depth: &'a wgpu::TextureView,
     /// Depth convention.
     pub depth_convention: DepthConvention,
@@ -50,25 +50,22 @@ pub struct Receivers<'a> {
     /// Camera projection, jitter included, with a finite or infinite far plane.
     pub clip_from_view: Mat4,
     /// World-space *geometric* normals in xyz, either side, of the depth buffer's size and with `TEXTURE_BINDING`: `Rgba32Float`,
-    /// `Rgba16Float`, `Rgba16Snorm` or `Rgba8Snorm`. 32-bit floats or 16-bit octahedral decode keep grazing light clean. `None` derives them from depth, which is less exact at
-    /// silhouettes.
+    /// `Rgba16Float`, `Rgba16Snorm` or `Rgba8Snorm`. 32-bit floats, or normals decoded from a 16-bit octahedral encoding, avoid
+    /// artefacts in grazing light. `None` derives them from depth, which is less exact at silhouettes.
     pub normals: Option<&'a wgpu::TextureView>,
-    /// World-space box that holds every receiver; light maps are fitted to what the camera sees of it. `None` uses the
-    /// casters' box. Sides that are not known may be infinitely far.
+    /// World-space box that holds every receiver; light maps are fitted to the part that the camera sees. `None` uses the casters'
+    /// box. Unknown sides may be infinite.
     pub bounds: Option<Aabb>,
-    /// World-space points whose convex hull holds every receiver, for hosts that know it tighter than `bounds`; empty
-    /// for all others. [`enclosing_corners`](antumbra_light::enclosing_corners) finds some.
+    /// World-space points whose convex hull holds every receiver, for hosts that have one tighter than `bounds`; otherwise empty.
+    /// [`enclosing_corners`](antumbra_light::enclosing_corners) computes such points.
     pub hull: &'a [Vec3],
-    /// World-space points that the camera sees, even over its pixels: some hundreds, be it from the depth buffer of the
-    /// frame before. Maps whose texels may differ in size have the small ones there. Empty: taken to be anywhere in the
-    /// hull.
+    /// World-space points that the camera sees, evenly spread over its pixels: a few hundred; last frame's depth buffer will do.
+    /// Maps whose texels differ in size place the small ones there. Empty: anywhere in the hull.
     pub seen: &'a [Vec3],
-    /// How far from the camera shadows are drawn: what is farther is lit, is in no map, and costs no technique anything.
-    /// `None`: as far as it goes.
+    /// Maximum camera distance of shadows; receivers beyond it are lit, are in no map and cost nothing. `None`: unlimited.
     pub shadow_distance: Option<ShadowDistance>,
-    /// A number that is another one whenever the depth buffer or the normals hold something else. Where it, the camera,
-    /// the light and a set of casters are as they were, a frame records nothing: the mask still holds it. `None`: another
-    /// in each frame.
+    /// Generation counter: change it whenever the contents of depth buffer or normals change. If counter, camera, light and a set
+    /// of casters are unchanged, a frame records nothing, because the mask still holds it. `None`: contents change in each frame.
     pub version: Option<u64>,
 }
 
@@ -149,7 +146,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Its place, in double precision as far as the matrix has it.
+    /// Camera position in world space, in double precision as far as the matrix has it.
     pub(crate) fn eye_in_world(&self) -> DVec3 {
         self.view_from_world.as_dmat4().inverse().w_axis.truncate()
     }
@@ -158,12 +155,12 @@ impl Camera {
         self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4()
     }
 
-    /// The planes between which it sees: `plane · (x, 1) ≥ 0`.
+    /// Frustum planes: `plane · (x, 1) ≥ 0` inside.
     pub(crate) fn frustum_planes(&self) -> [DVec4; 5] {
         frustum_planes(self.clip_from_world())
     }
 
-    /// World-space box of the near plane, as far as the camera sees of it.
+    /// World-space box of the visible part of the near plane.
     fn near_box(&self) -> Aabb {
         let world_from_clip = self.clip_from_world().inverse();
         let near = 1.0 - f64::from(self.depth_convention.background());
@@ -171,28 +168,28 @@ impl Camera {
         Aabb::of(corners.map(|(x, y)| world_from_clip.project_point3(DVec3::new(x, y, near)).as_vec3()))
     }
 
-    /// The rows of its clip-from-world matrix that a depth buffer's values come from: depth is z / w.
+    /// Rows z and w of the clip-from-world matrix: a depth buffer's values are z / w.
     pub(crate) fn clip_depth_rows(&self) -> [Vec4; 2] {
         let clip_from_world = self.clip_from_world();
         [clip_from_world.row(2).as_vec4(), clip_from_world.row(3).as_vec4()]
     }
 }
 
-/// Source of receivers. Points have no camera, and nothing that depends on one is done for them.
+/// Source of receivers. Points have no camera; work that depends on one is skipped.
 #[derive(Clone, Copy, Debug)]
 pub enum Surfaces<'a> {
-    /// A depth buffer; neighbouring pixels mostly see one surface.
+    /// A depth buffer; neighbouring pixels mostly see the same surface.
     Depth {
         /// The depth buffer.
         depth: &'a wgpu::TextureView,
         /// Its camera.
         camera: Camera,
     },
-    /// Points in any order, in rows of texels. A point's neighbours there tell nothing of it.
+    /// Points in any order, in rows of texels. Neighbouring texels are unrelated.
     Points {
-        /// Position in xyz, width in w. A point is where the normal's w is not zero.
+        /// Texture with position in xyz and width in w. A texel is a point if its normal's w is not zero.
         positions: &'a wgpu::TextureView,
-        /// Whether the host brought normals: then points lie on surfaces, else anywhere, within closed casters too.
+        /// Whether the host provides normals: then points lie on surfaces, otherwise anywhere, even inside closed casters.
         on_surfaces: bool,
     },
 }
@@ -206,7 +203,7 @@ pub struct PreparedReceivers<'a> {
     pub origin_px: UVec2,
     /// Source of the receivers.
     pub surfaces: Surfaces<'a>,
-    /// World-space normals; points always have some.
+    /// World-space normals; always present for points.
     pub normals: Option<&'a wgpu::TextureView>,
     /// As [`Receivers::bounds`].
     pub bounds: Option<Aabb>,
@@ -234,7 +231,7 @@ impl<'a> From<Receivers<'a>> for PreparedReceivers<'a> {
 }
 
 impl<'a> PreparedReceivers<'a> {
-    /// Camera; points have none.
+    /// Camera; `None` for points.
     pub(crate) fn camera(&self) -> Option<&Camera> {
         match &self.surfaces {
             Surfaces::Depth { camera, .. } => Some(camera),
@@ -242,7 +239,7 @@ impl<'a> PreparedReceivers<'a> {
         }
     }
 
-    /// Texture that passes over the receivers read: depth, or positions.
+    /// Texture that passes over the receivers read: depth or positions.
     pub(crate) fn texels(&self) -> &'a wgpu::TextureView {
         match self.surfaces {
             Surfaces::Depth { depth, .. } => depth,
@@ -250,13 +247,13 @@ impl<'a> PreparedReceivers<'a> {
         }
     }
 
-    /// Whether texels that lie together mostly are of one surface, so that one can be told from the others.
+    /// Whether neighbouring texels are mostly of one surface, so that one can be interpolated from the others.
     pub(crate) fn have_neighbours(&self) -> bool {
         matches!(self.surfaces, Surfaces::Depth { .. })
     }
 
-    /// World-space points whose convex hull holds every receiver: the host's, or the corners of what the camera sees of
-    /// `bounds`. None where there are neither.
+    /// World-space points whose convex hull holds every receiver: the host's hull, or the corners of the part of `bounds` that the
+    /// camera sees. Empty if there is neither.
     pub(crate) fn corners(&self) -> Vec<Vec3> {
         if !self.hull.is_empty() {
             return self.hull.to_vec();
@@ -264,12 +261,12 @@ impl<'a> PreparedReceivers<'a> {
         let Some(bounds) = self.bounds.filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
         let Some(planes) = self.frustum_planes() else { return bounds.corners().to_vec() };
         let corners = seen_corners(bounds, &planes);
-        // Where rounding leaves a camera nothing to see, the box is still right.
+        // Rounding may leave an empty intersection; the whole box is still valid.
         if corners.is_empty() { bounds.corners().to_vec() } else { corners }
     }
 
-    /// World-space box in which receivers may lie within a closed caster and be asked about all the same: the camera's near plane,
-    /// which may show a caster's inside, or points that may be anywhere.
+    /// World-space box in which receivers may lie inside a closed caster: the camera's near plane, which may show a caster's
+    /// inside, or points that may be anywhere.
     pub(crate) fn box_within(&self) -> Aabb {
         const ANYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
         match &self.surfaces {
@@ -279,26 +276,26 @@ impl<'a> PreparedReceivers<'a> {
         }
     }
 
-    /// The plane across the view at the shadow distance, where there is one: `plane · (x, 1) ≥ 0` before it. Whatever lies
-    /// beyond it is farther from the eye than shadows are drawn.
+    /// Plane across the view at the shadow distance, if there is one: `plane · (x, 1) ≥ 0` in front of it. Points behind it are
+    /// farther from the eye than the shadow distance.
     pub(crate) fn shadow_end_plane(&self) -> Option<DVec4> {
         let (camera, end_m) = (self.camera()?, f64::from(self.shadow_distance?.end_m));
         // The camera looks along −z, and its matrix is rigid.
         Some(camera.view_from_world.as_dmat4().row(2) + DVec4::W * end_m)
     }
 
-    /// The planes between which the camera sees: `plane · (x, 1) ≥ 0`; points are not seen by any.
+    /// Frustum planes of the camera: `plane · (x, 1) ≥ 0` inside; `None` for points.
     pub(crate) fn frustum_planes(&self) -> Option<[DVec4; 5]> {
         self.camera().map(Camera::frustum_planes)
     }
 }
 
-/// How many points [`PreparedReceivers::seen_points`] takes at most.
+/// Maximum number of points that [`PreparedReceivers::seen_points`] returns.
 const SEEN_POINTS: u32 = 512;
 
 impl PreparedReceivers<'_> {
-    /// Points that the camera sees, or else points of the convex hull of `corners` that it may see, each weighted by the
-    /// pixels that a surface there covers: by 1 / w². Without a camera all weigh the same.
+    /// Points that the camera sees, of equal weight, or else points of the convex hull of `corners` within the view, each weighted
+    /// by the pixels that a surface there covers: 1 / w². Without a camera all weights are equal.
     pub(crate) fn seen_points(&self, corners: &[Vec3]) -> Vec<SeenPoint> {
         if !self.seen.is_empty() {
             let every = self.seen.len().div_ceil(SEEN_POINTS as usize);
@@ -310,7 +307,7 @@ impl PreparedReceivers<'_> {
         let points = if corners.is_empty() { 0 } else { SEEN_POINTS };
         (0..points)
             .map(|i| {
-                // Four corners a point, and sorted numbers between them: even over each tetrahedron.
+                // Gaps between sorted random numbers weight four corners: uniform over each tetrahedron.
                 let u = |j: u32| unit_f32(hash_u32(7 * i + j));
                 let mut cuts = [u(4), u(5), u(6)];
                 cuts.sort_by(f32::total_cmp);
@@ -337,7 +334,7 @@ fn frustum_planes(clip_from_world: DMat4) -> [DVec4; 5] {
     [w + x, w - x, w + y, w - y, w]
 }
 
-/// The corners of the part of a box that lies between planes.
+/// Returns the corners of the part of a box in front of all planes.
 fn seen_corners(bounds: Aabb, frustum_planes: &[DVec4]) -> Vec<Vec3> {
     let planes = [frustum_planes, &bounds.planes()].concat();
     polytope_corners(&planes, f64::from(bounds.diagonal()))
@@ -349,7 +346,7 @@ mod tests {
 
     use super::*;
 
-    /// The corners of a cube seen from far away are the cube's; of one that fills more than the view, the view's.
+    /// The corners of a cube inside the view are the cube's; those of a cube larger than the view are the view's.
     #[test]
     fn corners_hold_what_is_seen_and_little_more() {
         let clip_from_world = proj::directx::perspective_infinite_reverse(1.0, 1.5, 0.1)
@@ -368,7 +365,7 @@ mod tests {
             assert!(clip.x.abs() <= clip.w + room && clip.y.abs() <= clip.w + room, "{p}");
             assert!(p.cmpge(bounds.min - room).all() && p.cmple(bounds.max + room).all(), "{p}");
         }
-        // A point seen at the far side of the box lies in the hull's own box.
+        // A visible point at the far side of the box lies in the hull's bounding box.
         let hull_box = Aabb::of(large.iter().copied());
         let deep = Vec3::new(-9.0, -6.0, -18.0);
         assert!(deep.cmpge(hull_box.min).all() && deep.cmple(hull_box.max).all(), "{hull_box:?}");

@@ -1,5 +1,5 @@
-//! Bind groups, each declared once: from one list of bindings come the layout and the group, whose resources have names; and
-//! where the list says which shaders it is for, a test that they have the same.
+//! Bind groups, each declared once: one list of bindings gives the layout and the group, whose resources have names. If the
+//! list names its shaders, a test compares their bindings with it.
 
 use std::num::NonZeroU64;
 
@@ -8,27 +8,27 @@ use super::{Gpu, Stage};
 #[cfg(test)]
 pub(crate) mod tests;
 
-/// What a bind group declared by [`bindings!`] can do.
+/// Bind group declared by [`bindings!`].
 pub(crate) trait Bindings {
-    /// Names layouts and groups.
+    /// Label of layouts and groups.
     const LABEL: &'static str;
 
-    /// The layout's entries.
+    /// Entries of the layout.
     fn layout_entries() -> Vec<wgpu::BindGroupLayoutEntry>;
 
-    /// The group's entries.
+    /// Entries of the group.
     fn entries(&self) -> Vec<wgpu::BindGroupEntry<'_>>;
 
-    /// Each binding's number and name.
+    /// Number and name of each binding.
     #[cfg(test)]
     fn names() -> Vec<(u32, &'static str)>;
 
-    /// The layout, shared by all that have the same entries.
+    /// Returns the layout, shared by all with the same entries.
     fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
         create_layout(gpu, Self::LABEL, &Self::layout_entries())
     }
 
-    /// The layout where depth has several samples a texel, or one.
+    /// Returns the layout with depth textures multisampled or not.
     fn layout_of_samples(gpu: &Gpu, depth_is_multisampled: bool) -> wgpu::BindGroupLayout {
         Self::layout_with(gpu, |ty| {
             if let wgpu::BindingType::Texture { sample_type: texels::DEPTH, multisampled, .. } = ty {
@@ -37,20 +37,20 @@ pub(crate) trait Bindings {
         })
     }
 
-    /// The layout, with types other than declared where there are several variants of the shader.
+    /// Returns the layout with adapted binding types, for variants of the shader.
     fn layout_with(gpu: &Gpu, adapt: impl Fn(&mut wgpu::BindingType)) -> wgpu::BindGroupLayout {
         let mut entries = Self::layout_entries();
         entries.iter_mut().for_each(|entry| adapt(&mut entry.ty));
         create_layout(gpu, Self::LABEL, &entries)
     }
 
-    /// A frame's group: that of an earlier frame where it is the same.
+    /// Returns the frame's group, reused from an earlier frame if the layout and resources are the same.
     fn group(&self, stage: &Stage<'_>, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
         let entries = self.entries();
         stage.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(Self::LABEL), layout, entries: &entries })
     }
 
-    /// A group to keep beside its resources.
+    /// Creates a group that the caller keeps together with its resources.
     fn kept_group(&self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
         let entries = self.entries();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(Self::LABEL), layout, entries: &entries })
@@ -63,10 +63,10 @@ fn create_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry])
 
 /// Declares bind groups: label, the stages that see them, and each binding's number, name and [kind](Kind).
 ///
-/// - `0 view: Uniform in VERTEX`: a binding that other stages see.
-/// - `, group 1 of [SHADER]` after the stages: which group of which shaders it is. A test named as the group holds the
-///   declaration against them.
-/// - `, with batch: BatchBindings`: another group's bindings come first.
+/// - `0 view: Uniform in VERTEX`: a binding with its own stages.
+/// - `, group 1 of [SHADER]` after the stages: group index and shaders. A test named after the struct compares the
+///   declaration with them.
+/// - `, with batch: BatchBindings`: includes the bindings of another group first.
 macro_rules! bindings {
     ($(
         $(#[$outer:meta])*
@@ -129,14 +129,14 @@ macro_rules! bindings {
     )+ };
 }
 
-/// The first of a list.
+/// Expands to the first item of a list.
 macro_rules! first_of {
     ($first:expr $(, $rest:expr)*) => {
         $first
     };
 }
 
-/// A list, after another where there are two.
+/// Expands to a vector of a list, appended to another vector if two arguments are given.
 macro_rules! joined {
     ($own:expr) => {
         Vec::from($own)
@@ -150,13 +150,13 @@ macro_rules! joined {
 
 pub(crate) use {bindings, first_of, joined};
 
-/// A kind of binding: its type in layouts, and what is bound.
+/// Kind of binding: its type in layouts, and the resource that is bound.
 pub(crate) trait Kind {
-    /// What is bound.
+    /// Bound resource.
     type Bound<'a>: Clone;
-    /// Its type in layouts.
+    /// Binding type in layouts.
     fn ty(&self) -> wgpu::BindingType;
-    /// It in groups.
+    /// Binding resource in groups.
     fn resource<'a>(&self, bound: &Self::Bound<'a>) -> wgpu::BindingResource<'a>;
 }
 
@@ -164,7 +164,7 @@ fn buffer(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
     wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
 }
 
-/// Declares kinds of buffers, bound whole.
+/// Declares kinds of buffers that are bound whole.
 macro_rules! buffer_kinds {
     ($( $(#[$outer:meta])* $name:ident: $ty:expr; )+) => { $(
         $(#[$outer])*
@@ -183,15 +183,15 @@ macro_rules! buffer_kinds {
 }
 
 buffer_kinds! {
-    /// A uniform buffer.
+    /// Uniform buffer.
     Uniform: wgpu::BufferBindingType::Uniform;
-    /// A storage buffer that is read.
+    /// Read-only storage buffer.
     Storage: wgpu::BufferBindingType::Storage { read_only: true };
-    /// A storage buffer that is read and written.
+    /// Read-write storage buffer.
     ReadWrite: wgpu::BufferBindingType::Storage { read_only: false };
 }
 
-/// Declares kinds of parts of buffers.
+/// Declares kinds of bindings of a part of a buffer.
 macro_rules! part_kinds {
     ($( $(#[$outer:meta])* $name:ident: $whole:ident; )+) => { $(
         $(#[$outer])*
@@ -210,13 +210,13 @@ macro_rules! part_kinds {
 }
 
 part_kinds! {
-    /// Part of a storage buffer that is read.
+    /// Part of a read-only storage buffer.
     StoragePart: Storage;
-    /// Part of a storage buffer that is read and written.
+    /// Part of a read-write storage buffer.
     ReadWritePart: ReadWrite;
 }
 
-/// Declares kinds of buffers that hold several items of so many bytes, of which one is chosen where the group is bound.
+/// Declares kinds of buffers with dynamic offset. The argument is the size of one item, bytes.
 macro_rules! dynamic_kinds {
     ($( $(#[$outer:meta])* $name:ident: $ty:expr; )+) => { $(
         $(#[$outer])*
@@ -237,31 +237,31 @@ macro_rules! dynamic_kinds {
 }
 
 dynamic_kinds! {
-    /// One of several uniforms.
+    /// Uniform buffer with dynamic offset.
     DynamicUniform: wgpu::BufferBindingType::Uniform;
-    /// One of several items that are read.
+    /// Read-only storage buffer with dynamic offset.
     DynamicStorage: wgpu::BufferBindingType::Storage { read_only: true };
 }
 
-/// What a texture's texels are to a shader.
+/// Sample types of textures.
 pub(crate) mod texels {
-    /// Floats that are loaded, not filtered.
+    /// Unfilterable float.
     pub(crate) const FLOAT: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
-    /// Floats that a sampler may filter.
+    /// Filterable float.
     pub(crate) const FILTERED: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: true };
     /// Depth.
     pub(crate) const DEPTH: wgpu::TextureSampleType = wgpu::TextureSampleType::Depth;
-    /// Unsigned integers.
+    /// Unsigned integer.
     pub(crate) const UINT: wgpu::TextureSampleType = wgpu::TextureSampleType::Uint;
 }
 
-/// What a sampler does.
+/// Sampler binding types.
 pub(crate) mod samples {
-    /// Mixes texels.
+    /// Filtering sampler.
     pub(crate) const FILTERS: wgpu::SamplerBindingType = wgpu::SamplerBindingType::Filtering;
-    /// Takes texels as they are.
+    /// Non-filtering sampler.
     pub(crate) const TAKES: wgpu::SamplerBindingType = wgpu::SamplerBindingType::NonFiltering;
-    /// Compares depths.
+    /// Comparison sampler.
     pub(crate) const COMPARES: wgpu::SamplerBindingType = wgpu::SamplerBindingType::Comparison;
 }
 
@@ -285,54 +285,54 @@ macro_rules! other_kinds {
 }
 
 other_kinds! {
-    /// A texture of [`texels`].
+    /// 2D texture with a sample type of [`texels`].
     Texture(texels: wgpu::TextureSampleType): TextureView as TextureView => wgpu::BindingType::Texture {
         sample_type: texels,
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     };
-    /// Its layers.
+    /// 2D texture array.
     TextureArray(texels: wgpu::TextureSampleType): TextureView as TextureView => wgpu::BindingType::Texture {
         sample_type: texels,
         view_dimension: wgpu::TextureViewDimension::D2Array,
         multisampled: false,
     };
-    /// A texture of three dimensions.
+    /// 3D texture.
     Texture3d(texels: wgpu::TextureSampleType): TextureView as TextureView => wgpu::BindingType::Texture {
         sample_type: texels,
         view_dimension: wgpu::TextureViewDimension::D3,
         multisampled: false,
     };
-    /// A texture of several samples a texel.
+    /// Multisampled 2D texture.
     MultisampledTexture(texels: wgpu::TextureSampleType): TextureView as TextureView => wgpu::BindingType::Texture {
         sample_type: texels,
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: true,
     };
-    /// A texture that is written.
+    /// Write-only 2D storage texture.
     WrittenTexture(format: wgpu::TextureFormat): TextureView as TextureView => wgpu::BindingType::StorageTexture {
         access: wgpu::StorageTextureAccess::WriteOnly,
         format,
         view_dimension: wgpu::TextureViewDimension::D2,
     };
-    /// Layers that are written.
+    /// Write-only 2D storage texture array.
     WrittenArray(format: wgpu::TextureFormat): TextureView as TextureView => wgpu::BindingType::StorageTexture {
         access: wgpu::StorageTextureAccess::WriteOnly,
         format,
         view_dimension: wgpu::TextureViewDimension::D2Array,
     };
-    /// A texture of three dimensions that is written.
+    /// Write-only 3D storage texture.
     WrittenTexture3d(format: wgpu::TextureFormat): TextureView as TextureView => wgpu::BindingType::StorageTexture {
         access: wgpu::StorageTextureAccess::WriteOnly,
         format,
         view_dimension: wgpu::TextureViewDimension::D3,
     };
-    /// Layers that are read and written.
+    /// Read-write 2D storage texture array.
     ReadWriteArray(format: wgpu::TextureFormat): TextureView as TextureView => wgpu::BindingType::StorageTexture {
         access: wgpu::StorageTextureAccess::ReadWrite,
         format,
         view_dimension: wgpu::TextureViewDimension::D2Array,
     };
-    /// A sampler.
+    /// Sampler.
     Sampler(how: wgpu::SamplerBindingType): Sampler as Sampler => wgpu::BindingType::Sampler(how);
 }

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Budget of all lights together by default, bytes.
+/// Default budget of all lights together, bytes.
 const DEFAULT_BUDGET_BYTES: u64 = 256 << 20;
 
-/// Memory budget of what lights own.
+/// Memory budget of maps and lists that lights own.
 #[derive(Debug)]
 pub(super) struct Budget {
     bytes: AtomicU64,
     owned_bytes: AtomicU64,
-    /// What lights own outside of this budget's count and within its bytes.
+    /// Bytes within this budget that lights own on the device that this one plans for.
     owned_elsewhere: u64,
 }
 
@@ -34,13 +34,13 @@ impl Budget {
         self.owned_bytes.load(Ordering::Relaxed)
     }
 
-    /// A budget of as many bytes, of which what lights own of this one is taken.
+    /// Returns a budget of the same size in which the bytes now owned count as taken.
     pub(super) fn left(&self) -> Self {
         let owned_elsewhere = self.owned_elsewhere + self.owned_bytes();
         Self { bytes: self.bytes().into(), owned_bytes: 0.into(), owned_elsewhere }
     }
 
-    /// Reserves bytes; `None` where fewer are left.
+    /// Reserves bytes; `None` if fewer are left.
     pub(super) fn take(self: &Arc<Self>, bytes: u64) -> Option<OwnedBytes> {
         let most = self.bytes().saturating_sub(self.owned_elsewhere);
         let add = |owned: u64| owned.checked_add(bytes).filter(|all| *all <= most);

@@ -1,27 +1,27 @@
-//! Typed uniforms, and the few descriptors that every pass repeats.
+//! Typed uniforms, and helpers for descriptors that every pass repeats.
 
 use std::sync::Arc;
 
 use super::{DrawPipeline, Gpu, Stage, TableKey, overrides};
 
-/// Where a member of a [`GpuStruct`] lies.
+/// Layout of a member of a [`GpuStruct`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GpuField {
-    /// The member's name, the same in the shader.
+    /// Name of the member, the same in the shader.
     pub name: &'static str,
-    /// Bytes from the struct's start.
+    /// Offset from the start of the struct, bytes.
     pub offset: usize,
-    /// Bytes.
+    /// Size, bytes.
     pub size: usize,
 }
 
-/// A struct that Rust and the shaders share. A test holds every linked shader's struct of the same name against
-/// [`FIELDS`](Self::FIELDS), so nothing is kept in step by hand.
+/// Struct that Rust and the shaders share. A test compares [`FIELDS`](Self::FIELDS) with the struct of the same name in
+/// every linked shader.
 pub trait GpuStruct: bytemuck::Pod {
-    /// The struct's name in the shaders.
+    /// Name of the struct in the shaders.
     #[cfg_attr(not(test), expect(dead_code, reason = "read by the layout test alone"))]
     const WGSL_NAME: &'static str;
-    /// Its members in order, paddings included.
+    /// Members in order, including padding.
     #[cfg_attr(not(test), expect(dead_code, reason = "read by the layout test alone"))]
     const FIELDS: &'static [GpuField];
 }
@@ -46,7 +46,7 @@ macro_rules! gpu_structs {
 }
 pub(crate) use gpu_structs;
 
-/// A uniform buffer that holds one `T`, zeroed.
+/// Creates a zeroed uniform buffer that holds one `T`.
 pub(crate) fn create_uniform<T: GpuStruct>(gpu: &Gpu, label: &str) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
@@ -61,8 +61,8 @@ pub(crate) fn write_uniform<T: GpuStruct>(stage: &Stage<'_>, buffer: &wgpu::Buff
     stage.upload(buffer, 0, bytemuck::bytes_of(value));
 }
 
-/// Uploads a storage buffer before the frame's passes; `buffer` is made anew where its size differs. `data` is not
-/// empty: WebGPU has no empty bindings.
+/// Uploads a storage buffer before the frame's passes; recreates `buffer` if its size differs. `data` must not be empty,
+/// because WebGPU has no empty bindings.
 pub(crate) fn upload_storage<'a, T: bytemuck::NoUninit>(
     stage: &Stage<'_>,
     buffer: &'a mut Option<wgpu::Buffer>,
@@ -76,7 +76,7 @@ pub(crate) fn upload_storage<'a, T: bytemuck::NoUninit>(
     buffer
 }
 
-/// A storage buffer whose content follows from its key: made once, and shared by all lights.
+/// Returns a storage buffer whose content depends only on its key. It is created once and shared by all lights.
 pub(crate) fn shared_table(gpu: &Gpu, key: TableKey, bytes: impl FnOnce() -> Vec<u8>) -> Arc<wgpu::Buffer> {
     let label = key.of;
     gpu.device.table(key, || {
@@ -92,7 +92,7 @@ pub(crate) fn shared_table(gpu: &Gpu, key: TableKey, bytes: impl FnOnce() -> Vec
     })
 }
 
-/// The same of bytes of which a frame has more and another less: they lie in a buffer that has room for the most so far.
+/// Uploads bytes whose number varies from frame to frame, to a storage buffer that never shrinks.
 pub(crate) fn upload_with_room<'a>(
     stage: &Stage<'_>,
     buffer: &'a mut Option<wgpu::Buffer>,
@@ -108,7 +108,7 @@ pub(crate) fn upload_with_room<'a>(
     buffer
 }
 
-/// A buffer of exactly so many bytes: the one at hand, or a new one.
+/// Returns a buffer of exactly `bytes` bytes: the existing one, or a new one if the size differs.
 pub(crate) fn sized_buffer<'a>(
     gpu: &Gpu,
     buffer: &'a mut Option<wgpu::Buffer>,
@@ -129,12 +129,12 @@ pub(crate) fn sized_buffer<'a>(
     })
 }
 
-/// A module of a linked shader.
+/// Creates the module of a linked shader.
 pub(crate) fn shader_module(gpu: &Gpu, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
     gpu.device.create_shader_module(label, wgsl)
 }
 
-/// A compute pipeline of a linked shader's only entry point.
+/// Creates a compute pipeline from the only entry point of a linked shader.
 pub(crate) fn compute_pipeline(
     gpu: &Gpu,
     label: &str,
@@ -144,7 +144,7 @@ pub(crate) fn compute_pipeline(
     compute_entry(gpu, label, wgsl, None, &[], bind_group_layouts)
 }
 
-/// A compute pipeline of one of a linked shader's entry points, with values for its overridable constants.
+/// Creates a compute pipeline from one entry point of a linked shader, with values for its overridable constants.
 pub(crate) fn compute_entry(
     gpu: &Gpu,
     label: &str,
@@ -156,8 +156,8 @@ pub(crate) fn compute_entry(
     compute_entry_with(gpu, label, wgsl, entry_point, constants, true, bind_group_layouts)
 }
 
-/// A compute pipeline of a linked shader's only entry point, which writes all of its workgroup's memory that it reads: the
-/// memory is not zeroed.
+/// Creates a compute pipeline from the only entry point of a linked shader, without zeroing workgroup memory: the shader
+/// writes all workgroup memory before reading it.
 pub(crate) fn compute_pipeline_without_zeroing(
     gpu: &Gpu,
     label: &str,
@@ -198,14 +198,14 @@ fn compute_entry_with(
     })
 }
 
-/// Dispatches so many threads, 64 a workgroup: in two dimensions where they are more workgroups than WebGPU has in one.
+/// Dispatches at least `threads` threads in workgroups of 64, in two dimensions if one exceeds WebGPU's limit.
 pub(crate) fn dispatch_threads(pass: &mut wgpu::ComputePass<'_>, threads: u32) {
     const MOST_IN_ONE_DIMENSION: u32 = 65_535;
     let workgroups = threads.div_ceil(64);
     pass.dispatch_workgroups(workgroups.min(MOST_IN_ONE_DIMENSION), workgroups.div_ceil(MOST_IN_ONE_DIMENSION), 1);
 }
 
-/// A pipeline that draws over all of its targets by a linked shader's `vertex` and `draw`.
+/// Creates a pipeline that draws to all `targets` with the entry points `vertex` and `draw` of a linked shader.
 pub(crate) fn color_pipeline(
     gpu: &Gpu,
     label: &str,

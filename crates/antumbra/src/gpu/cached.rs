@@ -1,6 +1,6 @@
-//! Values cached with the key that each was made for: pipelines, maps, points.
+//! Values cached with the key that each was created for: pipelines, maps, points.
 
-/// A value, and its key.
+/// Cache of one value and its key.
 #[derive(Clone, Debug)]
 pub(crate) struct Cached<K, V>(Option<(K, V)>);
 
@@ -11,20 +11,20 @@ impl<K, V> Default for Cached<K, V> {
 }
 
 impl<K: PartialEq, V> Cached<K, V> {
-    /// The value of a key: the one that is there, or a new one in its place.
+    /// Returns the value of a key: the cached one, or a new one that replaces it.
     pub(crate) fn get_or_make(&mut self, key: K, make: impl FnOnce() -> V) -> &mut V {
-        // What is there goes before another is made: they may be large.
+        // Free the old value before creating the new one, as they may be large.
         let there = self.0.take().filter(|(made_for, _)| *made_for == key);
         let (_, value) = self.0.insert(there.unwrap_or_else(|| (key, make())));
         value
     }
 
-    /// The value that is there.
+    /// Cached value, or `None`.
     pub(crate) fn get(&self) -> Option<&V> {
         self.0.as_ref().map(|(_, value)| value)
     }
 
-    /// The key and the value that are there.
+    /// Cached key and value, or `None`.
     pub(crate) fn pair(&self) -> Option<&(K, V)> {
         self.0.as_ref()
     }

@@ -1,15 +1,15 @@
-//! Recorded commands, and whether they were ever submitted: what they would have written is not there if they were dropped.
+//! Tracking of recorded commands that were dropped instead of submitted, so that their output is missing.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The commands of one owner, frame after frame.
+/// Commands of one owner over all frames.
 #[derive(Debug, Default)]
 pub(crate) struct Commands {
     are_dropped: Arc<AtomicBool>,
 }
 
-/// The end of some commands: done, or dropped.
+/// Completion token of some commands: marks them as dropped unless [`done`](Self::done) is called.
 #[derive(Debug)]
 pub(crate) struct CommandsEnd {
     are_dropped: Arc<AtomicBool>,
@@ -17,17 +17,17 @@ pub(crate) struct CommandsEnd {
 }
 
 impl Commands {
-    /// What new commands are recorded with.
+    /// Returns the completion token for new commands.
     pub(crate) fn end(&self) -> CommandsEnd {
         CommandsEnd { are_dropped: Arc::clone(&self.are_dropped), is_done: false }
     }
 
-    /// Whether any were dropped.
+    /// Whether any commands were dropped since the last [`take_dropped`](Self::take_dropped).
     pub(crate) fn are_dropped(&self) -> bool {
         self.are_dropped.load(Ordering::Acquire)
     }
 
-    /// Whether any were dropped since this was called last.
+    /// Whether any commands were dropped since the last call; clears the flag.
     pub(crate) fn take_dropped(&self) -> bool {
         self.are_dropped.swap(false, Ordering::AcqRel)
     }

@@ -1,11 +1,11 @@
-//! Content of GPU resources, cached by the key of all that it depends on.
+//! Content of GPU resources, cached by the key of everything that it depends on.
 
-/// Content of resources: a map, lists, a mask, a mean of frames.
+/// Key of the content of resources: a map, lists, a mask, a mean of frames.
 #[derive(Debug)]
 pub(crate) struct Content<K> {
-    /// Of the frame that wrote it; `None` where no key tells what it is of.
+    /// Key from the frame that wrote the content; `None` if it cannot be reused.
     key: Option<K>,
-    /// Frames in a row that asked for this key, the first of them not counted.
+    /// Number of consecutive repetitions of this key, not counting the first frame.
     repeats: u32,
 }
 
@@ -16,13 +16,13 @@ impl<K> Default for Content<K> {
 }
 
 impl<K: PartialEq> Content<K> {
-    /// Whether an earlier frame has written what a key asks for.
+    /// Whether an earlier frame has written the content of this key.
     pub(crate) fn is_of(&self, key: Option<&K>) -> bool {
         key.is_some() && key == self.key.as_ref()
     }
 
-    /// Asks for the content of a key, `None` where no key tells what a frame writes. Whether an earlier frame has written it;
-    /// otherwise this frame has to.
+    /// Requests the content of a key; `None` means that it cannot be reused. Returns whether an earlier frame has written it;
+    /// if not, this frame must.
     pub(crate) fn ask(&mut self, key: Option<K>) -> bool {
         let is_written = self.is_of(key.as_ref());
         self.repeats = if is_written { self.repeats.saturating_add(1) } else { 0 };
@@ -30,7 +30,7 @@ impl<K: PartialEq> Content<K> {
         is_written
     }
 
-    /// Frames in a row that asked for the same, the first of them not counted.
+    /// Number of consecutive frames that requested the same key, not counting the first.
     pub(crate) fn repeats(&self) -> u32 {
         self.repeats
     }

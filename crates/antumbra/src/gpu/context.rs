@@ -1,12 +1,12 @@
-//! The host's device, and what it offers.
+//! Host's device and its capabilities.
 
 use super::device::{Device, ObjectCounts};
 use super::uniforms;
 
-/// A handle on the host's device and queue, with the programs that all lights share: make one for a device, and clone it.
+/// Handle on the host's device and queue, with the GPU programs that all lights share. Create one per device and clone it.
 ///
-/// Shader modules, layouts, pipelines and samplers are made when first asked for and kept as long as a clone lives. The
-/// library never creates a device of its own.
+/// Shader modules, layouts, pipelines and samplers are created on first use and live as long as a clone of the handle. The
+/// library never creates a device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     pub(crate) device: Device,
@@ -24,22 +24,22 @@ pub struct MemoryBytes {
 }
 
 impl Gpu {
-    /// Native features that the library uses where the device has them and does without where not: ask for their
-    /// intersection with the adapter's features when making the device.
+    /// Native features that the library uses if the device has them. Request their intersection with the adapter's features
+    /// when creating the device.
     ///
-    /// `TIMESTAMP_QUERY` times each pass; `DEPTH_CLIP_CONTROL` keeps casters nearer than a light map's near plane;
-    /// `TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES` brings light maps with 2 and 8 samples a texel beside WebGPU's 1 and 4;
-    /// `SHADER_EARLY_DEPTH_TEST` spares `reprojection` hidden fragments where it scatters while it rasterises, and `alias_free`
-    /// and `sample_based` fragments over empty lists where they have a `stencil`.
+    /// `TIMESTAMP_QUERY` times each pass. `DEPTH_CLIP_CONTROL` keeps casters nearer than a light map's near plane.
+    /// `TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES` adds light maps with 2 and 8 samples per texel to WebGPU's 1 and 4.
+    /// `SHADER_EARLY_DEPTH_TEST` saves hidden fragments in `reprojection` where it scatters while rasterising, and fragments
+    /// over empty lists in `alias_free` and `sample_based` with `stencil`.
     pub const WANTED_FEATURES: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
         .union(wgpu::Features::DEPTH_CLIP_CONTROL)
         .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
         .union(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
 
-    /// Limits to ask for when making the device: WebGPU's defaults, which are enough everywhere.
+    /// Limits to request when creating the device: WebGPU's defaults, which suffice everywhere.
     ///
-    /// On software drivers that compile shaders anew for the values of their uniforms these are more storage buffers than the
-    /// defaults: a device that has as many reads uniforms from storage, and neither waits nor grows.
+    /// Software drivers that recompile shaders for the values of their uniforms are an exception: the limits include more
+    /// storage buffers, so that uniforms can be read from storage, which avoids delays and growing memory.
     pub fn wanted_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
         uniforms::wanted_limits(&adapter.get_info(), &adapter.limits())
     }
@@ -49,19 +49,19 @@ impl Gpu {
         Self { device: Device::new(device, None), queue: queue.clone() }
     }
 
-    /// The same, with a cache for compiled pipelines, where the device has the feature
-    /// [`PIPELINE_CACHE`](wgpu::Features::PIPELINE_CACHE). The host loads and stores it.
+    /// Wraps the host's device and queue, with a cache for compiled pipelines. The device needs the feature
+    /// [`PIPELINE_CACHE`](wgpu::Features::PIPELINE_CACHE). The host loads and stores the cache.
     pub fn with_pipeline_cache(device: &wgpu::Device, queue: &wgpu::Queue, cache: &wgpu::PipelineCache) -> Self {
         Self { device: Device::new(device, Some(cache)), queue: queue.clone() }
     }
 
-    /// The device.
+    /// Host's device.
     pub fn device(&self) -> &wgpu::Device {
         self.device.raw()
     }
 
-    /// How many objects the library has made on the device, by this handle and its clones. Frames that only move make
-    /// none.
+    /// Number of objects that the library has created on the device, through this handle and its clones. Frames with only
+    /// motion create none.
     pub fn objects_made(&self) -> ObjectCounts {
         self.device.counts()
     }
@@ -74,19 +74,19 @@ impl Gpu {
         self.device.budget().set(bytes);
     }
 
-    /// GPU memory in use: what lights share, and the maps that belong to one light each, which
-    /// [`Shadow::memory_bytes`](crate::Shadow::memory_bytes) counts, too.
+    /// GPU memory in use: resources that lights share, and maps that belong to one light each.
+    /// [`Shadow::memory_bytes`](crate::Shadow::memory_bytes) includes the latter, too.
     pub fn memory_bytes(&self) -> MemoryBytes {
         MemoryBytes { shared: self.device.scratch_bytes(), own_maps: self.device.budget().owned_bytes() }
     }
 
-    /// The queue.
+    /// Host's queue.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
     }
 
-    /// The last line of wgpu's validation message about what `run` does; `None` where there is none, or where the device, in a
-    /// browser, does not answer at once.
+    /// Last line of wgpu's validation error about what `run` does, or `None`; `None` also if the device, in a browser, does not
+    /// answer at once.
     pub(crate) fn complaint(&self, run: impl FnOnce()) -> Option<String> {
         let scope = self.device().push_error_scope(wgpu::ErrorFilter::Validation);
         run();
@@ -100,8 +100,8 @@ impl Gpu {
         Some(last_line.unwrap_or("invalid").to_owned())
     }
 
-    /// Whether lights of this handle may read resources of another: a clone, or one that this one plans for. Devices of two
-    /// instances cannot be told apart: wgpu counts the objects of each from one.
+    /// Whether lights of this handle may read resources of `other`: a clone, or the handle that this one plans for. Devices of
+    /// two instances cannot be distinguished, because wgpu numbers the objects of each from one.
     pub(crate) fn reads_of(&self, other: &Self) -> bool {
         self.device.reads_of(&other.device)
     }

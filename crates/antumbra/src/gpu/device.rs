@@ -1,7 +1,7 @@
-//! The host's device as the library uses it: what every light can share is made once, and whatever is made is counted.
+//! Host's device as the library uses it: objects that lights can share are created once, and all created objects are counted.
 //!
-//! Layouts, shader modules, pipelines and samplers are looked up by what they are made of, so that a second light, or a
-//! second technique with the same pass, finds them. Buffers, textures, views and bind groups are made as asked.
+//! Layouts, shader modules, pipelines and samplers are cached by their descriptors, so that a second light, or a second
+//! technique with the same pass, reuses them. Buffers, textures, views and bind groups are created on each request.
 
 mod caches;
 mod keys;
@@ -17,14 +17,14 @@ use super::{programs, quirks};
 use caches::{DescriptorCache, SharedPool};
 use keys::{ComputeKey, EntryKey, LayoutKey, RenderKey};
 
-/// The host's device, and the objects on it that all lights share.
+/// Host's device, with the objects on it that all lights share.
 #[derive(Clone, Debug)]
 pub(crate) struct Device {
     device: wgpu::Device,
     programs: Arc<Programs>,
 }
 
-/// How many objects the library has made on a device, ever. What grows while a scene only moves is made in vain.
+/// Numbers of objects that the library has created on a device. A number that grows while the scene only moves indicates waste.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ObjectCounts {
@@ -41,47 +41,47 @@ pub struct ObjectCounts {
 }
 
 impl ObjectCounts {
-    /// All of them.
+    /// Sum of all numbers.
     pub fn total(&self) -> u64 {
         self.programs + self.buffers + self.textures + self.views + self.bind_groups
     }
 }
 
-/// What the content of a table that lights share follows from.
+/// Key of a table that lights share; it determines the content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct TableKey {
-    /// What it is of.
+    /// Kind of table.
     pub(crate) of: &'static str,
     pub(crate) numbers: Vec<u32>,
 }
 
 #[derive(Debug, Default)]
 struct Programs {
-    /// The device that this one plans for.
+    /// Real device, if this is the device of a memory plan.
     plan_of: Option<Device>,
     pipeline_cache: Option<wgpu::PipelineCache>,
     uniforms: UniformAccess,
-    /// As [`quirks`] says.
+    /// Result of [`quirks::most_turns`].
     most_turns: u32,
     bind_group_layouts: DescriptorCache<LayoutKey, wgpu::BindGroupLayout>,
     pipeline_layouts: DescriptorCache<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
-    /// By the address of the linked text, which is the program's own.
+    /// By address and length of the linked text, which is static.
     modules: DescriptorCache<(usize, usize), wgpu::ShaderModule>,
     compute_pipelines: DescriptorCache<ComputeKey, wgpu::ComputePipeline>,
     render_pipelines: DescriptorCache<RenderKey, wgpu::RenderPipeline>,
-    /// By their description in words: it has floats.
+    /// By descriptor, as text, because it contains floats.
     samplers: DescriptorCache<String, wgpu::Sampler>,
     scratch_textures: SharedPool<ScratchTextureKey, wgpu::Texture>,
-    /// With the view that passes draw to.
+    /// Textures with the view that passes draw to.
     scratch_attachments: SharedPool<ScratchTextureKey, (wgpu::Texture, wgpu::TextureView)>,
     scratch_buffers: SharedPool<(Scratch, u64, wgpu::BufferUsages), wgpu::Buffer>,
     tables: SharedPool<TableKey, wgpu::Buffer>,
     /// Memory budget of maps that one light owns.
     budget: Arc<Budget>,
     shared_values: SharedValues,
-    /// What `rasteriser` measures.
+    /// Result of `rasteriser`.
     snapped_texels: OnceLock<wgpu::Buffer>,
-    /// What `receivers/blue_noise` makes.
+    /// Texture from `receivers/blue_noise`.
     noise_tile: OnceLock<wgpu::TextureView>,
     counts: Counts,
 }
@@ -106,7 +106,7 @@ impl Device {
         Self { device: device.clone(), programs: Arc::new(programs) }
     }
 
-    /// A device that plans for `of`: what its lights own comes beside what lights own there.
+    /// Creates the device of a memory plan for `of`. Planned lights get the part of its map budget that is left.
     pub(super) fn planned(of: &Self, device: &wgpu::Device) -> Self {
         let programs = Programs {
             plan_of: Some(of.clone()),
@@ -118,23 +118,23 @@ impl Device {
         Self { device: device.clone(), programs: Arc::new(programs) }
     }
 
-    /// Whether nothing is created and no commands are run.
+    /// Whether this is the device of a memory plan, which creates nothing and runs no commands.
     pub(crate) fn is_planned(&self) -> bool {
         self.programs.plan_of.is_some()
     }
 
-    /// Turns of loops in an invocation after which a pass of unbounded work leaves the rest to the next.
+    /// Loop iterations of an invocation after which a pass of unbounded work leaves the rest to the next pass.
     pub(crate) fn most_turns(&self) -> u32 {
         self.programs.most_turns
     }
 
-    /// Whether lights of this device may read resources of another: a clone, or one that this one plans for.
+    /// Whether lights of this device may read resources of `other`: a clone, or the device that this one plans for.
     pub(super) fn reads_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.programs, &other.programs)
             || self.programs.plan_of.as_ref().is_some_and(|of| of.reads_of(other))
     }
 
-    /// The device itself.
+    /// Underlying wgpu device.
     pub(crate) fn raw(&self) -> &wgpu::Device {
         &self.device
     }
@@ -152,14 +152,14 @@ impl Device {
         &self.programs.budget
     }
 
-    /// Bytes of all resources that lights share.
+    /// Memory of all resources that lights share, bytes.
     pub(super) fn scratch_bytes(&self) -> u64 {
         let Programs { scratch_textures, scratch_attachments, scratch_buffers, tables, .. } = &*self.programs;
         let textures = scratch_textures.bytes(texture_bytes) + scratch_attachments.bytes(|(it, _)| texture_bytes(it));
         textures + scratch_buffers.bytes(wgpu::Buffer::size) + tables.bytes(wgpu::Buffer::size)
     }
 
-    /// What has been made so far.
+    /// Numbers of objects created so far.
     pub(crate) fn counts(&self) -> ObjectCounts {
         let Counts { programs, buffers, textures, views, bind_groups } = &self.programs.counts;
         let [programs, buffers, textures, views, bind_groups] =
@@ -167,12 +167,12 @@ impl Device {
         ObjectCounts { programs, buffers, textures, views, bind_groups }
     }
 
-    /// A shader's text as the device gets it, for a module of the host's.
+    /// Returns a shader text as the device receives it, for a module of the host.
     pub(crate) fn host_shader_text(&self, wgsl: String) -> String {
         self.programs.uniforms.shader_text(wgsl.into()).into_owned()
     }
 
-    /// A layout, shared by all that have the same entries.
+    /// Returns a bind group layout, shared by all with equal entries.
     pub(crate) fn create_bind_group_layout(
         &self,
         descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,
@@ -186,7 +186,7 @@ impl Device {
         })
     }
 
-    /// A pipeline's layout, shared. The library has no immediates.
+    /// Returns a pipeline layout, shared. The library uses no immediates.
     pub(crate) fn create_pipeline_layout(
         &self,
         descriptor: &wgpu::PipelineLayoutDescriptor<'_>,
@@ -203,8 +203,8 @@ impl Device {
             .get_or_make(key, &counts.programs, || programs::create_pipeline_layout(&self.device, descriptor))
     }
 
-    /// Whether a pipeline has no more storage buffers than WebGPU's defaults, as declared. A device that reads uniforms from such
-    /// allows more, and does not tell.
+    /// Whether a pipeline, as declared, stays within WebGPU's default limits for storage buffers. A device that reads uniforms
+    /// from storage has raised limits and would not report it.
     fn is_within_defaults(&self, layouts: &[Option<wgpu::BindGroupLayout>]) -> bool {
         let known = self.programs.bind_group_layouts.0.lock().unwrap_or_else(PoisonError::into_inner);
         let declared = |layout| known.iter().find(|(_, made)| *made == layout).map(|([entries, _], _)| entries);
@@ -212,7 +212,7 @@ impl Device {
         uniforms::are_within_defaults(&entries)
     }
 
-    /// The module of a linked shader, shared.
+    /// Returns the module of a linked shader, shared.
     pub(crate) fn create_shader_module(&self, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
         let Programs { modules, counts, .. } = &*self.programs;
         modules.get_or_make((wgsl.as_ptr() as usize, wgsl.len()), &counts.programs, || {
@@ -221,7 +221,7 @@ impl Device {
         })
     }
 
-    /// A pipeline, shared by all that ask for the same.
+    /// Returns a compute pipeline, shared by all callers with an equal descriptor.
     pub(crate) fn create_compute_pipeline(
         &self,
         descriptor: &wgpu::ComputePipelineDescriptor<'_>,
@@ -239,7 +239,7 @@ impl Device {
         )
     }
 
-    /// A pipeline, shared by all that ask for the same.
+    /// Returns a render pipeline, shared by all callers with an equal descriptor.
     pub(crate) fn create_render_pipeline(
         &self,
         descriptor: &wgpu::RenderPipelineDescriptor<'_>,
@@ -252,24 +252,24 @@ impl Device {
         })
     }
 
-    /// A sampler, shared by all that ask for the same.
+    /// Returns a sampler, shared by all callers with an equal descriptor.
     pub(crate) fn create_sampler(&self, descriptor: &wgpu::SamplerDescriptor<'_>) -> wgpu::Sampler {
         let key = format!("{:?}", wgpu::SamplerDescriptor { label: None, ..descriptor.clone() });
         let Programs { samplers, counts, .. } = &*self.programs;
         samplers.get_or_make(key, &counts.programs, || self.device.create_sampler(descriptor))
     }
 
-    /// Values of the processor that lights share.
+    /// CPU values that lights share.
     pub(crate) fn shared_values(&self) -> &SharedValues {
         &self.programs.shared_values
     }
 
-    /// What `rasteriser` has measured of the adapter, or measures now.
+    /// Returns the result of `rasteriser` for the adapter, measured by the first call.
     pub(super) fn snapped_texels(&self, measure: impl FnOnce() -> wgpu::Buffer) -> &wgpu::Buffer {
         self.programs.snapped_texels.get_or_init(measure)
     }
 
-    /// What `receivers/blue_noise` has made, or makes now.
+    /// Returns the texture from `receivers/blue_noise`, created by the first call.
     pub(crate) fn noise_tile(&self, make: impl FnOnce() -> wgpu::TextureView) -> &wgpu::TextureView {
         self.programs.noise_tile.get_or_init(make)
     }
@@ -285,8 +285,8 @@ impl Device {
         self.device.create_texture(descriptor)
     }
 
-    /// A texture that one light's commands fill and read before another's do: lights that ask for the same use and size share
-    /// it, for as long as one of them keeps it. No two uses share one, so that a pass may bind all of them.
+    /// Returns a texture that one light's commands fill and read before another light's do. Equal requests share it, and it is
+    /// freed with its last holder. Different uses never share one, so that a pass may bind all of them.
     pub(crate) fn scratch_texture(
         &self,
         scratch: Scratch,
@@ -296,7 +296,7 @@ impl Device {
         self.programs.scratch_textures.get_or_make(key, || self.create_texture(descriptor))
     }
 
-    /// The same of an attachment, with its view: a light that takes one that there is creates nothing.
+    /// Returns a scratch attachment with its view; a light that reuses an existing one creates nothing.
     pub(super) fn scratch_attachment(
         &self,
         scratch: Scratch,
@@ -310,7 +310,7 @@ impl Device {
         })
     }
 
-    /// The same of a buffer.
+    /// Returns a scratch buffer, shared in the same way.
     pub(crate) fn scratch_buffer(
         &self,
         scratch: Scratch,
@@ -320,8 +320,8 @@ impl Device {
         self.programs.scratch_buffers.get_or_make(key, || self.create_buffer(descriptor))
     }
 
-    /// A buffer whose content follows from its key and never changes, shared by all that ask for the same for as long as one of
-    /// them keeps it.
+    /// Returns a buffer whose content depends only on its key and never changes. It is shared by all lights, and freed with its
+    /// last holder.
     pub(super) fn table(&self, key: TableKey, make: impl FnOnce() -> wgpu::Buffer) -> Arc<wgpu::Buffer> {
         self.programs.tables.get_or_make(key, make)
     }
@@ -341,7 +341,7 @@ impl Device {
     }
 }
 
-/// Bytes of a texture's texels, all samples, levels and layers.
+/// Memory of a texture, all samples, levels and layers, bytes.
 pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     descriptor_bytes(&wgpu::TextureDescriptor {
         label: None,
@@ -355,7 +355,7 @@ pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     })
 }
 
-/// The same of a texture that is described.
+/// Memory of a texture with this descriptor, bytes.
 pub(super) fn descriptor_bytes(texture: &wgpu::TextureDescriptor<'_>) -> u64 {
     let texel = texture.format.block_copy_size(None).unwrap_or(4);
     let level = |level: u32| {

@@ -1,25 +1,25 @@
-//! Render pipelines by what differs from one to the next.
+//! Render pipeline descriptors, with defaults for everything but what differs between pipelines.
 
 use super::{Gpu, overrides};
 
-/// A render pipeline of a linked shader.
+/// Descriptor of a render pipeline of a linked shader.
 #[derive(Clone, Debug)]
 pub(crate) struct DrawPipeline<'a> {
     pub(crate) label: &'a str,
     pub(crate) wgsl: &'static str,
-    /// Group by group.
+    /// Bind group layouts, by group index.
     pub(crate) layouts: &'a [Option<&'a wgpu::BindGroupLayout>],
-    /// The entry point of vertices.
+    /// Vertex entry point.
     pub(crate) vertex: &'a str,
     pub(crate) vertex_buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    /// The entry point of fragments.
+    /// Fragment entry point; `None` for a pipeline without a fragment stage.
     pub(crate) fragment: Option<&'a str>,
-    /// Its overridable constants.
+    /// Values of overridable constants of the fragment stage, by name.
     pub(crate) constants: &'a [(&'a str, f64)],
     pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
     pub(crate) primitive: wgpu::PrimitiveState,
     pub(crate) depth: Option<wgpu::DepthStencilState>,
-    /// Samples a texel of the attachments.
+    /// Samples per texel of the attachments.
     pub(crate) sample_count: u32,
 }
 
@@ -42,7 +42,7 @@ impl Default for DrawPipeline<'_> {
 }
 
 impl DrawPipeline<'_> {
-    /// The pipeline, shared by all that ask for the same.
+    /// Returns the pipeline, shared by all callers with an equal descriptor.
     pub(crate) fn create(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
         let label = Some(self.label);
         let module = gpu.device.create_shader_module(self.label, self.wgsl);
@@ -80,13 +80,13 @@ impl DrawPipeline<'_> {
     }
 }
 
-/// A shader with the depth test before the fragment stage, which WGSL of the web has no word for: of devices with
-/// `SHADER_EARLY_DEPTH_TEST` alone.
+/// Returns the shader with the depth test forced before the fragment stage. The attribute is not part of WebGPU's WGSL,
+/// so the device needs `SHADER_EARLY_DEPTH_TEST`.
 pub(crate) fn with_early_depth_test(wgsl: &str) -> String {
     wgsl.replace("@fragment", "@early_depth_test(force) @fragment")
 }
 
-/// A comparison with a depth attachment, and whether it is written.
+/// Depth state with a comparison and a write flag, without stencil and bias.
 pub(crate) fn depth_state(
     format: wgpu::TextureFormat,
     compare: wgpu::CompareFunction,

@@ -1,31 +1,31 @@
-//! Techniques as functions of hosts' shaders: WGSL that hosts prepend to theirs, and one bind group.
+//! Techniques as functions for hosts' shaders: WGSL to prepend to the host's shader, and one bind group.
 //!
-//! The text is a linked shader, made to lie within another: its bindings are in one group of the host's choice, its constants have
-//! their values, its entry point is left out, and all names that it declares begin with a word of the host's choice, so that several
-//! lights' lie side by side.
+//! The text is a linked shader, adapted for inclusion in another: its bindings are in one group of the host's choice, its
+//! constants have their values, its entry point is removed, and all names that it declares have a prefix of the host's choice,
+//! so that a shader can include several lights.
 
 use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::{Bindings, Resource, overrides};
 
-/// Step between the bindings of one group of a linked shader and those of the next, in the host's group.
+/// Offset, in the host's group, between the bindings of consecutive groups of a linked shader.
 const BINDINGS_PER_GROUP: u32 = 16;
 
-/// A technique's shader and resources for a host's shader, of the frame prepared last.
+/// Shader and resources of a technique for a host's shader, from the last prepared frame.
 #[derive(Debug)]
 pub struct Embeddable {
     /// Linked text with a function `visibility_at`.
     pub(crate) wgsl: &'static str,
-    /// Values of overridable constants, by their names.
+    /// Values of overridable constants, by name.
     pub(crate) constants: Vec<(&'static str, f64)>,
-    /// Layout and resources of each group of the text.
+    /// Layout and resources of each group of the linked text.
     pub(crate) groups: Vec<EmbeddedGroup>,
-    /// Whether what is bound holds what the frame draws until the light's next frame.
+    /// Whether the bound resources retain the frame's content until the light's next frame.
     pub(crate) is_own: bool,
 }
 
-/// A group of a linked shader.
+/// Bind group of a linked shader.
 #[derive(Debug)]
 pub(crate) struct EmbeddedGroup {
     layout: Vec<wgpu::BindGroupLayoutEntry>,
@@ -39,27 +39,27 @@ impl EmbeddedGroup {
     }
 }
 
-/// A light's visibility as a function of a host's shaders, by [`Shadow::shader_function`](crate::Shadow::shader_function).
+/// Visibility of a light as a function for a host's shaders, from [`Shadow::shader_function`](crate::Shadow::shader_function).
 #[derive(Clone, Debug)]
 pub struct ShaderFunction {
-    /// WGSL to put before the host's own: `fn visibility_at(position: vec3f, normal: vec3f, pixel: vec2u) -> f32`, its name and all
-    /// others begun with the prefix that was asked for. A position in the world; a unit normal, or zero for what faces the light, as
-    /// particles do; and a pixel, which chooses random numbers. It is the same text, by [`Arc::ptr_eq`], until parameters, kind of light
-    /// or casters ask for another program.
+    /// WGSL to prepend to the host's shader: `fn visibility_at(position: vec3f, normal: vec3f, pixel: vec2u) -> f32`. All
+    /// names, including this one, start with the requested prefix. The position is in world space; the normal is a unit vector,
+    /// or zero for points that face the light, such as particles; the pixel selects random numbers. The text is the same, by
+    /// [`Arc::ptr_eq`], until parameters, kind of light or casters require another program.
     pub wgsl: Arc<str>,
-    /// Layout of the group, for fragment and compute shaders.
+    /// Layout of the bind group, for fragment and compute shaders.
     pub layout: wgpu::BindGroupLayout,
-    /// Resources that the function reads; valid once the frame's commands have run.
+    /// Resources that the function reads; valid after the frame's commands have run.
     pub bind_group: wgpu::BindGroup,
 }
 
-/// The binding of the host's group.
+/// Returns the binding number in the host's group.
 fn embedded_binding(group: u32, binding: u32) -> u32 {
     BINDINGS_PER_GROUP * group + binding
 }
 
 impl Embeddable {
-    /// The entries of the host's layout.
+    /// Entries of the host's bind group layout.
     pub(crate) fn layout_entries(&self) -> Vec<wgpu::BindGroupLayoutEntry> {
         let visibility = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
         let entries = (0..).zip(&self.groups).flat_map(|(group, of)| {
@@ -72,7 +72,7 @@ impl Embeddable {
         entries.collect()
     }
 
-    /// The entries of the host's group.
+    /// Entries of the host's bind group.
     pub(crate) fn bound(&self) -> Vec<wgpu::BindGroupEntry<'_>> {
         let entries = (0..).zip(&self.groups).flat_map(|(group, of)| {
             of.bound.iter().map(move |(binding, resource)| wgpu::BindGroupEntry {
@@ -83,14 +83,14 @@ impl Embeddable {
         entries.collect()
     }
 
-    /// The text for a group of the host's and a prefix.
+    /// Returns the text for a group index and a prefix of the host's choice.
     pub(crate) fn text(&self, group: u32, prefix: &str) -> String {
         let wgsl = crate::shaders::text_of(self.wgsl);
         embedded_text(&wgsl, &overrides::linked(&wgsl, &self.constants), group, prefix)
     }
 }
 
-/// A linked text as part of another.
+/// Adapts a linked text for inclusion in another.
 fn embedded_text(wgsl: &str, constants: &[(String, f64)], group: u32, prefix: &str) -> String {
     let text = without_entry_point(wgsl);
     let lines = text.lines().filter(|line| !line.starts_with("//"));
@@ -98,14 +98,14 @@ fn embedded_text(wgsl: &str, constants: &[(String, f64)], group: u32, prefix: &s
     with_prefix(&lines.collect::<String>(), prefix)
 }
 
-/// Without the only entry point of a linked text, whose functions end by a brace of their own line.
+/// Removes the only entry point of a linked text; functions end with a brace on a line of its own.
 fn without_entry_point(wgsl: &str) -> String {
     let Some((before, from)) = wgsl.split_once("@compute") else { return wgsl.to_owned() };
     let after = from.split_once("\n}\n").map_or("", |(_, after)| after);
     before.to_owned() + after
 }
 
-/// A line with its binding in the host's group, where it has one.
+/// Replaces the group and binding of a line, if it has them.
 fn with_binding(line: &str, host_group: u32) -> String {
     let number = |name: &str| line.split_once(name)?.1.split_once(')')?.0.parse::<u32>().ok();
     match (number("@group("), number("@binding(")) {
@@ -116,7 +116,7 @@ fn with_binding(line: &str, host_group: u32) -> String {
     }
 }
 
-/// A line with the value of its constant, where it declares an overridable one.
+/// Replaces an overridable constant that the line declares by a constant with its value.
 fn with_constant(line: &str, constants: &[(String, f64)]) -> String {
     let parts = line.strip_prefix("override ").and_then(|rest| rest.split_once(": "));
     let Some((name, rest)) = parts else { return line.to_owned() };
@@ -130,7 +130,7 @@ fn with_constant(line: &str, constants: &[(String, f64)]) -> String {
     format!("const {name}: {ty} = {};", given.as_deref().unwrap_or(default))
 }
 
-/// Words of a text and what stands between them.
+/// Returns the words of a text and the separators between them.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_of_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut rest = text;
@@ -143,12 +143,12 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The text with a prefix before every name that it declares. Members and locals of the same names get it too, wherever they stand.
+/// Adds a prefix to every name that the text declares, and to all members and locals with the same names.
 fn with_prefix(text: &str, prefix: &str) -> String {
     const DECLARE: [&str; 5] = ["fn", "struct", "const", "var", "alias"];
     let mut names = HashSet::new();
     for line in text.lines() {
-        // Of functions only what is not indented: `var<uniform> name`, `var<storage, read> name`, `fn name`.
+        // Of functions, only unindented lines count: `var<uniform> name`, `var<storage, read> name`, `fn name`.
         if words(line).next().is_some_and(|word| DECLARE.contains(&word)) {
             let declared = line.split([':', '(', '{', '=']).next().unwrap_or_default();
             names.extend(words(declared.trim()).last());

@@ -1,19 +1,19 @@
-//! Feedback counters, written by shaders: copied to mappable memory, and read in a later frame when they have arrived.
+//! Feedback counters written by shaders: copied to mappable memory, and read in a later frame once they have arrived.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
 use super::{Gpu, Recorder};
 
-/// Brings a few numbers back without waiting for them.
+/// Reads back a few numbers without waiting.
 ///
-/// A frame's [`record`](Self::record) copies them; some later frame's [`collect`](Self::collect) finds them arrived.
-/// Where more frames are under way than there are slots, the frames between leave nothing.
+/// [`record`](Self::record) copies the numbers of a frame; [`collect`](Self::collect) returns them in a later frame.
+/// Frames recorded while no slot is free are not read back.
 #[derive(Debug)]
 pub(crate) struct Feedback {
     slots: Vec<Slot>,
     bytes: u64,
-    /// Whether the last frame recorded found no slot.
+    /// Whether the last recorded frame found no free slot.
     is_missing: AtomicBool,
 }
 
@@ -23,15 +23,15 @@ struct Slot {
     state: Arc<AtomicU8>,
 }
 
-/// As many as frames may be under way.
+/// Number of slots: frames that may be in flight at once.
 const SLOTS: usize = 3;
 
-// A slot's states, in the order it goes through them.
+// States of a slot, in order.
 const FREE: u8 = 0;
 const UNDER_WAY: u8 = 1;
 const ARRIVED: u8 = 2;
 
-/// Frees a slot whose commands were dropped, or whose buffer could not be mapped.
+/// Guard that frees a slot if its commands are dropped or its buffer cannot be mapped.
 struct UnderWay(Arc<AtomicU8>);
 
 impl Drop for UnderWay {
@@ -41,7 +41,7 @@ impl Drop for UnderWay {
 }
 
 impl Feedback {
-    /// For `count` numbers.
+    /// Creates slots for `count` numbers.
     pub(crate) fn new(gpu: &Gpu, count: u32) -> Self {
         let bytes = u64::from(count) * 4;
         let slot = || Slot {
@@ -56,8 +56,8 @@ impl Feedback {
         Self { slots: (0..SLOTS).map(|_| slot()).collect(), bytes, is_missing: AtomicBool::new(false) }
     }
 
-    /// Copies the first numbers of `source`, a buffer with usage `COPY_SRC`, and has them mapped once the host has
-    /// submitted what is recorded.
+    /// Copies the first numbers of `source`, a buffer with usage `COPY_SRC`. They are mapped once the host has
+    /// submitted the commands.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, source: &wgpu::Buffer) {
         let free =
             |slot: &&Slot| slot.state.compare_exchange(FREE, UNDER_WAY, Ordering::AcqRel, Ordering::Acquire).is_ok();
@@ -72,9 +72,9 @@ impl Feedback {
         });
     }
 
-    /// The newest numbers that have arrived since the last call; of several frames' only the newest's.
+    /// Returns the newest numbers that arrived since the last call, or `None`; older ones are discarded.
     pub(crate) fn collect(&self, gpu: &Gpu) -> Option<Vec<u32>> {
-        // Never waits. A lost device shows where the host submits.
+        // Never waits. A lost device is reported where the host submits.
         let _ = gpu.device().poll(wgpu::PollType::Poll);
         let mut newest = None;
         for slot in self.slots.iter().filter(|slot| slot.state.load(Ordering::Acquire) == ARRIVED) {
@@ -87,17 +87,17 @@ impl Feedback {
         newest
     }
 
-    /// Whether the last frame recorded left nothing, for want of a slot.
+    /// Whether the last recorded frame was not read back because no slot was free.
     pub(crate) fn is_missing(&self) -> bool {
         self.is_missing.load(Ordering::Acquire)
     }
 
-    /// Whether numbers of a frame recorded are still to be read.
+    /// Whether numbers of a recorded frame are missing or still to be read.
     pub(crate) fn is_awaited(&self) -> bool {
         self.is_missing() || self.slots.iter().any(|slot| slot.state.load(Ordering::Acquire) != FREE)
     }
 
-    /// Bytes of the slots.
+    /// Memory of the slots, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.bytes * SLOTS as u64
     }

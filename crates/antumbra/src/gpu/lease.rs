@@ -1,6 +1,6 @@
-//! Memory of lights' maps: each light's own within a budget, and shared by all lights beyond it.
+//! Memory of lights' maps: owned by one light within a budget, and shared by all lights beyond it.
 //!
-//! A light's own maps are cached from frame to frame. Shared ones are drawn and read by one light's commands before the next light's
+//! Owned maps are cached from frame to frame. Shared ones are drawn and read by one light's commands before the next light's
 //! overwrite them, so that a hundred lights need no more memory than one.
 
 use std::sync::Arc;
@@ -9,29 +9,29 @@ use super::budget::OwnedBytes;
 use super::device::Device;
 use super::scratch::Scratch;
 
-/// One light's right to textures and buffers: its own, or those that all lights share.
+/// Right of one light to textures and buffers: owned, or shared by all lights.
 #[derive(Debug)]
 pub(crate) struct Lease {
     owned: Option<OwnedBytes>,
 }
 
 impl Lease {
-    /// For so many bytes together.
+    /// Reserves `bytes` bytes of the map budget; if they exceed it, the resources are shared.
     pub(crate) fn new(device: &Device, bytes: u64) -> Self {
         Self { owned: device.budget().take(bytes) }
     }
 
-    /// Whether they are the light's own, and hold what they held in the frame before.
+    /// Whether the resources are owned, so that they retain the last frame's content.
     pub(crate) fn is_own(&self) -> bool {
         self.owned.is_some()
     }
 
-    /// Bytes of what the light owns.
+    /// Memory that the light owns, bytes.
     pub(crate) fn own_bytes(&self) -> u64 {
         self.owned.as_ref().map_or(0, OwnedBytes::bytes)
     }
 
-    /// One of them; the light keeps it as long as it draws.
+    /// Returns a texture; the light holds it as long as it draws.
     pub(crate) fn texture(
         &self,
         device: &Device,
@@ -44,7 +44,7 @@ impl Lease {
         }
     }
 
-    /// The same of a buffer.
+    /// Returns a buffer; the light holds it as long as it draws.
     pub(crate) fn buffer(
         &self,
         device: &Device,
@@ -58,19 +58,19 @@ impl Lease {
     }
 }
 
-/// A buffer of a light's own within the budget, and shared beyond it.
+/// Buffer that a light owns within the budget, and shares beyond it.
 #[derive(Debug, Default)]
 pub(crate) struct LeasedBuffer(Option<(Lease, Arc<wgpu::Buffer>)>);
 
 impl LeasedBuffer {
-    /// The buffer of exactly so many bytes: the one at hand, or a new one.
+    /// Returns a buffer of exactly the descriptor's size: the existing one, or a new one.
     pub(crate) fn sized(
         &mut self,
         device: &Device,
         scratch: Scratch,
         descriptor: &wgpu::BufferDescriptor<'_>,
     ) -> &wgpu::Buffer {
-        // What is there goes back to the budget before another is taken.
+        // Return the old buffer's bytes to the budget before reserving new ones.
         let made = self.0.take().filter(|(_, buffer)| buffer.size() == descriptor.size);
         let (_, buffer) = self.0.insert(made.unwrap_or_else(|| {
             let lease = Lease::new(device, descriptor.size);
@@ -80,13 +80,13 @@ impl LeasedBuffer {
         buffer
     }
 
-    /// The buffer; `None` before it was asked for.
+    /// Buffer; `None` before the first request.
     #[cfg(test)]
     pub(crate) fn buffer(&self) -> Option<&wgpu::Buffer> {
         self.0.as_ref().map(|(_, buffer)| &**buffer)
     }
 
-    /// Bytes of it where the light owns it.
+    /// Memory of the buffer, bytes; 0 if it is shared.
     pub(crate) fn own_bytes(&self) -> u64 {
         self.0.as_ref().map_or(0, |(lease, _)| lease.own_bytes())
     }

@@ -1,5 +1,5 @@
-//! The thin layer between the techniques and wgpu: what the device can do, typed buffers, and the recorder that labels
-//! and times every pass.
+//! Layer between the techniques and wgpu: device capabilities, typed buffers, and the recorder that labels and times
+//! every pass.
 
 pub(crate) mod bindings;
 mod budget;

@@ -1,19 +1,19 @@
-//! For `cargo xtask mutants`, which asks of a changed shader whether any test notices: the tests are built once, and take
-//! a shader's text when they run.
+//! Shader replacement for `cargo xtask mutants`, which checks whether a test detects a changed shader. The tests are
+//! built once and load shader texts at run time.
 //!
-//! Compiled by the feature `mutants` alone, which no host has a use for. Two environment variables name folders:
-//! [`CHANGED`] holds texts in place of the linked ones, [`SEEN`] gets an empty file for each shader that was asked for.
+//! Compiled only with the feature `mutants`, which hosts do not need. Two environment variables name folders: [`CHANGED`]
+//! contains texts that replace linked ones, [`SEEN`] receives an empty file for each requested shader.
 
 use std::borrow::Cow;
 use std::path::PathBuf;
 
-/// Texts in place of linked ones, by the paths that [`file_of`] gives.
+/// Environment variable: folder of replacement texts, at the paths that [`file_of`] returns.
 const CHANGED: &str = "ANTUMBRA_MUTANTS_CHANGED";
 
-/// Where to note which shaders a program asked for, by the same paths with `=` for `/`.
+/// Environment variable: folder for the names of requested shaders, the same paths with `=` for `/`.
 const SEEN: &str = "ANTUMBRA_MUTANTS_SEEN";
 
-/// What to use in place of a linked shader: a changed text where there is one.
+/// Returns the text of a linked shader, or its replacement if there is one.
 pub(crate) fn text_of(linked: &'static str) -> Cow<'static, str> {
     let folder = |name| std::env::var_os(name).map(PathBuf::from);
     let file = file_of(linked);
@@ -29,8 +29,8 @@ pub(crate) fn text_of(linked: &'static str) -> Cow<'static, str> {
     }
 }
 
-/// Where a shader's text lies in the folder, by its first line, `// Linked from src/PATH.wesl with FEATURES by ...`:
-/// `PATH.FEATURES.wgsl`.
+/// Returns the path of a shader's text in the folder, `PATH.FEATURES.wgsl`, from its first line:
+/// `// Linked from src/PATH.wesl with FEATURES by ...`.
 fn file_of(linked: &str) -> String {
     let named = linked.strip_prefix("// Linked from src/").and_then(|rest| rest.split_once(" by `"));
     let (source, _) = named.expect("the linker's first line");

@@ -1,5 +1,5 @@
-//! The attachment of passes that write to storage alone: a pass must have one. Nothing is compared with it or stored in
-//! it.
+//! Depth attachment for passes that write only to storage, because a pass needs an attachment. It is neither compared
+//! with nor written.
 
 use std::sync::Arc;
 
@@ -14,16 +14,16 @@ pub(crate) struct NoDepth {
 }
 
 impl NoDepth {
-    /// Of the fewest bytes that every device can render to.
+    /// Renderable format of the fewest bytes that every device supports.
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
-    /// `size` texels along each side; all lights share it.
+    /// Returns an attachment of `size` texels, shared by all lights.
     pub(crate) fn new(gpu: &Gpu, size: UVec2, sample_count: u32) -> Self {
         let descriptor = Self::descriptor(size, sample_count);
         Self { attachment: gpu.device.scratch_attachment(Scratch::NoDepth, &descriptor) }
     }
 
-    /// At least of this size, with powers of two as sides.
+    /// Returns an attachment of at least `size` texels, rounded up to powers of two.
     pub(crate) fn at_least(gpu: &Gpu, size: UVec2, sample_count: u32) -> Self {
         Self::new(gpu, UVec2::new(size.x.next_power_of_two(), size.y.next_power_of_two()), sample_count)
     }
@@ -41,22 +41,22 @@ impl NoDepth {
         }
     }
 
-    /// What passes draw to.
+    /// View that passes draw to.
     pub(crate) fn view(&self) -> &wgpu::TextureView {
         &self.attachment.1
     }
 
-    /// How a pipeline takes it: nothing is compared, nothing written.
+    /// Depth state of pipelines that use it: always passes, never writes.
     pub(crate) fn state() -> wgpu::DepthStencilState {
         depth_state(Self::FORMAT, wgpu::CompareFunction::Always, false)
     }
 
-    /// Texels along each side.
+    /// Size, texels.
     pub(crate) fn size(&self) -> UVec2 {
         UVec2::new(self.attachment.0.width(), self.attachment.0.height())
     }
 
-    /// Samples a texel.
+    /// Samples per texel.
     pub(crate) fn sample_count(&self) -> u32 {
         self.attachment.0.sample_count()
     }

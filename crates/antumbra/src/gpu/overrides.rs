@@ -1,17 +1,17 @@
-//! Overridable constants of shaders, by their names.
+//! Overridable constants of shaders, by name.
 //!
-//! A source declares `override NAME: type = default;`, and Rust gives values by that name: no number stands for it in either.
-//! The linker may put a module's path before a name, so that the linked shader's own is looked up here.
+//! A source declares `override NAME: type = default;`, and Rust sets the value by that name, without a number. The linker may
+//! prefix a name with its module path, so the name in the linked shader is looked up here.
 
-/// Overridable constants by the names of a linked shader.
+/// Returns overridable constants with their names in a linked shader.
 ///
 /// # Panics
-/// Where the shader has no constant of a name, or several.
+/// If the shader has no constant of a name, or several.
 pub(crate) fn linked(wgsl: &str, constants: &[(&str, f64)]) -> Vec<(String, f64)> {
     if constants.is_empty() {
         return Vec::new();
     }
-    // A shader is long, and has tens of constants: it is read once for all of them.
+    // A shader is long and has tens of constants, so it is read once for all of them.
     let names: Vec<&str> = names(wgsl).collect();
     let linked_name = |name: &str| {
         linked_name(&names, name)
@@ -20,7 +20,7 @@ pub(crate) fn linked(wgsl: &str, constants: &[(&str, f64)]) -> Vec<(String, f64)
     constants.iter().map(|(name, value)| (linked_name(name).to_owned(), *value)).collect()
 }
 
-/// The one of a shader's names that the linker made of `name`; none where it has none.
+/// Returns the name that the linker generated from `name`, or `None`.
 fn linked_name<'s>(names: &[&'s str], name: &str) -> Option<&'s str> {
     if let Some(exact) = names.iter().find(|linked| **linked == name) {
         return Some(exact);
@@ -33,14 +33,14 @@ fn linked_name<'s>(names: &[&'s str], name: &str) -> Option<&'s str> {
     }
 }
 
-/// The names of all overrides of a shader.
+/// Names of all overrides of a shader.
 fn names(wgsl: &str) -> impl Iterator<Item = &str> {
     let is_of_name = |c: char| c.is_alphanumeric() || c == '_';
     wgsl.split("override ").skip(1).filter_map(move |rest| rest.split(|c| !is_of_name(c)).next())
 }
 
-/// Whether a name in a linked shader is this one of a module: the linker puts the module's path before names, and before
-/// one with underscores their number.
+/// Whether a name in a linked shader is that of a module: the linker prefixes the module path and, for names with
+/// underscores, their number.
 pub(crate) fn is_linked_name(linked: &str, name: &str) -> bool {
     let underscores = name.matches('_').count();
     linked == name || linked.ends_with(&format!("_{name}")) || linked.ends_with(&format!("_{underscores}{name}"))
@@ -66,7 +66,7 @@ mod tests {
         linked(SHADER, &[("PARTS", 1.0)]);
     }
 
-    /// Numbers would have to be repeated in Rust.
+    /// Rust would have to repeat the numbers.
     #[test]
     fn no_shader_numbers_its_overrides() {
         for (path, wgsl) in crate::shaders::ALL {

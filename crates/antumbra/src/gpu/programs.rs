@@ -1,22 +1,22 @@
-//! Shader modules, layouts and pipelines, reported as they are created: `cargo xtask web --shaders` has each of them created
-//! by a browser too.
+//! Creation of shader modules, layouts and pipelines, reported to a listener: `cargo xtask web --shaders` recreates each of
+//! them in a browser.
 //!
-//! The library's own renderer and viewer make theirs by these functions. No host has a use for them.
+//! The library's own renderer and viewer use these functions, too. Hosts do not need them.
 
 use std::sync::OnceLock;
 
-/// What was made, and of what.
+/// Created object, with its description.
 #[derive(Debug)]
 pub enum Made<'a> {
-    /// A bind group's layout, and its entries.
+    /// Bind group layout and its entries.
     BindGroupLayout(&'a wgpu::BindGroupLayout, &'a [wgpu::BindGroupLayoutEntry]),
-    /// A pipeline's layout, and the layouts of its groups.
+    /// Pipeline layout and its bind group layouts.
     PipelineLayout(&'a wgpu::PipelineLayout, &'a [Option<&'a wgpu::BindGroupLayout>]),
-    /// A module, its label, and its WGSL.
+    /// Shader module, its label and its WGSL.
     Module(&'a wgpu::ShaderModule, &'a str, &'a str),
-    /// A pipeline.
+    /// Compute pipeline.
     Compute(&'a wgpu::ComputePipelineDescriptor<'a>),
-    /// A pipeline.
+    /// Render pipeline.
     Render(&'a wgpu::RenderPipelineDescriptor<'a>),
 }
 
@@ -24,10 +24,10 @@ type Listener = Box<dyn Fn(Made<'_>) + Send + Sync>;
 
 static LISTENER: OnceLock<Listener> = OnceLock::new();
 
-/// Tells `listener` of everything that this process makes from now on, on whatever device.
+/// Reports to `listener` everything that this process creates from now on, on any device.
 ///
 /// # Panics
-/// Where there is a listener already.
+/// If a listener is already set.
 pub fn listen(listener: impl Fn(Made<'_>) + Send + Sync + 'static) {
     assert!(LISTENER.set(Box::new(listener)).is_ok(), "one listener is enough");
 }
@@ -38,7 +38,7 @@ fn tell(made: Made<'_>) {
     }
 }
 
-/// A bind group's layout.
+/// Creates a bind group layout and reports it.
 pub fn create_bind_group_layout(
     device: &wgpu::Device,
     descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,
@@ -48,7 +48,7 @@ pub fn create_bind_group_layout(
     layout
 }
 
-/// A pipeline's layout.
+/// Creates a pipeline layout and reports it.
 pub fn create_pipeline_layout(
     device: &wgpu::Device,
     descriptor: &wgpu::PipelineLayoutDescriptor<'_>,
@@ -58,7 +58,7 @@ pub fn create_pipeline_layout(
     layout
 }
 
-/// A module of a text in WGSL.
+/// Creates a shader module from WGSL and reports it.
 pub fn create_shader_module(device: &wgpu::Device, label: &str, wgsl: std::borrow::Cow<'_, str>) -> wgpu::ShaderModule {
     let source = wgpu::ShaderSource::Wgsl(wgsl.clone());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source });
@@ -66,7 +66,7 @@ pub fn create_shader_module(device: &wgpu::Device, label: &str, wgsl: std::borro
     module
 }
 
-/// A pipeline.
+/// Reports a compute pipeline and creates it.
 pub fn create_compute_pipeline(
     device: &wgpu::Device,
     descriptor: &wgpu::ComputePipelineDescriptor<'_>,
@@ -75,7 +75,7 @@ pub fn create_compute_pipeline(
     device.create_compute_pipeline(descriptor)
 }
 
-/// A pipeline.
+/// Reports a render pipeline and creates it.
 pub fn create_render_pipeline(
     device: &wgpu::Device,
     descriptor: &wgpu::RenderPipelineDescriptor<'_>,

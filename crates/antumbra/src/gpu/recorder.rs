@@ -1,24 +1,24 @@
-//! Recording: a label, a debug group and a pair of timestamps for every pass, and for groups of passes that are one
-//! step to the reader.
+//! Recorder: a label, a debug group and a pair of timestamps for every pass, or for several passes that are reported as one
+//! step.
 
 use super::{CommandsEnd, Gpu, StagedUploads};
 
-/// Which part of a timed step a pass is. A step of one pass is [`Span::Only`]; a step of many begins its clock with
-/// the first and ends it with the last.
+/// Position of a pass in a timed step. A step of one pass is [`Span::Only`]; a step of several is timed from the start of the
+/// first pass to the end of the last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Span {
-    /// The step is this pass alone.
+    /// Only pass of the step.
     Only,
-    /// The first of several.
+    /// First of several passes.
     First,
     /// Neither first nor last.
     Middle,
-    /// The last of several.
+    /// Last of several passes.
     Last,
 }
 
 impl Span {
-    /// The part that item `index` of `count` is.
+    /// Returns the position of item `index` of `count`.
     pub fn of(index: usize, count: usize) -> Self {
         match (index == 0, index + 1 == count) {
             (true, true) => Self::Only,
@@ -29,19 +29,19 @@ impl Span {
     }
 }
 
-/// How long a step took on the GPU.
+/// GPU time of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTime {
-    /// The step's label; steps of one label are added up.
+    /// Label of the step; times of equal labels are added.
     pub label: &'static str,
-    /// Milliseconds.
+    /// Time, milliseconds.
     pub ms: f64,
 }
 
-/// Collects the times of one frame's steps.
+/// Collects the step times of one frame.
 ///
-/// Use: hand it to [`Recorder::new`]; after the last pass call [`resolve`](Self::resolve) on the same encoder;
-/// submit; map [`readback`](Self::readback); pass its bytes to [`read`](Self::read).
+/// Usage: pass it to [`Recorder::new`]; after the last pass call [`resolve`](Self::resolve) on the same encoder; submit; map
+/// [`readback`](Self::readback); pass its bytes to [`read`](Self::read).
 #[derive(Debug)]
 pub struct PassTimer {
     queries: wgpu::QuerySet,
@@ -51,11 +51,11 @@ pub struct PassTimer {
     period_ns: f32,
 }
 
-/// WebGPU's largest query set, and so the most steps of a frame: two queries each.
+/// WebGPU's limit for a query set. It limits the steps of a frame, which need two queries each.
 const MAX_QUERIES: u32 = 4096;
 
 impl PassTimer {
-    /// A timer, or `None` where the device has no timestamps.
+    /// Creates a timer, or returns `None` if the device lacks `TIMESTAMP_QUERY`.
     pub fn new(gpu: &Gpu) -> Option<Self> {
         if !gpu.has(wgpu::Features::TIMESTAMP_QUERY) {
             return None;
@@ -88,7 +88,7 @@ impl PassTimer {
         })
     }
 
-    /// Forgets the last frame.
+    /// Discards the last frame's labels.
     pub fn reset(&mut self) {
         self.labels.clear();
     }
@@ -102,17 +102,17 @@ impl PassTimer {
         }
     }
 
-    /// Bytes of [`readback`](Self::readback) that the frame filled.
+    /// Number of bytes of [`readback`](Self::readback) that the frame filled.
     pub fn readback_bytes(&self) -> u64 {
         self.labels.len() as u64 * 16
     }
 
-    /// The buffer to map for reading after the submission.
+    /// Buffer to map for reading after the submission.
     pub fn readback(&self) -> &wgpu::Buffer {
         &self.readback
     }
 
-    /// Times from the mapped bytes, by label in the order of first use.
+    /// Returns the times from the mapped bytes, by label in order of first use.
     pub fn read(&self, bytes: &[u8]) -> Vec<PassTime> {
         let mut times: Vec<PassTime> = Vec::new();
         for (label, pair) in self.labels.iter().zip(bytes.chunks_exact(16)) {
@@ -126,7 +126,7 @@ impl PassTimer {
         times
     }
 
-    /// The queries at which a pass of a step writes its begin and end; `None` where it writes neither.
+    /// Returns the query indices for the begin and end of a pass; `None` if the pass writes neither.
     fn writes(&mut self, label: &'static str, span: Span) -> Option<(&wgpu::QuerySet, Option<u32>, Option<u32>)> {
         if matches!(span, Span::Only | Span::First) && 2 * self.labels.len() as u32 + 2 <= MAX_QUERIES {
             self.labels.push(label);
@@ -144,30 +144,30 @@ impl PassTimer {
     }
 }
 
-/// A pass that was recorded.
+/// Recorded pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pass {
-    /// The step that it is of, or is.
+    /// Label of the step that the pass belongs to.
     pub label: &'static str,
-    /// Whether casters are drawn in it.
+    /// Whether the pass draws casters.
     pub draws_casters: bool,
 }
 
-/// Records passes into the host's encoder: those of one light, or of several one after the other.
+/// Records passes of one or several lights into the host's encoder.
 #[derive(Debug)]
 pub struct Recorder<'a> {
     encoder: &'a mut wgpu::CommandEncoder,
     timer: Option<&'a mut PassTimer>,
     passes: Vec<Pass>,
-    /// Whether compute steps that follow one another are recorded in one pass of wgpu's, which costs the processor less than as
-    /// many. Clocks stop at passes: with a timer each step has its own.
+    /// Whether consecutive compute steps share one wgpu compute pass, which costs less CPU time. Timestamps are per pass, so
+    /// with a timer each step has a pass of its own.
     joins_steps: bool,
-    /// The pass that the next compute step is recorded in, where there is one.
+    /// Open compute pass for the next compute step, if any.
     open: Option<wgpu::ComputePass<'static>>,
 }
 
 impl<'a> Recorder<'a> {
-    /// A recorder; without a timer nothing is timed.
+    /// Creates a recorder; without a timer nothing is timed.
     pub fn new(encoder: &'a mut wgpu::CommandEncoder, mut timer: Option<&'a mut PassTimer>) -> Self {
         if let Some(timer) = &mut timer {
             timer.reset();
@@ -175,26 +175,26 @@ impl<'a> Recorder<'a> {
         Self { encoder, timer, passes: Vec::new(), joins_steps: false, open: None }
     }
 
-    /// What has been recorded so far, in order. What stood still and was not drawn again is not in it.
+    /// Passes recorded so far, in order. Cached maps and masks that were not drawn again have none.
     pub fn passes(&self) -> &[Pass] {
         &self.passes
     }
 
-    /// Records a light's steps, with compute passes joined where nothing is timed. None is open afterwards: the encoder is the
-    /// host's again.
+    /// Records a light's steps, sharing compute passes unless they are timed. No pass is open afterwards, because the encoder
+    /// returns to the host.
     pub(crate) fn joining_compute_passes(&mut self, record: impl FnOnce(&mut Self)) {
         self.joins_steps = self.timer.is_none();
         record(self);
         (self.joins_steps, self.open) = (false, None);
     }
 
-    /// The encoder between passes.
+    /// Returns the encoder, outside any pass.
     pub(crate) fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
         self.open = None;
         self.encoder
     }
 
-    /// Copies a frame's uploads to where they belong.
+    /// Records a frame's uploads; `then` is notified when the commands are done or dropped.
     pub(crate) fn upload(&mut self, uploads: StagedUploads, then: CommandsEnd) {
         uploads.record(self.encoder(), then);
     }
@@ -217,14 +217,14 @@ impl<'a> Recorder<'a> {
         self.encoder().clear_buffer(buffer, 0, None);
     }
 
-    /// A compute pass.
+    /// Records a compute pass.
     pub(crate) fn compute(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::ComputePass<'_>)) {
         self.passes.push(Pass { label, draws_casters: false });
         if self.joins_steps {
             let Self { encoder, open, .. } = self;
             let descriptor = wgpu::ComputePassDescriptor { label: Some("antumbra"), timestamp_writes: None };
             let pass = open.get_or_insert_with(|| encoder.begin_compute_pass(&descriptor).forget_lifetime());
-            // By default wgpu hands names to the driver in debug builds alone.
+            // By default wgpu passes labels to the driver only in debug builds.
             if cfg!(debug_assertions) {
                 pass.push_debug_group(label);
             }
@@ -245,7 +245,7 @@ impl<'a> Recorder<'a> {
         record(&mut pass);
     }
 
-    /// A compute pass that shares wgpu's with no other step.
+    /// Records a compute pass that shares wgpu's pass with no other step.
     pub(crate) fn compute_apart(
         &mut self,
         label: &'static str,
@@ -257,7 +257,7 @@ impl<'a> Recorder<'a> {
         self.open = None;
     }
 
-    /// Commands outside of any pass, as part of a timed step; empty passes carry the clock.
+    /// Records commands outside any pass as part of a timed step; empty passes write the timestamps.
     pub(crate) fn commands(&mut self, label: &'static str, span: Span, record: impl FnOnce(&mut wgpu::CommandEncoder)) {
         if matches!(span, Span::Only | Span::First) {
             self.compute(label, Span::First, |_| {});
@@ -268,7 +268,7 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// A pass that draws casters' depth alone, cleared to `clear_depth`.
+    /// Records a pass that draws only the depth of casters, cleared to `clear_depth`.
     pub(crate) fn depth_pass(
         &mut self,
         label: &'static str,
@@ -281,7 +281,7 @@ impl<'a> Recorder<'a> {
         self.render_pass(label, span, &[], target, Some(cleared), record);
     }
 
-    /// A pass that draws over what `targets` hold, or part of it.
+    /// Records a pass that draws over the present content of `targets`.
     pub(crate) fn color_pass<'v>(
         &mut self,
         label: &'static str,
@@ -302,7 +302,7 @@ impl<'a> Recorder<'a> {
         self.begin_render_pass(label, span, &colors, None, record);
     }
 
-    /// A pass that fills a texture with zeros.
+    /// Records a pass that fills a texture with zeros.
     pub(crate) fn clear(&mut self, label: &'static str, view: &wgpu::TextureView) {
         self.passes.push(Pass { label, draws_casters: false });
         let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
@@ -310,7 +310,7 @@ impl<'a> Recorder<'a> {
         self.begin_render_pass(label, Span::Only, &[Some(color)], None, |_| {});
     }
 
-    /// A pass that draws casters to `colors`, with a depth attachment that is only read where it has no operations.
+    /// Records a pass that draws casters to `colors`. Without `depth_ops` the depth attachment is read-only.
     pub(crate) fn render_pass(
         &mut self,
         label: &'static str,

@@ -1,27 +1,27 @@
-//! Uses of scratch resources, which one light's commands fill and read before another's do: lights share one for each use and size.
+//! Uses of scratch resources, which one light's commands fill and read before another's do. Lights share one per use and size.
 
 use glam::UVec2;
 
 /// Use of a scratch resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scratch {
-    /// 32-bit mask that a host's mask of another format is drawn from.
+    /// 32-bit mask from which a host's mask of another format is drawn.
     WideMask,
     /// Mask before it is denoised.
     NoisyMask,
-    /// Visibility before it is made smooth over pixels.
+    /// Visibility before spatial noise reduction.
     NoisyVisibility,
-    /// Depth of receivers of half the size.
+    /// Depth of receivers at half resolution.
     HalfDepth,
-    /// Normals of receivers of half the size.
+    /// Normals of receivers at half resolution.
     HalfNormals,
-    /// Mask of half the size.
+    /// Mask at half resolution.
     HalfMask,
-    /// Mask of one part of a light.
+    /// Mask of one part of a light (cube face, ring or cascade).
     PartMask,
-    /// Depth of the receivers of one part.
+    /// Depth of the receivers of one part of a light.
     PartDepth,
-    /// Normals of the receivers of one part.
+    /// Normals of the receivers of one part of a light.
     PartNormals,
     /// Positions of points.
     PointPositions,
@@ -35,7 +35,7 @@ pub(crate) enum Scratch {
     LayersBehind,
     /// Pyramid of a light map.
     DepthPyramid,
-    /// Rows of a map whose columns are blurred next.
+    /// Map after the first of two blur passes.
     BlurredRows,
     /// Cursors of lists per texel.
     ListCursors,
@@ -47,27 +47,27 @@ pub(crate) enum Scratch {
     ListCounters,
     /// Linked fragments of lists per texel.
     LinkedFragments,
-    /// Links of linked fragments.
+    /// Links between the linked fragments.
     Links,
-    /// Nearest depths of squares of lists.
+    /// Nearest depths of squares of texels with lists.
     NearestSquares,
-    /// Layers of depths of several views.
+    /// Depth layers of several views.
     DepthLayers,
-    /// Gradients of such layers.
+    /// Gradients of depth layers.
     LayerGradients,
-    /// Depths of maps of triangles.
+    /// Depths of triangle maps.
     TriangleDepths,
-    /// Triangles of such maps.
+    /// Triangle indices of triangle maps.
     TriangleIds,
-    /// Maps of a light's points, as words.
+    /// Maps of a light's points, as words in a buffer.
     ReprojectedMaps,
-    /// The same as textures.
+    /// Maps of a light's points, as textures.
     FilterableMaps,
-    /// Names of surfels.
+    /// Texel positions of surfels, packed.
     SurfelNames,
     /// Planes of tiles of a depth basis.
     TilePlanes,
-    /// Depth basis that tables sum, or that mips are made of.
+    /// Depth basis from which summed-area tables or mip levels are computed.
     DepthBasis,
     /// Summed-area table of a part of a depth basis.
     SummedTable(u8),
@@ -77,17 +77,17 @@ pub(crate) enum Scratch {
     TableBorders(u8),
     /// Largest sums of a table's tiles.
     LargestSums,
-    /// Workgroups of late steps of doubling.
+    /// Indirect dispatch arguments of the late steps of recursive doubling.
     LateDoubling,
-    /// Pixels that interpolation leaves missing.
+    /// Pixels that cannot be interpolated.
     MissingPixels,
-    /// Workgroups for missing pixels.
+    /// Indirect dispatch arguments for the missing pixels.
     MissingDispatch,
     /// Depth attachment without content.
     NoDepth,
 }
 
-/// What lights that share a scratch texture have in common.
+/// Key of a scratch texture; lights with equal keys share it.
 #[derive(Debug, PartialEq)]
 pub(super) struct ScratchTextureKey {
     scratch: Scratch,
@@ -111,7 +111,7 @@ impl ScratchTextureKey {
     }
 }
 
-/// Texture of so many layers that one pass writes as storage and another reads.
+/// Descriptor of a texture with `layers` layers that one pass writes as storage and another reads.
 pub(crate) fn passed_texture(
     label: &'static str,
     format: wgpu::TextureFormat,

@@ -1,7 +1,7 @@
-//! Numbers that Rust and the shaders both need, each held against the linked shaders that have them.
+//! Constants that Rust and shaders share, each compared with the linked shaders by a test.
 
-/// Declares constants that stand by the same names in linked shaders, `as in SHADER` (`shaders.rs` lists them). Once in a
-/// module; its test is `in_shaders::constants_are_the_same`.
+/// Declares constants that have the same name and value in a linked shader, `as in SHADER` (listed in `shaders.rs`). Use
+/// it at most once per module; its test is `in_shaders::constants_are_the_same`.
 macro_rules! shared_constants {
     ($( $(#[$outer:meta])* $visibility:vis const $name:ident: $ty:ty = $value:expr, as in $shader:ident; )+) => {
         $( $(#[$outer])* $visibility const $name: $ty = $value; )+
@@ -22,7 +22,7 @@ macro_rules! shared_constants {
 
 pub(crate) use shared_constants;
 
-/// Whether a linked shader, given with its name, has a constant of this name and value.
+/// Asserts that a linked shader, given with its name, has a constant of this name and value.
 #[cfg(test)]
 pub(crate) fn assert_in_shader((shader, wgsl): (&str, &'static str), name: &str, value: f64) {
     let in_shader =
@@ -30,7 +30,7 @@ pub(crate) fn assert_in_shader((shader, wgsl): (&str, &'static str), name: &str,
     assert_eq!(in_shader, value, "{shader}: {name}");
 }
 
-/// A linked shader's constant.
+/// Value of a constant of a linked shader, or `None`.
 #[cfg(test)]
 pub(crate) fn constant_of(wgsl: &'static str, name: &str) -> Option<f64> {
     let module = naga::front::wgsl::parse_str(&crate::shaders::text_of(wgsl)).expect("valid");

@@ -1,17 +1,17 @@
-//! Values of the processor that lights share: what one has worked out of the frame's casters and camera, others take.
+//! CPU values that lights share: results derived from the frame's casters and camera, computed once.
 
 use std::any::Any;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Values by the keys that they were made for. The few used last are kept.
+/// Least-recently-used cache of values by key.
 #[derive(Debug, Default)]
 pub(crate) struct SharedValues(Mutex<Vec<Arc<dyn Any + Send + Sync>>>);
 
-/// As many as a frame's views and anchors together mostly are.
+/// Capacity: about the number of views and anchors of a frame.
 const MOST_KEPT: usize = 16;
 
 impl SharedValues {
-    /// The key and value of a key: those that are there, or new ones.
+    /// Returns a key and its value, computed if not cached.
     pub(crate) fn get_or_make<K, V>(&self, key: K, make: impl FnOnce(&K) -> V) -> Arc<(K, V)>
     where
         K: PartialEq + Send + Sync + 'static,
@@ -24,12 +24,12 @@ impl SharedValues {
         if let Some(place) = kept.iter().rposition(is_of_key)
             && let Ok(found) = Arc::downcast::<(K, V)>(Arc::clone(&kept[place]))
         {
-            // The last used comes last.
+            // Move to the end: the list is ordered by last use.
             kept[place..].rotate_left(1);
             return found;
         }
         drop(kept);
-        // Not under the lock: other lights may be prepared on other threads.
+        // Compute outside the lock, because other threads may prepare other lights.
         let value = make(&key);
         let made = Arc::new((key, value));
         let mut kept = lock();
@@ -60,14 +60,14 @@ mod tests {
             (0..MOST_KEPT).for_each(get);
         }
         assert_eq!(made.get(), MOST_KEPT);
-        // One more takes the place of that which was not used for longest.
+        // One more entry evicts the least recently used.
         get(0);
         get(MOST_KEPT);
         get(0);
         assert_eq!(made.get(), MOST_KEPT + 1);
         get(1);
         assert_eq!(made.get(), MOST_KEPT + 2);
-        // Another type of the same key is another value.
+        // The same key with another value type is a separate entry.
         assert_eq!(values.get_or_make(0usize, |_| "text").1, "text");
     }
 }

@@ -1,12 +1,12 @@
 //! Frame preparation: uploads that wait for the frame's commands, and resources cached from earlier frames.
 //!
-//! `prepare` describes its frame in full, every bind group of it, as if nothing had been there before; the stage gives
-//! back what an earlier frame of the same light made of the same parts. So nothing that is described twice is made twice,
-//! and nobody keeps lists of what may have changed.
+//! `prepare` describes each frame completely, with every bind group, as if there had been no frame before. The stage returns
+//! what an earlier frame of the same light created for an equal description. So nothing is created twice, and no code tracks
+//! what may have changed.
 //!
-//! Uploads do not go to the queue, which would run them before whatever the host submits next, another frame of the
-//! same light included. They are put into a staging buffer of their own, and the frame's commands begin by copying them
-//! to where they belong. Frames may so be prepared and recorded one after the other and submitted together.
+//! Uploads do not go through the queue, which would run them before the host's next submission, even if that is another frame
+//! of the same light. They are collected in a staging buffer, and the frame's commands begin by copying them to their
+//! targets. So frames can be prepared and recorded one after the other and submitted together.
 
 mod bind_groups;
 mod uploads;
@@ -25,22 +25,22 @@ use bind_groups::{KeptGroup, KeptView};
 pub(crate) use uploads::StagedUploads;
 use uploads::{Copy, Staging, Uploads};
 
-/// What a technique prepares with: the device, and what is kept from frame to frame.
+/// Context in which a technique prepares: the device, and the state retained between frames.
 #[derive(Debug)]
 pub struct Stage<'a> {
     gpu: &'a Gpu,
     keep: RefCell<Keep>,
-    /// The frame's casters, where they can be told from others.
+    /// Key of the frame's casters; `None` if their changes are unknown.
     casters: Option<CastersKey>,
-    /// Where the frame counts places from.
+    /// Origin of the frame's positions, world space.
     anchor: Vec3,
-    /// Index of frames whose random numbers differ.
+    /// Index of the frame's random numbers.
     noise_frame: u32,
     stable_box: Option<[Vec3; 8]>,
     auto_texels_before: Option<u32>,
-    /// Maps of one light that share what may be spent on them.
+    /// Number of maps of one light that share its memory.
     sharers: u32,
-    /// Uploads go to the queue, for tests that record no frame of a light.
+    /// Whether uploads go to the queue at once, for tests that record no frame of a light.
     #[cfg(test)]
     is_at_once: bool,
 }
@@ -53,30 +53,30 @@ impl Deref for Stage<'_> {
     }
 }
 
-/// What is kept of a light from frame to frame.
+/// State of a light that is retained between frames.
 #[derive(Debug, Default)]
 pub(crate) struct Keep {
-    /// Counts the frames prepared.
+    /// Number of frames prepared.
     frame: u64,
     hashes: DefaultHashBuilder,
     groups: HashTable<KeptGroup>,
     views: HashTable<KeptView>,
-    /// By label and usage, in the order in which a frame asks for them.
+    /// Buffers by label and usage, in the order in which a frame requests them.
     buffers: HashMap<(&'static str, wgpu::BufferUsages), BufferRow>,
     uploads: Uploads,
     staging: Vec<Staging>,
-    /// Texels along a side of the map whose size is chosen for each frame.
+    /// Texels along a side of the map whose size is chosen per frame; `None` if there is none.
     auto_texels: Option<u32>,
 }
 
-/// Something kept, and the last frame that used it.
+/// Retained value, and the last frame that used it.
 #[derive(Debug)]
 struct Used<T> {
     value: T,
     frame: u64,
 }
 
-/// Buffers of one label.
+/// Buffers with the same label and usage.
 #[derive(Debug, Default)]
 struct BufferRow {
     buffers: Vec<Used<wgpu::Buffer>>,
@@ -84,17 +84,17 @@ struct BufferRow {
     frame: u64,
 }
 
-/// What no frame has used for so long is dropped: hosts may take turns with as many depth buffers and masks.
+/// Frames after which unused resources are dropped: hosts may alternate between as many depth buffers and masks.
 const KEPT_FRAMES: u64 = 8;
 
-/// What [`Stage::uniform`] makes.
+/// Usage of buffers from [`Stage::uniform`].
 const UNIFORM: wgpu::BufferUsages = wgpu::BufferUsages::UNIFORM.union(wgpu::BufferUsages::COPY_DST);
 
-/// What [`Stage::storage`] makes.
+/// Usage of buffers from [`Stage::storage`].
 const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE.union(wgpu::BufferUsages::COPY_DST);
 
 impl<'a> Stage<'a> {
-    /// A stage for the next frame.
+    /// Creates a stage for the next frame.
     pub(crate) fn new(gpu: &'a Gpu, mut keep: Keep, casters: Option<CastersKey>) -> Self {
         keep.frame += 1;
         let auto_texels_before = keep.auto_texels.take();
@@ -114,8 +114,8 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// A stage for a part of the frame, which has a state of its own; its maps are fitted to a box, where one is given, whose
-    /// corners these are, so that their texels stay where they are. [`finish_part`](Self::finish_part) ends it.
+    /// Creates a stage for one part of the frame with a state of its own; [`finish_part`](Self::finish_part) ends it. Maps
+    /// are fitted to the box with the given corners, if any, so that their texels do not move.
     pub(crate) fn of_part(&self, keep: Keep, stable_box: Option<[Vec3; 8]>) -> Self {
         Self {
             anchor: self.anchor,
@@ -127,66 +127,66 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// A stage for one frame whose uploads are queued at once.
+    /// Creates a stage for one frame whose uploads are queued at once.
     #[cfg(test)]
     pub(crate) fn at_once(gpu: &'a Gpu) -> Self {
         Self { is_at_once: true, ..Self::new(gpu, Keep::default(), None) }
     }
 
-    /// The same for a frame whose places, but for those of casters' vertices and instances, are counted from an anchor.
+    /// Sets the anchor: the origin of all positions of the frame except those of caster vertices and instances.
     pub(crate) fn anchored(self, anchor: Vec3) -> Self {
         Self { anchor, ..self }
     }
 
-    /// The same for a frame whose random numbers are those of this index; 0 is every frame's that is not denoised.
+    /// Sets the index of the frame's random numbers; 0 in every frame without denoising.
     pub(crate) fn of_noise_frame(self, noise_frame: u32) -> Self {
         Self { noise_frame, ..self }
     }
 
-    /// The corners of a box about what receives that mostly stays where it is while the camera moves; `None` where maps
-    /// are fitted to what receives itself.
+    /// Corners of a box around the receivers that mostly stays fixed while the camera moves; `None` if maps are fitted to the
+    /// receivers themselves.
     pub(crate) fn stable_box(&self) -> Option<[Vec3; 8]> {
         self.stable_box
     }
 
-    /// Texels along a side that the map had in the frame before, where its size is chosen for each frame.
+    /// Texels along a side of the last frame's map, if its size is chosen per frame.
     pub(crate) fn auto_texels(&self) -> Option<u32> {
         self.auto_texels_before
     }
 
-    /// Notes what was chosen for this frame; where nothing is noted the next one knows of none.
+    /// Stores the size chosen for this frame; the next frame finds `None` unless this is called.
     pub(crate) fn note_auto_texels(&self, texels: u32) {
         self.keep.borrow_mut().auto_texels = Some(texels);
     }
 
-    /// The same for one of so many maps of a light.
+    /// Sets the number of maps of a light that share its memory.
     pub(crate) fn sharing(self, maps: usize) -> Self {
         Self { sharers: maps.max(1) as u32, ..self }
     }
 
-    /// Bytes that a map may take whose size is chosen for each frame: of what the lights have, a quarter for one light.
+    /// Memory limit of a map whose size is chosen per frame, bytes: a quarter of the budget, split among the light's maps.
     pub(crate) fn auto_map_bytes(&self) -> u64 {
-        /// So many lights have maps of their own however large their maps would be.
+        /// Number of lights that can own maps even at the limit.
         const LIGHTS: u64 = 4;
         self.gpu.device.budget().bytes() / LIGHTS / u64::from(self.sharers)
     }
 
-    /// Random number index of a frame.
+    /// Index of the frame's random numbers.
     pub(crate) fn noise_frame(&self) -> u32 {
         self.noise_frame
     }
 
-    /// What passes that read casters' instances take off their places.
+    /// Anchor, world space: subtracted from instance positions by passes that read them.
     pub(crate) fn anchor(&self) -> Vec3 {
         self.anchor
     }
 
-    /// What tells the frame's casters from others, and from what they were; `None` where nothing does.
+    /// Key of the frame's casters and their version, relative to the anchor; `None` if changes are unknown.
     pub(crate) fn casters(&self) -> Option<CastersKey> {
         self.casters.map(|casters| casters.counted_from(self.anchor))
     }
 
-    /// Ends the frame: what is kept, and the uploads.
+    /// Ends the frame. Returns the retained state and the uploads.
     pub(crate) fn finish(self) -> (Keep, StagedUploads) {
         let gpu = self.gpu;
         let mut keep = self.into_keep();
@@ -194,14 +194,14 @@ impl<'a> Stage<'a> {
         (keep, staged)
     }
 
-    /// Ends a part of a frame: what is kept. Its uploads go with the frame's: each part has buffers of its own.
+    /// Ends a part of a frame. Returns its retained state; its uploads, to buffers of its own, join the frame's.
     pub(crate) fn finish_part(self, of_frame: &Stage<'_>) -> Keep {
         let mut keep = self.into_keep();
         of_frame.keep.borrow_mut().uploads.append(&mut keep.uploads);
         keep
     }
 
-    /// What is kept for the next frame.
+    /// Returns the state retained for the next frame, without long-unused resources.
     fn into_keep(self) -> Keep {
         let mut keep = self.keep.into_inner();
         let oldest = keep.frame.saturating_sub(KEPT_FRAMES);
@@ -213,12 +213,12 @@ impl<'a> Stage<'a> {
         keep
     }
 
-    /// A uniform buffer of the frame's own that holds `value`: the frame before had it for the same, by label and order.
+    /// Returns a uniform buffer that holds `value`, reused from the last frame by label and order of requests.
     pub(crate) fn uniform<T: bytemuck::NoUninit>(&self, label: &'static str, value: &T) -> wgpu::Buffer {
         self.uniform_array(label, std::slice::from_ref(value))
     }
 
-    /// The same of an array.
+    /// Returns a uniform buffer that holds an array, reused in the same way.
     pub(crate) fn uniform_array<T: bytemuck::NoUninit>(&self, label: &'static str, values: &[T]) -> wgpu::Buffer {
         let bytes = bytemuck::cast_slice::<T, u8>(values);
         let buffer = self.frame_buffer(label, UNIFORM, bytes.len() as u64);
@@ -226,7 +226,7 @@ impl<'a> Stage<'a> {
         buffer
     }
 
-    /// A storage buffer of the frame's own that holds `data`, which is not empty: WebGPU has no empty bindings.
+    /// Returns a storage buffer that holds `data`. It must not be empty, because WebGPU has no empty bindings.
     pub(crate) fn storage<T: bytemuck::NoUninit>(&self, label: &'static str, data: &[T]) -> wgpu::Buffer {
         let bytes = bytemuck::cast_slice::<T, u8>(data);
         let buffer = self.frame_buffer(label, STORAGE, bytes.len() as u64);
@@ -234,7 +234,7 @@ impl<'a> Stage<'a> {
         buffer
     }
 
-    /// The next of the frame's buffers of this label and usage, of exactly so many bytes.
+    /// Returns the frame's next buffer of this label and usage, of exactly `bytes` bytes.
     pub(crate) fn frame_buffer(&self, label: &'static str, usage: wgpu::BufferUsages, bytes: u64) -> wgpu::Buffer {
         let mut keep = self.keep.borrow_mut();
         let frame = keep.frame;
@@ -262,7 +262,7 @@ impl<'a> Stage<'a> {
         row.buffers[place].value.clone()
     }
 
-    /// Puts `bytes`, a multiple of four of them, into a buffer with usage `COPY_DST` before the frame's passes.
+    /// Uploads `bytes` to a buffer with usage `COPY_DST` before the frame's passes; their number is a multiple of four.
     pub(crate) fn upload(&self, to: &wgpu::Buffer, to_offset: u64, bytes: &[u8]) {
         if bytes.is_empty() {
             return;
@@ -280,13 +280,13 @@ impl<'a> Stage<'a> {
 }
 
 impl Keep {
-    /// Bytes of the frame's own buffers and of those that uploads pass through.
+    /// Memory of the frame's own buffers and of staging buffers, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let of_frame = self.buffers.values().flat_map(|row| &row.buffers).map(|buffer| buffer.value.size());
         of_frame.chain(self.staging.iter().map(|staging| staging.buffer.size())).sum()
     }
 
-    /// Texels along a side of the map of the frame prepared last, where its size was chosen for that frame.
+    /// Texels along a side of the last prepared frame's map, if its size is chosen per frame.
     pub(crate) fn auto_texels(&self) -> Option<u32> {
         self.auto_texels
     }

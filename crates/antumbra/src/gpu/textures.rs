@@ -1,8 +1,8 @@
-//! Views of layered textures, and the texture that stands in for none.
+//! Views of layered textures, and a placeholder texture.
 
 use super::Gpu;
 
-/// All layers of a texture, with all their levels.
+/// Creates a view of all layers and levels of a texture.
 pub(crate) fn array_view(gpu: &Gpu, texture: &wgpu::Texture) -> wgpu::TextureView {
     gpu.device.create_view(
         texture,
@@ -13,7 +13,7 @@ pub(crate) fn array_view(gpu: &Gpu, texture: &wgpu::Texture) -> wgpu::TextureVie
     )
 }
 
-/// The first level of each layer of a texture alone.
+/// Creates a view of each layer of a texture, first level only.
 pub(crate) fn slice_views(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
     let slice = |base_array_layer| {
         gpu.device.create_view(
@@ -30,12 +30,12 @@ pub(crate) fn slice_views(gpu: &Gpu, texture: &wgpu::Texture) -> Vec<wgpu::Textu
     (0..texture.depth_or_array_layers()).map(slice).collect()
 }
 
-/// One white texel, in the place of a surface's texture.
+/// Creates a texture of one white texel, a placeholder for a surface's texture.
 pub(crate) fn white_texture(gpu: &Gpu) -> wgpu::TextureView {
     texture_of(gpu, "antumbra white", wgpu::TextureFormat::Rgba8Unorm, 1, &[255; 4])
 }
 
-/// A square texture of so many texels a side, given row by row.
+/// Creates a square texture of `side` × `side` texels, given row by row.
 pub(crate) fn texture_of(
     gpu: &Gpu,
     label: &str,

@@ -1,14 +1,14 @@
-//! Trial binding of a host's texture view or buffer. wgpu does not tell a view's aspect, dimension or device, nor a buffer's
-//! device, so it is bound on trial.
+//! Trial binding of a host's texture view or buffer, because wgpu does not reveal a view's aspect, dimension or device, nor a
+//! buffer's device.
 
 use super::Gpu;
 
-/// What a view is bound as.
+/// Binding type of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ViewKind {
-    /// `texture_2d<f32>`, of any float format or of depth.
+    /// `texture_2d<f32>`, of any float or depth format.
     Float,
-    /// The same that is filtered.
+    /// `texture_2d<f32>` of a filterable format.
     Filtered,
     /// `texture_2d_array<f32>`.
     FloatArray,
@@ -17,8 +17,7 @@ pub(crate) enum ViewKind {
 }
 
 impl ViewKind {
-    /// What wgpu says against a view of this kind; `None` where nothing is wrong with it, or where a browser does not answer at
-    /// once.
+    /// Validation error that wgpu reports for a view of this kind, or `None`; `None` also if a browser does not answer at once.
     pub(crate) fn complaint(self, gpu: &Gpu, view: &wgpu::TextureView) -> Option<String> {
         complaint(gpu, self.binding_type(), wgpu::BindingResource::TextureView(view))
     }
@@ -37,7 +36,7 @@ impl ViewKind {
     }
 }
 
-/// What wgpu says against a storage buffer's being bound; `None` as [above](ViewKind::complaint).
+/// Validation error that wgpu reports for a storage buffer; `None` as for [`ViewKind::complaint`].
 pub(crate) fn storage_complaint(gpu: &Gpu, buffer: &wgpu::Buffer) -> Option<String> {
     let ty = wgpu::BufferBindingType::Storage { read_only: false };
     let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };

@@ -1,26 +1,26 @@
-//! Binding type of uniforms: uniform buffers, or storage buffers where a driver compiles their values in.
+//! Binding type of uniforms: uniform buffers, or storage buffers if the driver compiles uniform values into shaders.
 //!
-//! Mesa's software Vulkan before version 23 takes the values of uniforms that decide over branches and loops as constants: at
-//! every dispatch and draw it copies the shader, puts the values in and compiles the copy, which it keeps until the pipeline
-//! goes. A dispatch then costs some ten milliseconds whatever it does, and a process grows with each frame: by 0.8 to 9 MB in
-//! most techniques, and by 340 MB in `sample_based` on a street. Values from storage buffers stay values.
+//! Mesa's software Vulkan before version 23 treats uniform values that control branches and loops as constants: at every
+//! dispatch and draw it copies the shader, inserts the values and compiles the copy, which it keeps until the pipeline is
+//! destroyed. Every dispatch then costs some ten milliseconds, and the process grows with each frame: by 0.8 to 9 MB in most
+//! techniques, and by 340 MB in `sample_based` on a street. Values from storage buffers are not compiled in.
 //!
-//! But each lane of a vector loads them by itself, where a uniform is loaded once. Uniforms of numbers, over which hangs no branch
-//! alone, are left as they are: `reprojection_layered` scatters in .7 of the time that its views' matrices from storage take.
+//! A storage value is loaded by each lane of a vector, a uniform only once. Uniforms that no branch depends on alone therefore
+//! remain uniform buffers: `reprojection_layered` scatters in .7 of the time that it takes with its views' matrices in storage.
 //!
-//! This module is the one place that knows of it and of the uniforms that are left as they are: declarations of bind groups,
-//! shaders and buffers are the same on every device, and `device` passes them through here.
+//! Only this module knows of the replacement and its exceptions. Declarations of bind groups, shaders and buffers are the same
+//! on every device, and `device` passes them through here.
 
 use std::borrow::Cow;
 
 use super::quirks;
 
-/// Storage buffers that a stage may read where uniforms are such too: as many as WebGPU lets it read of both.
+/// Storage buffers per stage if uniforms are storage buffers, too: the sum of WebGPU's default limits for both.
 const STORAGE_BUFFERS: u32 = 8 + 12;
-/// The same of those whose place is chosen when the group is bound.
+/// Dynamic storage buffers per pipeline layout, the same sum.
 const DYNAMIC_STORAGE_BUFFERS: u32 = 4 + 8;
 
-/// WebGPU's default limits, and what [`UniformAccess`] needs where it matters.
+/// Returns WebGPU's default limits, raised if [`UniformAccess`] needs it on this adapter.
 pub(super) fn wanted_limits(adapter: &wgpu::AdapterInfo, allowed: &wgpu::Limits) -> wgpu::Limits {
     let defaults = wgpu::Limits::default();
     let raised = wgpu::Limits {
@@ -31,7 +31,7 @@ pub(super) fn wanted_limits(adapter: &wgpu::AdapterInfo, allowed: &wgpu::Limits)
     if quirks::compiles_uniform_values_in(adapter) && has_room(allowed) { raised } else { defaults }
 }
 
-/// Uniforms of one device: as such, or as storage buffers. Nothing else in the library knows which.
+/// Kind of a device's uniforms: uniform or storage buffers. No other module depends on the kind.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct UniformAccess {
     is_storage: bool,
@@ -42,7 +42,7 @@ fn has_room(limits: &wgpu::Limits) -> bool {
         && limits.max_dynamic_storage_buffers_per_pipeline_layout >= DYNAMIC_STORAGE_BUFFERS
 }
 
-/// Whether a pipeline's entries, as declared, have no more storage buffers than WebGPU's defaults.
+/// Whether a pipeline's entries, as declared, stay within WebGPU's default limits for storage buffers.
 pub(super) fn are_within_defaults(entries: &[wgpu::BindGroupLayoutEntry]) -> bool {
     let defaults = wgpu::Limits::default();
     let count = |is_counted: &dyn Fn(wgpu::ShaderStages, bool) -> bool| {
@@ -60,12 +60,12 @@ pub(super) fn are_within_defaults(entries: &[wgpu::BindGroupLayoutEntry]) -> boo
         && count(&|_, is_dynamic| is_dynamic) <= defaults.max_dynamic_storage_buffers_per_pipeline_layout
 }
 
-/// A uniform of numbers that decide over no branch and no loop by themselves: it stays one on every device.
+/// Uniform whose values control no branch or loop by themselves: it is a uniform buffer on every device.
 struct Numbers {
-    /// Its bind group's layout, and its place there.
+    /// Label of the bind group layout, and binding number.
     layout: &'static str,
     binding: u32,
-    /// Its name in linked shaders.
+    /// Name in linked shaders.
     name: &'static str,
 }
 
@@ -77,29 +77,29 @@ const NUMBERS: [Numbers; 5] = [
     Numbers { layout: "antumbra view-sample raster", binding: 4, name: "bits_light_words" },
 ];
 
-/// Whether a shader's uniform is of numbers.
+/// Whether a shader's uniform is listed in [`NUMBERS`].
 fn is_of_numbers(name: &str) -> bool {
     NUMBERS.iter().any(|numbers| numbers.name == name)
 }
 
-/// Whether a layout's uniform is of numbers.
+/// Whether a layout's binding is listed in [`NUMBERS`].
 fn is_bound_to_numbers(layout: &str, binding: u32) -> bool {
     NUMBERS.iter().any(|numbers| (numbers.layout, numbers.binding) == (layout, binding))
 }
 
-/// Fails where a shader's variable is of numbers in the shader and not in its bind group's layout, or the other way round.
+/// Asserts that [`NUMBERS`] lists a uniform by both its name in the shader and its binding in the layout, or by neither.
 #[cfg(test)]
 pub(super) fn assert_alike(layout: &str, binding: u32, name: &str) {
     assert_eq!(is_of_numbers(name), is_bound_to_numbers(layout, binding), "{layout}: {name} is numbers here or there");
 }
 
 impl UniformAccess {
-    /// What suits a device.
+    /// Returns the kind of uniforms for a device.
     pub(super) fn of(device: &wgpu::Device) -> Self {
         Self { is_storage: quirks::compiles_uniform_values_in(&device.adapter_info()) && has_room(&device.limits()) }
     }
 
-    /// The entries of a bind group's layout as the device gets them.
+    /// Returns the entries of a bind group layout as the device receives them.
     pub(super) fn layout_entries(
         self,
         label: &str,
@@ -117,7 +117,7 @@ impl UniformAccess {
         declared.iter().copied().map(as_made).collect()
     }
 
-    /// A shader as the device gets it. The layout of structs is the same in both kinds of buffers.
+    /// Returns a shader text as the device receives it. Structs have the same layout in both kinds of buffers.
     pub(super) fn shader_text(self, wgsl: Cow<'static, str>) -> Cow<'static, str> {
         const UNIFORM: &str = "var<uniform>";
         if !self.is_storage {
@@ -133,7 +133,7 @@ impl UniformAccess {
         text.into()
     }
 
-    /// A buffer's usage as the device gets it.
+    /// Returns a buffer's usage as the device receives it.
     pub(super) fn buffer_usage(self, usage: wgpu::BufferUsages) -> wgpu::BufferUsages {
         let is_read_as_storage = self.is_storage && usage.contains(wgpu::BufferUsages::UNIFORM);
         if is_read_as_storage { usage | wgpu::BufferUsages::STORAGE } else { usage }

@@ -1,4 +1,4 @@
-//! Casters' surfaces as shaders take them; `caster_surface.wesl` says what they do to light.
+//! Caster surfaces in the shaders' form; `caster_surface.wesl` defines how much light they stop.
 
 use glam::{Vec3, Vec4};
 
@@ -11,18 +11,18 @@ shared_constants! {
     pub(crate) const COVERAGE_CUTOFF: u32 = 2, as in VIEW_SAMPLES_EVALUATE;
 }
 
-/// A surface that is not opaque, but for its texture.
+/// Values of a surface that is not opaque, without its texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SurfaceValues {
-    /// What passes where the surface is, and its alpha: multiplies the texture.
+    /// Transmitted colour and alpha; multiplies the texture.
     pub(crate) factor: Vec4,
-    /// Of [`COVERAGE_CUTOFF`]: the least alpha that is there.
+    /// Smallest alpha that blocks light, for [`COVERAGE_CUTOFF`].
     pub(crate) cutoff: f32,
     pub(crate) coverage: u32,
 }
 
 impl SurfaceValues {
-    /// `None` of opaque surfaces.
+    /// Returns the values of a surface, or `None` if it is opaque.
     pub(crate) fn of(opacity: &Opacity<'_>) -> Option<Self> {
         match opacity {
             Opacity::Opaque => None,

@@ -1,4 +1,4 @@
-//! Views from the light's middle, fitted to casters and receivers.
+//! Views from the light's centre, fitted to casters and receivers.
 
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::Vec3;
@@ -8,14 +8,14 @@ use super::light_view::{FitTo, Followed, LightView, ViewFit, WindowShape};
 use super::occluding_bounds::Between;
 use crate::contract::SeenPoint;
 
-/// The light's view, fitted in a square window to casters' boxes and receivers' corners.
+/// Returns the light's view with a square window, fitted to casters' boxes and receivers' corners.
 pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
     let fit = FitTo { casters, receivers, window: WindowShape::Square };
     fit_central_view_within(light, Followed::Middle, central_reach(light), &fit)
 }
 
-/// How far the light reaches from where it is seen from: its centre, or of a list of points their mean, whatever centre it was
-/// given.
+/// Radius of the light about the origin of its views, metres, for a sun a tangent. The origin is the light's centre, or the mean
+/// of a list of points.
 pub(crate) fn central_reach(light: &Light) -> f32 {
     match &light.shape {
         LightShape::Points { .. } => light.moments().radius,
@@ -23,7 +23,7 @@ pub(crate) fn central_reach(light: &Light) -> f32 {
     }
 }
 
-/// What views from the light's middle are fitted to, whatever their windows.
+/// Fit target of views from the light's centre, for any window; `reach` as in [`fit_central_view_within`].
 pub(crate) fn central_fit(
     light: &Light,
     followed: Followed,
@@ -44,18 +44,18 @@ pub(crate) fn central_fit(
     }
 }
 
-/// The same where the light reaches no farther than `reach` from its middle along either of the window's axes: metres,
-/// for a sun a tangent.
+/// Returns the view from the centre of a light that extends at most `reach` from it along either of the window's axes:
+/// metres, for a sun a tangent.
 pub(crate) fn fit_central_view_within(light: &Light, followed: Followed, reach: f32, fit: &FitTo<'_>) -> LightView {
     central_fit(light, followed, reach, fit.casters, fit.receivers).view(fit.window)
 }
 
-/// A map's window may be warped where what is seen has texels of at most this width for it: half as wide. Texels of one
-/// size are steadier when the camera moves, and filters about them exact.
+/// Largest texel width on seen receivers, relative to a square window, for which another window is used. Texels of equal
+/// size are more stable when the camera moves, and filters over them are exact.
 const SEEN_MUST_GAIN: f32 = 0.5;
 
-/// The central view in the window, of any shape, that gives what is seen the smallest texels; in a square one where that
-/// gains little.
+/// Returns the central view with the window of any shape that gives seen receivers the smallest texels, or with a square
+/// window if that gains little.
 pub(crate) fn fit_seen_view(fit: &ViewFit, seen: &[SeenPoint]) -> LightView {
     let seen = fit.in_plane(seen);
     let square = fit.view(WindowShape::Square);

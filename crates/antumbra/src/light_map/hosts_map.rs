@@ -1,16 +1,16 @@
-//! A light depth map that the host has rendered, as a view of ours.
+//! Light view of a depth map that the host has rendered.
 //!
-//! What lies behind the farthest receiver shades none of them. So a map ends there, however deep, even infinitely, it was
-//! rendered, for techniques that divide its range: its empty texels are then no farther away than what they are compared with.
+//! Casters behind the farthest receiver shade none. So the map's range ends there, even if its far plane is farther or at
+//! infinity. For techniques that divide the range, empty texels are then no farther away than the receivers they are compared with.
 
 use super::light_view::{LightViewGpu, light_view_of_matrix};
 use crate::contract::{DepthMapCaster, Error, PreparedFrame};
 
-/// Of a map beyond whose nearest depth there is no receiver, so much is its range, as a part of that depth's distance.
+/// Smallest range of a map, as a fraction of its near plane's distance, if no receiver lies beyond the near plane.
 const LEAST_RANGE: f32 = 1e-3;
 
-/// The view that `map` was rendered in. Its range ends with the receivers, or where nothing is known of these where the matrix
-/// says: at [`f32::MAX`] where that is infinite.
+/// Returns the view of `map`. Its range ends with the receivers; if these are unknown, at the matrix's far plane, or at
+/// [`f32::MAX`] if that is at infinity.
 pub(crate) fn view_of_hosts_map(
     technique: &'static str,
     frame: &PreparedFrame<'_>,

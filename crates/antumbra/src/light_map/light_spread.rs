@@ -1,9 +1,9 @@
-//! A light as the soft kernels see it: bounds, mean and covariance of its points on its plane.
+//! Light shape for the soft kernels: bounds, mean and covariance of the light's points on its plane.
 
 use antumbra_light::{Light, LightShape};
 use glam::{Vec2, Vec3};
 
-/// Points' offsets from the light map's origin, across the light's axis; metres, or tangents for a sun.
+/// Distribution of light points' offsets from the light map's origin, across the light's axis; metres, or tangents for a sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightSpread {
     /// Bounds along right and up.
@@ -14,7 +14,7 @@ pub(crate) struct LightSpread {
     pub(crate) mean: Vec2,
     /// (xx, xy, yy) about the mean.
     pub(crate) covariance: Vec3,
-    /// Whether an ellipse is nearer to its shape than a parallelogram.
+    /// Whether an ellipse approximates the shape better than a parallelogram.
     pub(crate) is_round: bool,
 }
 
@@ -30,7 +30,7 @@ impl LightSpread {
         Self {
             extent,
             extent_axis,
-            // A list of points is seen from its mean.
+            // The view of a list of points is from their mean.
             mean: if matches!(light.shape, LightShape::Points { .. }) { Vec2::ZERO } else { moments.mean.truncate() },
             covariance: Vec3::new(moments.variance.x, moments.covariance.x, moments.variance.y),
             is_round: !matches!(light.shape, LightShape::Rectangle { .. }),

@@ -1,4 +1,4 @@
-//! One light map, rendered here or handed over by the host, with what lies behind it and a pyramid of it: bind group 1 of the
+//! One light map, rendered here or supplied by the host, with its depth pyramid and the layers behind it: bind group 1 of the
 //! passes that read it. The shader side is `map.wesl`.
 
 use std::sync::Arc;
@@ -21,51 +21,51 @@ use crate::gpu::{
     texels, write_uniform,
 };
 
-/// What the window of a map of our own may be.
+/// Shape of the light-plane window of a map rendered here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MapWindow {
-    /// A square along the light's right and up, for kernels that are counted in texels.
+    /// Square along the light's right and up axes, for kernels measured in texels.
     Square,
-    /// The same, but in a sun's cascades, which are long and narrow, a rectangle.
+    /// Square, except in a sun's cascades, which are long and narrow: a rectangle.
     Narrow,
-    /// Rolled, and warped to what is seen, where that makes its texels half as wide; in a sun's cascades a rectangle along the
-    /// light's right and up.
+    /// Rolled or warped to the seen receivers if that at least halves the width of their texels, else square; in a sun's cascades
+    /// a rectangle along the light's right and up axes.
     Seen,
 }
 
-/// A map of our own, and what lies behind it.
+/// Settings of a map rendered here and of the layers behind it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OwnMapSettings {
     /// Texels along a side.
     pub(crate) size: MapSize,
     pub(crate) window: MapWindow,
-    /// What of receivers' segments the window holds.
+    /// Receiver-to-light segments that the window must contain.
     pub(crate) followed: Followed,
-    /// Layers of casters, the map's own included; one but for [`MapSearch::Layers`].
+    /// Number of depth layers, including the map itself; 1 unless the search is [`MapSearch::Layers`].
     pub(crate) layers: u32,
-    /// Of what a technique makes of the map.
+    /// Bytes per map texel of what the technique derives from the map, which limit an automatic map size.
     pub(crate) more_bytes_per_texel: u32,
 }
 
 impl OwnMapSettings {
-    /// A square one, of the nearest casters alone.
+    /// Square map of the nearest casters, without further layers.
     pub(crate) fn square(size: MapSize) -> Self {
         Self { size, window: MapWindow::Square, followed: Followed::All, layers: 1, more_bytes_per_texel: 0 }
     }
 
-    /// The same, narrow in a sun's cascades.
+    /// [`Self::square`] with the window [`MapWindow::Narrow`].
     pub(crate) fn narrow(size: MapSize) -> Self {
         Self { window: MapWindow::Narrow, ..Self::square(size) }
     }
 }
 
-/// What a technique searches besides the map.
+/// Structures that a technique searches in addition to the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MapSearch {
     Nothing,
-    /// A min/max pyramid of it.
+    /// Min/max depth pyramid of the map.
     Pyramid,
-    /// The pyramid, and layers of casters behind the map's.
+    /// Depth pyramid, and peeled layers behind the map.
     Layers,
 }
 
@@ -77,12 +77,12 @@ bindings! {
         2 light_map_sampler: Sampler(samples::TAKES),
     }
 
-    /// The map, with a pyramid of it.
+    /// Bind group 1: the map and its depth pyramid.
     struct PyramidBindings = "light map with its pyramid", COMPUTE, with map: MapBindings {
         3 light_map_pyramid: Texture(texels::FLOAT),
     }
 
-    /// The map, with a pyramid of it and layers of casters behind it.
+    /// Bind group 1: the map, its depth pyramid, and the layers behind it.
     struct LayersBindings = "light map with layers behind it", COMPUTE, group 1 of [PCSS_RESOLVE, SMRT_RESOLVE, BITMASK_RESOLVE, BACKPROJECTION_RESOLVE],
         with searched: PyramidBindings
     {
@@ -90,22 +90,22 @@ bindings! {
     }
 }
 
-/// Size and layers of a frame's textures, which are kept while both stay.
+/// Size and layer count of a frame's textures; the textures are reused while both are unchanged.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::NoUninit)]
 struct Shape {
     size_px: UVec2,
-    /// Of casters, the map's own included; none of a host's map.
+    /// Number of depth layers, including the map itself; 0 for a host's map.
     layers: u32,
 }
 
-/// The textures of a shape.
+/// Textures of one [`Shape`].
 #[derive(Debug)]
 struct Textures {
     shape: Shape,
-    /// Of the map, where it is ours, of layers behind it and of its pyramid.
+    /// Lease of the map (if rendered here), the layers behind it, and its pyramid.
     lease: Lease,
-    /// A map of our own.
+    /// Map rendered here; `None` if the host supplies the map.
     map: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
 }
 
@@ -124,42 +124,42 @@ impl Textures {
     }
 }
 
-/// The bindings of a map, by what is searched besides.
+/// Bindings of a map, by [`MapSearch`].
 enum BoundMap<'a> {
     Alone(MapBindings<'a>),
     WithPyramid(PyramidBindings<'a>),
     WithLayers(LayersBindings<'a>),
 }
 
-/// One light map, with a min/max pyramid for techniques that search it: bind group 1 of their passes.
+/// One light map, with the pyramid and layers that a technique searches: bind group 1 of its passes.
 #[derive(Debug)]
 pub(crate) struct LightMap {
     technique: &'static str,
     casters: CasterDepth,
     pyramid: Option<DepthPyramid>,
     layers_behind: Option<LayersBehind>,
-    /// View, depth, sampler, and where there are such the pyramid at binding 3 and layers behind the map at 4.
+    /// Layout of bind group 1: view, depth, sampler; if searched, the pyramid at binding 3 and the layers behind the map at 4.
     pub(crate) layout: wgpu::BindGroupLayout,
     view_uniform: wgpu::Buffer,
     sampler: wgpu::Sampler,
     textures: Option<Textures>,
-    /// Of the map of our own, layers behind it and pyramid.
+    /// Cache key of the contents of the map, its layers and its pyramid.
     content: Content<(CastersKey, Vec<u8>)>,
-    /// Of the frame prepared last: the map, ours or the host's, and whether no other light draws into it.
+    /// Map of the last prepared frame, and whether no other light draws into it.
     last: Option<(wgpu::TextureView, bool)>,
     drawn: Option<DrawnMap>,
 }
 
-/// A map made ready for a frame.
+/// Map prepared for one frame.
 #[derive(Debug)]
 pub(crate) struct PreparedMap {
     /// Bind group 1.
     pub(crate) group: wgpu::BindGroup,
-    /// An earlier frame has drawn it.
+    /// Whether an earlier frame has drawn the map.
     is_drawn: bool,
     pub(crate) view: LightViewGpu,
     pub(crate) size_px: UVec2,
-    /// What it holds where there is no caster.
+    /// Depth of texels without a caster.
     pub(crate) empty_depth: f32,
 }
 
@@ -189,7 +189,7 @@ impl LightMap {
         }
     }
 
-    /// Fits the map, allocates it, and uploads where it lies; or takes the host's, behind which no layers are known.
+    /// Fits and allocates the map and uploads its view, or takes the host's map, which has no layers behind it.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -218,7 +218,7 @@ impl LightMap {
         };
         let light_half_extent_m = areal_half_extent_m(frame.light);
         if self.textures.as_ref().is_none_or(|textures| textures.shape != shape) {
-            // The budget gets back what textures of another shape took before more is taken.
+            // Textures of the old shape return their bytes to the budget before the new ones take theirs.
             self.textures = None;
             self.pyramid.iter_mut().for_each(DepthPyramid::release);
             self.layers_behind.iter_mut().for_each(LayersBehind::release);
@@ -248,14 +248,14 @@ impl LightMap {
         Ok(PreparedMap { group, is_drawn, view, size_px: shape.size_px, empty_depth })
     }
 
-    /// Of a map of so many texels along a side, with what is searched besides and what the technique makes of it.
+    /// Bytes of a map of `size`² texels with its layers, its pyramid, and what the technique derives from it.
     fn bytes_of(&self, settings: OwnMapSettings, size: u32) -> u64 {
         let of_pyramid = if self.pyramid.is_some() { DepthPyramid::bytes_of(UVec2::splat(size)) } else { 0 };
         let of_more = u64::from(settings.more_bytes_per_texel) * u64::from(size).pow(2);
         LayersBehind::bytes_of(size, settings.layers) + of_pyramid + of_more
     }
 
-    /// A map with whatever is searched besides.
+    /// Returns the bindings of `light_map` with its pyramid and layers, where there are any.
     fn bound<'a>(&'a self, light_map: &'a wgpu::TextureView) -> BoundMap<'a> {
         let map = MapBindings { light_view: &self.view_uniform, light_map, light_map_sampler: &self.sampler };
         let Some(light_map_pyramid) = self.pyramid.as_ref().and_then(DepthPyramid::view) else {
@@ -268,7 +268,7 @@ impl LightMap {
         }
     }
 
-    /// The group as a host's shader binds it, of the frame prepared last, and whether no other light's frame changes what it holds.
+    /// Bind group of the last prepared frame for a host's shader, and whether no other light's frame changes its contents.
     pub(crate) fn embedded(&self) -> Option<(EmbeddedGroup, bool)> {
         let (light_map, is_own) = self.last.as_ref()?;
         let group = match self.bound(light_map) {
@@ -279,8 +279,8 @@ impl LightMap {
         Some((group, *is_own))
     }
 
-    /// Records the map's pass and layers behind it (where it is ours), and its pyramid (where there is one); nothing where
-    /// they stand from the frame before.
+    /// Records the passes of the map and its layers (unless the host supplies the map) and of its pyramid (if there is one).
+    /// Records nothing if an earlier frame has drawn them.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMap) {
         if prepared.is_drawn {
             return;
@@ -299,7 +299,7 @@ impl LightMap {
         }
     }
 
-    /// The map of the frame prepared last, with what is searched besides; `None` where all lights share it.
+    /// Map of the last prepared frame with its layers and pyramid levels; `None` if lights share the map's texture.
     pub(crate) fn drawn(&self) -> Option<DrawnMap> {
         let map = self.drawn.clone()?;
         let layers_behind = self.layers_behind.as_ref().map(LayersBehind::drawn).unwrap_or_default();
@@ -307,18 +307,18 @@ impl LightMap {
         Some(DrawnMap { layers_behind, levels, ..map })
     }
 
-    /// Bytes of the map, of layers behind it and of its pyramid, where they are the light's own.
+    /// Bytes of the map, its layers and its pyramid; 0 if lights share the textures.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.textures.as_ref().map_or(0, |textures| textures.lease.own_bytes())
     }
 }
 
-/// The view of a map of our own, before its texels are laid where they stay.
+/// Returns the view of a map rendered here, before [`in_whole_texels`] aligns its texels.
 fn own_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>, casters: &[Aabb], settings: OwnMapSettings) -> LightView {
     let window = settings.window;
     let (followed, reach) = (settings.followed, central_reach(frame.light));
     if stage.stable_box().is_some() {
-        // What a cascade receives lies at depths that differ little, and a warp would move with the camera.
+        // A cascade's receivers lie at similar depths, so a warp would gain little, and it would move with the camera.
         let shape = if window == MapWindow::Square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
         let receivers = &corners_to_hold(stage, &frame.receivers);
         return fit_central_view_within(frame.light, followed, reach, &FitTo { casters, receivers, window: shape });
@@ -333,7 +333,7 @@ fn own_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>, casters: &[Aabb], sett
     fit_seen_view(&fit.for_many_windows(), &seen)
 }
 
-/// Half the sides of a light that has an area and a place, on its plane; zero for suns and lists of points.
+/// Half the sides of a light on its plane, metres; zero for suns and lists of points.
 fn areal_half_extent_m(light: &Light) -> Vec2 {
     match light.shape {
         LightShape::Sun { .. } | LightShape::Points { .. } => Vec2::ZERO,
@@ -341,7 +341,7 @@ fn areal_half_extent_m(light: &Light) -> Vec2 {
     }
 }
 
-/// A square depth map.
+/// Descriptor of a square depth map.
 fn descriptor(size: u32) -> wgpu::TextureDescriptor<'static> {
     wgpu::TextureDescriptor {
         label: Some("antumbra light map"),

@@ -1,16 +1,15 @@
-//! Number of texels of a map whose size is chosen for each frame.
+//! Automatic number of texels of a map, chosen for each frame.
 //!
-//! No edge of a shadow is sharper than a texel, and none need be sharper than a pixel. So a map has as many texels as make one
-//! half as wide, where receivers are seen, as a pixel is there: many for a large image of a camera that is near to what a light far
-//! off shades. What a penumbra's width would allow is not counted: under any light it is narrow where
-//! things touch.
+//! No shadow edge is sharper than a texel, and none need be sharper than a pixel. So texels are half as wide as a pixel where
+//! receivers are seen: a map has many texels for a large image, a near camera, or a distant light. Wide penumbrae would allow
+//! fewer texels, but do not count, since under any light the penumbra is narrow at contacts.
 //!
-//! Receivers are [`PreparedReceivers::seen_points`](crate::contract::PreparedReceivers::seen_points), the ratio of the two sizes is
-//! the geometric mean over them: a few that are near to the camera, for which hardly any map would do, weigh no more than others.
-//! Where points in the receivers' hull stand for what is seen, all count alike, too: most surfaces are at its far side.
-//! Sizes are steps of √2, and one is left when another is nearer by a quarter of a step, or by a whole one where the host has not said
-//! what is seen: a camera that moves to and fro makes no textures. The most is what the light may spend
-//! ([`Stage::auto_map_bytes`]), the least is [`USUAL_TEXELS`].
+//! The receivers are [`PreparedReceivers::seen_points`](crate::contract::PreparedReceivers::seen_points). The ratio of texel to pixel
+//! width is their unweighted geometric mean, so that a few receivers near the camera, for which hardly any map would suffice, do not
+//! dominate. Points of the receivers' hull, used if the host passes no seen points, are unweighted too: most surfaces are at its far side.
+//! Sizes are steps of √2 with hysteresis: a size is kept until the wanted one is a quarter of a step past the midpoint to the next, or a
+//! whole step if the host passes no seen points. So a camera that moves to and fro allocates no textures. The largest size is what the
+//! light's budget allows ([`Stage::auto_map_bytes`]), the smallest is [`USUAL_TEXELS`].
 
 use antumbra_light::Aabb;
 use glam::{Vec2, Vec3};
@@ -19,29 +18,29 @@ use super::light_view::{LightView, Window};
 use crate::contract::{Camera, MapSize, PreparedFrame, PreparedReceivers, SeenPoint};
 use crate::gpu::Stage;
 
-/// Sizes in an octave.
+/// Number of sizes per octave.
 const STEPS_IN_OCTAVE: f32 = 2.0;
 
-/// What is kept is left once it is farther than half a step from what is wanted, and this part of a step more.
+/// Hysteresis, in steps: the size changes once the wanted one is farther away than half a step plus this.
 const STAYS_FOR: f32 = 0.25;
 
-/// The same where points in the receivers' hull stand for what is seen.
+/// [`STAYS_FOR`] if points of the receivers' hull represent what is seen.
 const STAYS_UNSEEN_FOR: f32 = 1.0;
 
-/// The most, whatever a light may spend: what draws the map would take longer than all else.
+/// Largest size, whatever the budget: drawing a larger map would take longer than everything else.
 const MOST_TEXELS: u32 = 4096;
 
-/// What maps have where no camera sees the receivers; and the least, which every budget leaves, since fewer were worse ([`PIXELS`]).
+/// Size if no camera sees the receivers, and the smallest size, whatever the budget: fewer texels are worse ([`PIXELS`]).
 const USUAL_TEXELS: u32 = 1024;
 
-/// Sides are multiples of this, as workgroups are.
+/// Divisor of all sizes, texels: the side of a workgroup.
 const MULTIPLE: u32 = 8;
 
-/// What a texel's width is to be, in pixels. Of 1, `flight-helmet.glb` and `lantern.glb` have 728 texels at 1280 × 720, of ½ 1448. There
-/// `smrt` has rmse .0241, .0175, .0150, .0133 and .0145, .0095, .0081, .0069 with 512, 1024, 1448 and 2048 texels.
+/// Target width of a texel, in pixels. At 1280 × 720, a width of 1 gives `flight-helmet.glb` and `lantern.glb` 728 texels, ½ gives 1448.
+/// There `smrt` has rmse .0241, .0175, .0150, .0133 and .0145, .0095, .0081, .0069 with 512, 1024, 1448 and 2048 texels.
 const PIXELS: f32 = 0.5;
 
-/// Texels along a side of a map in a view of such casters, which with all that goes with it takes `bytes_of` its size.
+/// Returns the texels along a side of a map of `casters`. `bytes_of` gives the bytes of a size, with all that belongs to the map.
 pub(crate) fn map_texels(
     stage: &Stage<'_>,
     frame: &PreparedFrame<'_>,
@@ -54,7 +53,7 @@ pub(crate) fn map_texels(
         return texels;
     }
     let most = most_texels(stage.auto_map_bytes(), bytes_of, stage.device.limits().max_texture_dimension_2d);
-    // Parts of many lights have nothing to choose from.
+    // A budget shared by many lights or parts leaves no choice.
     if most <= USUAL_TEXELS {
         stage.note_auto_texels(most);
         return most;
@@ -72,10 +71,10 @@ pub(crate) fn map_texels(
     texels
 }
 
-/// Corners without those that come again: of what a camera sees the eye comes with every pair of planes, and points between corners would
-/// crowd before it.
+/// Removes repeated corners. In a camera's frustum the eye is a corner of every pair of planes, and points taken between corners would
+/// crowd near it.
 fn without_repeats(mut corners: Vec<Vec3>) -> Vec<Vec3> {
-    /// Of the size of all.
+    /// Distance of equal corners, as a fraction of the bounding box's diagonal.
     const NEAR: f32 = 1e-4;
     corners.retain(|corner| corner.is_finite());
     let near_m = NEAR * Aabb::of(corners.iter().copied()).diagonal();
@@ -87,14 +86,14 @@ fn without_repeats(mut corners: Vec<Vec3>) -> Vec<Vec3> {
     })
 }
 
-/// The most that the light may spend, and the device has.
+/// Returns the largest size that fits `bytes`, at least [`USUAL_TEXELS`], and at most the device's `limit`.
 fn most_texels(bytes: u64, bytes_of: impl Fn(u32) -> u64, limit: u32) -> u32 {
     let steps = (0..=(MOST_TEXELS as f32).log2() as u32 * STEPS_IN_OCTAVE as u32).rev();
     let affordable = steps.map(|step| texels_of(step as f32)).find(|texels| bytes_of(*texels) <= bytes);
     affordable.unwrap_or(0).max(USUAL_TEXELS).min(limit)
 }
 
-/// The size nearest to some texels, or the one that was before, where that is nearly as near.
+/// Returns the size nearest to `wanted`, or the previous one if that is nearly as near.
 fn step_of(wanted: f32, before: Option<u32>, stays_for: f32) -> u32 {
     let step = wanted.max(1.0).log2() * STEPS_IN_OCTAVE;
     let nearest = texels_of(step.round());
@@ -107,8 +106,8 @@ fn texels_of(step: f32) -> u32 {
     ((texels / MULTIPLE as f32).round() as u32).max(1) * MULTIPLE
 }
 
-/// Texels along a side that make those on receivers as wide as [`PIXELS`] are there, in an image of so many rows; `None` where nothing is
-/// seen.
+/// Returns the texels along a side for which texels on the receivers are [`PIXELS`] wide, in an image of `height_px` rows; `None` if
+/// nothing is seen.
 fn wanted_texels(camera: &Camera, height_px: u32, seen: &[SeenPoint], view: &LightView) -> Option<f32> {
     let ratios = seen
         .iter()
@@ -117,13 +116,13 @@ fn wanted_texels(camera: &Camera, height_px: u32, seen: &[SeenPoint], view: &Lig
     (!logs.is_empty()).then(|| (logs.iter().sum::<f32>() / logs.len() as f32).exp())
 }
 
-/// How wide a pixel is at a place, across the view.
+/// Width of a pixel at `x`, metres across the view.
 fn pixel_m(camera: &Camera, height_px: u32, x: Vec3) -> f32 {
     let w = (camera.clip_from_view * camera.view_from_world).row(3).dot(x.extend(1.0));
     2.0 * w / (camera.clip_from_view.y_axis.y.abs() * height_px as f32)
 }
 
-/// How wide a map of one texel is at a place, across the light: the wider of its sides, which blurs the more.
+/// Width of a map of one texel at `x`, metres across the light: its wider side, which blurs more.
 fn map_m(view: &LightView, x: Vec3) -> f32 {
     let p = x - view.frame.center;
     let z = if view.perspective { p.dot(view.frame.axis).max(view.near_m) } else { 1.0 };
@@ -150,7 +149,7 @@ mod tests {
         fit_light_view(&light, &[GROUND], &GROUND.corners())
     }
 
-    /// Looks straight down from a height.
+    /// Camera that looks straight down from `height_m`.
     fn camera(height_m: f32) -> Camera {
         Camera {
             view_from_world: view::look_at_mat4(Vec3::new(0.0, height_m, 0.0), Vec3::ZERO, Vec3::Z),
@@ -165,7 +164,7 @@ mod tests {
         (0..81).map(at).collect()
     }
 
-    /// What is chosen makes so many texels a pixel, by the map's own projection and the image's.
+    /// The chosen size gives 1 / [`PIXELS`] texels per pixel, by the projections of map and camera.
     #[test]
     fn texels_are_as_wide_as_parts_of_pixels() {
         let map = lamp_above();
@@ -184,7 +183,7 @@ mod tests {
         }
     }
 
-    /// Many times the map that a few receivers before the camera's nose ask for would change nothing else.
+    /// A single receiver close to the camera must not enlarge the map, since that would improve nothing else.
     #[test]
     fn what_is_near_the_camera_weighs_no_more() {
         let mut seen = ground();
@@ -210,7 +209,7 @@ mod tests {
         assert_eq!(step_of(0.0, None, STAYS_FOR), MULTIPLE);
     }
 
-    /// No map costs more than a light may spend, but what is usual it always may.
+    /// Maps stay within the light's budget, but [`USUAL_TEXELS`] are always allowed.
     #[test]
     fn sizes_keep_within_what_may_be_spent() {
         let of = |per_texel: u64| move |texels: u32| per_texel * u64::from(texels).pow(2);

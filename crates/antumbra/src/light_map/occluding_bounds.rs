@@ -1,39 +1,39 @@
-//! Part of casters' boxes between a light and the receivers: no other part of them can shade anything, be it as large as
-//! it may.
+//! Parts of casters' bounding boxes between a light and the receivers. The other parts, however large, cannot shade
+//! anything.
 
 use antumbra_light::{Aabb, Light};
 use glam::Vec3;
 
 use super::swept_volume::Sweep;
 
-/// A box with a side farther from where the frame counts places from, metres, is taken for unknown: where somebody knew it, the
+/// Largest coordinate of a known box, metres from the frame's anchor. A larger box counts as unknown: even if it is known, the
 /// part of it that matters is no smaller.
 pub(crate) const KNOWN_REACH_M: f32 = 1e5;
 
-/// Nor does a box say where a caster is that is open over so far before what a sun's light reaches, metres.
+/// Length along a sun's axis, metres, above which the part of a box in front of the receivers counts as unknown.
 const OPEN_M: f32 = 512.0;
 
-/// Unknown casters may stand so far before what a sun's light reaches, metres. Those that are farther are drawn where the device
-/// keeps what lies before a near plane, as if they stood there.
+/// Largest distance of unknown casters in front of a sun's receivers, metres. Farther ones are drawn as if they were there,
+/// provided that the device can draw geometry in front of the near plane.
 const UNKNOWN_REACH_M: f32 = 16_384.0;
 
-/// A box about as large as the region of what matters, or smaller, is left as it is: whatever moves in it moves no window.
+/// Largest size of a box that is not cut, relative to the region that matters: motion inside such a box moves no window.
 const WIDE: f32 = 2.0;
 
-/// A region is widened by this part of its size: what lies on its border is in it.
+/// Enlargement of a region, as a fraction of its size, so that it contains its border.
 const SLACK: f32 = 1e-3;
 
-/// Boxes of what of the casters lies between light and receivers, or larger ones.
+/// Bounding boxes of the parts of casters between light and receivers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Between {
-    /// Of casters whose bounds are known.
+    /// Boxes of casters with known bounds.
     pub(crate) known: Vec<Aabb>,
-    /// Of all others together.
+    /// Union of the boxes of all others; `None` if there are none.
     pub(crate) unknown: Option<Aabb>,
 }
 
 impl Between {
-    /// `receivers` span what receives; without any, casters are as they are.
+    /// Cuts the casters' boxes. The convex hull of `receivers` contains all receivers; if it is empty, boxes stay whole.
     pub(crate) fn new(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> Self {
         let parts = Parts::of(light, receivers);
         let mut between = Self::default();
@@ -49,7 +49,7 @@ impl Between {
         between
     }
 
-    /// Boxes that are known, whole.
+    /// Takes whole boxes as known.
     #[cfg(test)]
     pub(crate) fn of_known(boxes: &[Aabb]) -> Self {
         Self { known: boxes.to_vec(), unknown: None }
@@ -61,23 +61,23 @@ impl Between {
     }
 }
 
-/// How far a box reaches along an axis.
+/// Length of a box along an axis.
 fn length_along(bounds: &Aabb, axis: Vec3) -> f32 {
     (bounds.max - bounds.min).dot(axis.abs())
 }
 
-/// Whether a box, whose places are counted from near a light or a camera, tells anything.
+/// Whether a box is bounded enough to be useful. Its coordinates are relative to a point near a light or a camera.
 pub(crate) fn is_known(bounds: &Aabb) -> bool {
     bounds.min.abs().max_element() <= KNOWN_REACH_M && bounds.max.abs().max_element() <= KNOWN_REACH_M
 }
 
-/// What takes the part of a box that matters.
+/// Region to which boxes are cut.
 enum Parts {
-    /// Where nothing is known of what receives.
+    /// All of space, if the receivers are unknown.
     All,
-    /// The box about a lamp and its receivers.
+    /// Bounding box of a lamp and its receivers.
     Box(Aabb),
-    /// What receivers sweep towards a sun.
+    /// Volume that the receivers sweep towards a sun.
     Sweep(Sweep),
 }
 

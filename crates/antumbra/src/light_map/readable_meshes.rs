@@ -1,8 +1,8 @@
-//! Casters whose triangles compute reads.
+//! Check that compute shaders can read the casters' triangles.
 
 use crate::contract::{Error, MeshCaster, PreparedCasters, PreparedFrame};
 
-/// The casters' meshes, if compute can read them; else what would be right, `or` what would do without.
+/// Returns the casters' meshes if compute shaders can read them, else an error with the remedy; `or` names an alternative.
 pub(crate) fn readable_meshes<'a>(
     technique: &'static str,
     frame: &PreparedFrame<'a>,

@@ -1,9 +1,9 @@
 //! Stable views under a sun: texels stay in place in the world while the camera moves.
 //!
-//! Such a map is not fitted to what receives but to a box about it that mostly stays ([`Stage::stable_box`]). Where it does not,
-//! the new map's texels fall on the old one's places: sides are one of few, so that texels are mostly as wide, and windows
-//! lie in whole texels from the world's origin. So do near and far plane in steps of their own, since filtered depths are
-//! parts of the range between.
+//! Such a map is fitted not to the receivers but to a box around them that rarely changes ([`Stage::stable_box`]). When the box
+//! changes, the new map's texels coincide with the old one's: window sides are quantised, so that texels mostly keep their
+//! width, and windows lie at whole texels from the world's origin. Near and far plane are quantised, too, since filtered
+//! depths are fractions of the range between them.
 
 use antumbra_light::LightFrame;
 use glam::{DVec2, DVec3, UVec2, Vec2, Vec3};
@@ -12,18 +12,18 @@ use super::light_view::{LightView, Window};
 use crate::contract::PreparedReceivers;
 use crate::gpu::Stage;
 
-/// Sides of windows in an octave: a few in a hundred texels are not used.
+/// Number of window sides per octave: a few percent of the texels are unused.
 const SIDES_IN_OCTAVE: f64 = 32.0;
 
-/// Steps of near and far plane in the range between.
+/// Number of steps in the range between near and far plane to which both are rounded.
 const DEPTH_STEPS: f64 = 32.0;
 
-/// What a map whose window lies along the light's axes is fitted to: points whose convex hull holds what receives.
+/// Returns points whose convex hull contains the receivers, to which maps with a window along the light's axes are fitted.
 pub(crate) fn corners_to_hold(stage: &Stage<'_>, receivers: &PreparedReceivers<'_>) -> Vec<Vec3> {
     stage.stable_box().map_or_else(|| receivers.corners(), |corners| corners.to_vec())
 }
 
-/// The view as it is, or where texels are to stay where they are, one that holds as much, for a map of so many texels.
+/// Returns a view that contains `view` and has stable texels in a map of `map_size` texels, or `view` if it needs no stable texels.
 pub(crate) fn in_whole_texels(stage: &Stage<'_>, view: LightView, map_size: UVec2) -> LightView {
     let is_level = view.window.warp == Vec2::ZERO && view.window.roll == Vec2::X;
     if stage.stable_box().is_none() || view.perspective || !is_level {
@@ -35,11 +35,11 @@ pub(crate) fn in_whole_texels(stage: &Stage<'_>, view: LightView, map_size: UVec
 fn laid_in_texels(view: LightView, map_size: UVec2, anchor: Vec3) -> LightView {
     let LightFrame { center, right, up, axis } = view.frame;
     let axes = [right, up, axis].map(Vec3::as_dvec3);
-    // Of the window's middle, from the world's origin.
+    // Coordinates of the window's centre, from the world's origin.
     let origin = center.as_dvec3() + anchor.as_dvec3();
     let [x, y, z] = axes.map(|axis| axis.dot(origin));
     let middle = DVec2::new(x, y) + view.window.center.as_dvec2();
-    // A texel more, of which half is given up on one of its sides.
+    // One texel more, since rounding moves the centre by up to half a texel.
     let sides = 2.0 * view.window.half_size.as_dvec2();
     let least = sides.max_element() * (1.0 + 1.0 / f64::from(map_size.min_element()));
     let longer = ((least.log2() * SIDES_IN_OCTAVE).ceil() / SIDES_IN_OCTAVE).exp2();
@@ -68,7 +68,7 @@ mod tests {
 
     const MAP_SIZE: UVec2 = UVec2::new(1000, 640);
 
-    /// A window about a place in the plane, so wide, of what is so deep.
+    /// View with a window of the given centre and half size, and the given depth range.
     fn view(center: Vec2, half_size: f32, [near_m, far_m]: [f32; 2], origin: Vec3) -> LightView {
         let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.01 }, Vec3::ZERO, Vec3::new(0.5, -0.4, 0.3));
         let frame = LightFrame { center: origin, ..sun.frame() };
@@ -77,14 +77,14 @@ mod tests {
         LightView { frame, perspective: false, window, near_m, far_m, held_from_m: 0.0 }
     }
 
-    /// Where in texels of its map a place of the world is.
+    /// Position of `x` in the view's map, in texels.
     fn texel_of(view: LightView, x: Vec3) -> Vec2 {
         let at = view.clip_from_world_f64().project_point3(x.as_dvec3()).truncate() * DVec2::new(0.5, -0.5) + 0.5;
         (at * MAP_SIZE.as_dvec2()).as_vec2()
     }
 
-    /// Whatever moves a window by parts of a texel, and the range of depths by a little, places stay in their texels, the
-    /// range is the same, and the map holds what it held.
+    /// If a window moves by fractions of a texel and its depth range changes slightly, points keep their position within texels,
+    /// the depth range is the same, and the map contains the requested window.
     #[test]
     fn texels_stay_where_they_are() {
         let x = Vec3::new(3.0, 1.0, -2.0);
@@ -104,7 +104,7 @@ mod tests {
             let moved_texels = texel_of(laid, x) - texel;
             let off = (moved_texels - moved_texels.round()).abs().max_element();
             assert!(off < 0.02, "frame {i}: {moved_texels} texels");
-            // Corners of what was asked for are inside.
+            // Corners of the requested view are inside.
             for corner in [Vec2::ONE, -Vec2::ONE, Vec2::new(1.0, -1.0)] {
                 let LightFrame { center, right, up, axis } = moved.frame;
                 let at = moved.window.center + moved.window.half_size * corner;
@@ -118,7 +118,7 @@ mod tests {
         }
     }
 
-    /// Counted from elsewhere, texels are where they were.
+    /// Texels do not depend on the anchor.
     #[test]
     fn anchors_leave_texels_where_they_are() {
         let x = Vec3::new(3.0, 1.0, -2.0);

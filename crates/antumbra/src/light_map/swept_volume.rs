@@ -1,9 +1,9 @@
-//! Volume that a convex body sweeps towards a sun, in which its occluders are.
+//! Volume that a convex body sweeps towards a sun; it contains all occluders of the body.
 
 use antumbra_light::{Aabb, Light, polytope_corners};
 use glam::{DVec4, Vec2, Vec3};
 
-/// A body's box along a sun's axes.
+/// Bounds of a body along a sun's axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sweep {
     axes: [Vec3; 3],
@@ -11,12 +11,12 @@ pub(crate) struct Sweep {
     max: Vec2,
     nearest: f32,
     deepest: f32,
-    /// Of the cone about the axis from which light comes.
+    /// Tangent of the half angle of the cone of light directions around the axis.
     tangent: f32,
 }
 
 impl Sweep {
-    /// Of the convex hull of some points.
+    /// Returns the sweep of the convex hull of `points`.
     pub(crate) fn of(sun: &Light, points: &[Vec3]) -> Self {
         let frame = sun.frame();
         let mut sweep = Self {
@@ -35,14 +35,14 @@ impl Sweep {
         sweep
     }
 
-    /// Whether all that another sweeps, along the same axes, is in what this sweeps.
+    /// Whether this volume contains another one along the same axes.
     #[cfg(test)]
     pub(crate) fn holds(&self, other: &Self) -> bool {
         let across = self.min.cmple(other.min).all() && self.max.cmpge(other.max).all();
         across && self.deepest >= other.deepest
     }
 
-    /// Its longer side.
+    /// Longer side across the axis, metres.
     #[cfg(test)]
     pub(crate) fn width(&self) -> f32 {
         (self.max - self.min).max_element()
@@ -52,8 +52,8 @@ impl Sweep {
         Vec3::from_array(self.axes.map(|axis| axis.dot(x)))
     }
 
-    /// The part of a box that may stand between the body and the sun no farther than `reach_m` before the body, or a larger one;
-    /// `None` where nothing of it may. Of a box that reaches anywhere.
+    /// Returns bounds of the part of a box that may lie between the body and the sun, at most `reach_m` in front of the body; `None`
+    /// if there is no such part. For boxes of any extent.
     pub(crate) fn part_within(&self, bounds: &Aabb, reach_m: f32) -> Option<Aabb> {
         let reach = self.tangent * (self.deepest - self.nearest + reach_m);
         let axis = self.axes[2].as_dvec3();
@@ -61,23 +61,23 @@ impl Sweep {
         self.cut(bounds, self.min - reach, self.max + reach, Some(before))
     }
 
-    /// The part of a box that may stand between the body and the sun, or a larger one; `None` where nothing of it may.
+    /// Returns bounds of the part of a box that may lie between the body and the sun; `None` if there is no such part.
     pub(crate) fn part_of(&self, bounds: &Aabb) -> Option<Aabb> {
         let corners = Aabb::of(bounds.corners().map(|corner| self.along_axes(corner)));
-        // The farther before the body, the wider the cone.
+        // The cone widens with the distance in front of the body.
         let reach = self.tangent * (self.deepest - corners.min.z).max(0.0);
         let (min, max) = (self.min - reach, self.max + reach);
         let is_beside = corners.max.truncate().cmplt(min).any() || corners.min.truncate().cmpgt(max).any();
         if is_beside || corners.min.z > self.deepest {
             return None;
         }
-        // A ground's box under a low sun is a thousand times as deep as what stands before a few metres of it. What is
-        // hardly wider than the sweep is left as it is.
+        // Under a low sun, a ground's box is a thousand times as deep as its part in front of a few metres. Boxes hardly
+        // wider than the sweep are not cut.
         let is_wide = (corners.max - corners.min).truncate().max_element() > 2.0 * (max - min).max_element();
         Some(if is_wide { self.cut(bounds, min, max, None).unwrap_or(*bounds) } else { *bounds })
     }
 
-    /// The box of what of a box lies within these sides, not behind the body, and in front of one plane more.
+    /// Returns bounds of the part of a box within these sides, not behind the body, and in front of the plane `more`.
     fn cut(&self, bounds: &Aabb, min: Vec2, max: Vec2, more: Option<DVec4>) -> Option<Aabb> {
         let [right, up, axis] = self.axes.map(Vec3::as_dvec3);
         let (min, max) = (min.as_dvec2(), max.as_dvec2());
@@ -89,7 +89,7 @@ impl Sweep {
             (-axis).extend(f64::from(self.deepest)),
         ];
         let planes = [&sides[..], &bounds.planes(), more.as_slice()].concat();
-        // Room for rounding, as wide as what is cut out at the most.
+        // Scale of the rounding tolerance: the largest possible size of the cut.
         let size_m = f64::from(bounds.diagonal()).min((max - min).length() + f64::from(self.deepest - self.nearest));
         let cut = Aabb::of(polytope_corners(&planes, size_m));
         (!cut.is_empty()).then_some(Aabb { min: cut.min.max(bounds.min), max: cut.max.min(bounds.max) })

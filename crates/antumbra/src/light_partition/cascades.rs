@@ -1,16 +1,16 @@
 //! Cascades of a sun: ranges of depth along the camera's view, each with maps of its own.
 //!
-//! A map of all that a camera sees has texels as wide as the farthest receivers want them, which is far too wide for what
-//! is near. In a cascade from depth `a` to depth `b` a map's texel covers about `b / a` times as many pixels at the near end
-//! as at the far one, so ends that grow by one ratio waste the least (Zhang, Sun, Xu, Lun, "Parallel-split shadow maps for
+//! A single map of all that a camera sees has texels as wide as the farthest receivers need, which is far too wide for near
+//! ones. In a cascade from depth `a` to depth `b` a map's texel covers about `b / a` times as many pixels at the near end
+//! as at the far one, so ends with a constant ratio waste the least (Zhang, Sun, Xu, Lun, "Parallel-split shadow maps for
 //! large-scale virtual environments", VRCIA 2006; Lloyd, Govindaraju, Quammen, Molnar, Manocha, "Logarithmic perspective
-//! shadow maps", TOG 27(4), 2008), and where they begin is best taken from what is seen (Lauritzen, Salvi, Lefohn, "Sample
+//! shadow maps", TOG 27(4), 2008). Their first depth is best taken from the seen points (Lauritzen, Salvi, Lefohn, "Sample
 //! distribution shadow maps", I3D 2011).
 //!
-//! Ends that followed what is seen to the centimetre would lie elsewhere in every frame of a walk. They are
-//! [`ONE_END_M`] times the powers of [`CASCADE_RATIO`], and what is seen says which of them there are: so an end never moves
-//! along the view, and one that comes or goes does so at one end of what is seen, where hardly any pixel is. Those that were
-//! there in the frame before are left out a little later than others are taken in.
+//! Ends that followed the seen points exactly would move in every frame of a walk. Instead, ends are [`ONE_END_M`] times
+//! the powers of [`CASCADE_RATIO`], and the seen points only select the powers: an end never moves along the view, and it
+//! appears or disappears only at the nearest or farthest seen depth, where there are hardly any pixels. With hysteresis,
+//! ends of the previous frame are dropped later than new ones are added.
 
 use antumbra_light::Light;
 use glam::{Vec2, Vec3};
@@ -18,39 +18,39 @@ use glam::{Vec2, Vec3};
 use super::region::Region;
 use crate::contract::PreparedReceivers;
 
-/// Depths within this ratio need no cascades.
+/// Ratio of the farthest to the nearest depth up to which there are no cascades.
 const WORTH_SLICES: f32 = 16.0;
 
-/// How much deeper a cascade ends than it begins. Less gives more cascades, whose far ends have no finer texels.
+/// Ratio of a cascade's far to its near depth. A smaller one gives more cascades, without finer texels at their far ends.
 pub(super) const CASCADE_RATIO: f32 = 2.5;
 
-/// Where one of the cascades ends, metres: others at 9.1, 23, 143, 356.
+/// Depth of one end of cascades, metres; others are at 9.1, 23, 143, 356.
 pub(super) const ONE_END_M: f32 = 57.0;
 
-/// What is nearer than this part of the farthest receiver is in the first slice: there are eight of them at most within two
-/// kilometres.
+/// Depth, as a fraction of the farthest receiver's, below which everything is in the first cascade: so there are at most eight
+/// within two kilometres.
 const NEAREST_SHARE: f32 = 1.0 / 512.0;
 
-/// But the first cascade begins no farther than this, metres: a world's bounds may reach anywhere, and what is seen of it is near.
+/// Upper limit of that depth, metres: a world's bounds may be arbitrarily large while the receivers that are seen are near.
 const FARTHEST_BEGIN_M: f32 = 4.0;
 
-/// Where nothing is known of what is seen, little is taken to be nearer than this, metres.
+/// Assumed nearest depth if no seen points are known, metres.
 const USUALLY_NEAREST_M: f32 = 0.5;
 
-/// The part of the points seen that may be nearer than where cascades begin.
+/// Fraction of the seen points that may be nearer than the nearest depth of cascades.
 const LEFT_NEARER: f32 = 0.01;
 
-/// A map of usual size has so many texels along a side.
+/// Texels along a side of a map of usual size.
 const USUAL_TEXELS: f32 = 1024.0;
 
-/// Texels of one map are small enough where they are no wider than so many pixels at the end of a cascade that began at the
-/// nearest that is seen.
+/// Largest texel width for which a single map suffices, in pixels at the far end of a cascade that begins at the nearest seen
+/// depth.
 const FINE_PIXELS: f32 = 2.0;
 
-/// What there was in the frame before stays until what asks for it has changed by this factor.
+/// Hysteresis: cascades and ends of the previous frame are kept until the quantity that requires them has changed by this factor.
 const STAYS_FOR: f32 = 1.25;
 
-/// Where cascades end: at the powers of [`CASCADE_RATIO`] from `first` to `last`, times [`ONE_END_M`].
+/// Ends of cascades: the powers of [`CASCADE_RATIO`] from `first` to `last`, times [`ONE_END_M`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CascadeEnds {
     first: i32,
@@ -58,13 +58,13 @@ pub(super) struct CascadeEnds {
 }
 
 impl CascadeEnds {
-    /// Whether there is one at this power.
+    /// Whether there is an end at this power.
     fn has(self, power: i32) -> bool {
         (self.first..=self.last).contains(&power)
     }
 
-    /// The ends between two depths; `None` where there is none. Those of the frame before are kept as long as they lie
-    /// between, others are taken once they do by far.
+    /// Returns the ends between two depths, or `None` if there are none. Ends of the previous frame are kept while they lie
+    /// between the depths; new ones must do so by the factor [`STAYS_FOR`].
     fn between(from: f32, to: f32, before: Option<Self>) -> Option<Self> {
         let is_between = |power: &i32| {
             let end = end_m(*power);
@@ -78,16 +78,16 @@ impl CascadeEnds {
     }
 }
 
-/// A cascade.
+/// One cascade.
 #[derive(Clone, Debug)]
 pub(super) struct Cascade {
-    /// The same for what lies between the same depths.
+    /// Identifier, which depends only on the depth range.
     pub(super) id: u32,
     pub(super) region: Region,
 }
 
-/// The cascades, from near to far; none where one map does as well. `corners` span all receivers, `ends` are those of the
-/// frame before, and then of this one. Points, which no camera sees, have none.
+/// Returns the cascades from near to far; none if a single map suffices, or for points without a camera. `corners` span all
+/// receivers. `ends` are those of the previous frame, and are replaced by this frame's.
 pub(super) fn cascades_of(
     sun: &Light,
     receivers: &PreparedReceivers<'_>,
@@ -117,7 +117,7 @@ pub(super) fn cascades_of(
     }
     *ends = Some(found);
     let beyond = |power: i32| forward.extend(-end_m(power));
-    // The first holds all that is nearer, the last all that is farther.
+    // The first cascade also contains all that is nearer, the last all that is farther.
     let cascade = |power: i32| {
         let begins = found.has(power).then(|| beyond(power));
         let ends = found.has(power + 1).then(|| -beyond(power + 1));
@@ -127,15 +127,15 @@ pub(super) fn cascades_of(
     (found.first - 1..=found.last).map(cascade).collect()
 }
 
-/// Where the cascades of a power end.
+/// Depth of the end at a power, metres.
 fn end_m(power: i32) -> f32 {
     ONE_END_M * CASCADE_RATIO.powi(power)
 }
 
-/// Below the power of any depth in single precision.
+/// Power below that of any depth in single precision.
 const LEAST_POWER: i32 = -128;
 
-/// From which depth to which there are receivers, but for few that are nearer. `corners` span them all.
+/// Returns the nearest and farthest depth of receivers, metres, without a few nearer ones. `corners` span all receivers.
 fn depths_of(receivers: &PreparedReceivers<'_>, corners: &[Vec3], eye: Vec3, forward: Vec3) -> (f32, f32) {
     let depth = |x: &Vec3| (*x - eye).dot(forward);
     let (nearest, farthest) =
@@ -147,7 +147,7 @@ fn depths_of(receivers: &PreparedReceivers<'_>, corners: &[Vec3], eye: Vec3, for
     (first_seen.unwrap_or(nearest.max(USUALLY_NEAREST_M)).max(least), farthest)
 }
 
-/// The longer side of a map that holds some points.
+/// Longer side of a map that contains `points`, metres.
 fn width_across(sun: &Light, points: &[Vec3]) -> f32 {
     let frame = sun.frame();
     let (min, max) = points.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(min, max), x| {

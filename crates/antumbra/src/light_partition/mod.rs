@@ -1,24 +1,24 @@
-//! Partition of a light's receivers into parts, where one planar map cannot hold them.
+//! Partition of a light's receivers into parts, if one planar map cannot hold them.
 //!
-//! A planar map holds less than a half-space, and the texels that its outer degrees take are missed in its middle. So what
-//! receives is cut into *parts*, each a convex region about the light with a view that suits it; the technique runs for
-//! each part as if it were a light of its own, on receivers of which all others are background; and what it gives goes into
-//! the light's mask. No technique knows of it. Each pixel is in one part, by planes whose signs alone differ between
-//! neighbours, and each part's maps hold all that shades its receivers: so there is no seam to see but in what the maps'
-//! own texels are.
+//! A planar map holds less than a half-space, and the texels of its outer degrees are missing in its middle. So the receivers
+//! are divided into *parts*, each a convex region about the light with a view that suits it. The technique runs for each
+//! part as if it were a light of its own, with all other receivers as background, and its result is copied to the light's
+//! mask. Techniques know nothing of parts. Each pixel is in exactly one part, since neighbours share planes that differ only
+//! in sign, and each part's maps hold all casters that shade its receivers. So seams show only as far as the texels of two
+//! maps differ.
 //!
 //! | light | parts |
 //! |---|---|
-//! | that is held to 70° of its axis, or whose receivers lie there | one: the light as it is, and no pass more |
-//! | that shines all around | the faces of a cube about it; a technique sees six lights of 90° |
-//! | a sun, whose receivers' depths differ much | cascades along the camera's view: [`cascades`], that stay where they are: [`stable_boxes`] |
-//! | before its plane | its middle, [`MIDDLE_TANGENT`] wide, and about it square rings to the horizon, four sides each, in the same light plane |
+//! | limited to 70° off its axis, or with all receivers there | one: the undivided light, without further passes |
+//! | shines all around | the faces of a cube about it; a technique sees six lights of 90° |
+//! | a sun with receivers at very different depths | [`cascades`] along the camera's view that stay in place ([`stable_boxes`]) |
+//! | shines from one side of a plane | its middle up to [`MIDDLE_TANGENT`], and square rings up to the horizon, of four sides each |
 //!
-//! Where shadows end at a distance from the camera, parts end there too, and a light without parts is one part; what lies
-//! beyond is in none and lit, and before it shadows fade on their way into the mask.
+//! If shadows end at a distance from the camera, parts end there, too, and an undivided light is one part. Receivers beyond
+//! are in no part and lit, and shadows fade towards that distance when they are written to the mask.
 //!
-//! Parts without receivers are left out, and casters that shade none of a part's receivers are not drawn for it. A part
-//! without casters has the smallest maps; and where no more than one of a light's rings has any, the light is one part.
+//! Parts without receivers are omitted, and casters that shade none of a part's receivers are not drawn for it. A part
+//! without casters has the smallest maps. If at most one of the middle and rings has casters, the light is not divided.
 //!
 //! ```text
 //! receivers ─► pick ─► receivers of a part ─► technique ─► join ─► mask
@@ -26,11 +26,11 @@
 //! ```
 //!
 //! # Limits
-//! Receivers nearer to the light than it is large lie beside some of its points: what such a point sees of them may be in
-//! another part's maps. Beyond the last ring, within a degree of the light's plane, texels of a map that is cut there are
-//! missed: [`HORIZON_TANGENT`]. Under a sun what is so far before a cascade that it blurs over more than all of it may lie
-//! beside its map. What a technique gets wrong by its map's texels is another thing on the two sides of an edge: `hard`,
-//! `pcss` and `multi_view` err as little across edges as beside them, `essm` twice as much (`builtin:lamp-room`, 160 × 90).
+//! Receivers nearer to the light than its radius lie beside some of its points: their blockers towards such a point may be in
+//! another part's maps. Beyond the last ring, within a degree of the light's plane, maps are cut and texels are missing:
+//! [`HORIZON_TANGENT`]. Under a sun, casters so far in front of a cascade that they blur over more than all of it may lie
+//! outside its map. Errors from a map's texels differ on the two sides of a part's edge: `hard`, `pcss` and `multi_view`
+//! have errors as small across edges as beside them, `essm` twice as large (`builtin:lamp-room`, 160 × 90).
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -53,45 +53,45 @@ mod tests;
 use region::{Body, Region};
 use stable_boxes::StableBoxes;
 
-/// How much of what a light reaches a state of a technique covers by itself.
+/// Directions around a light that a technique covers without a partition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Coverage {
-    /// What one planar map holds.
+    /// Directions that one planar map holds.
     Window,
-    /// All that is before the light's plane.
+    /// Half-space in front of the light's plane.
     HalfSpace,
-    /// All around the light.
+    /// All directions.
     Everything,
 }
 
-/// A part of what a light reaches.
+/// Part of a light: a cube face, a ring's side, a cascade, or the whole light.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Part {
-    /// Which of the parts that there may be: the same from frame to frame.
+    /// Identifier of the part, stable from frame to frame.
     pub(crate) id: u32,
-    /// The light as this part's receivers see it.
+    /// Light as this part's receivers see it.
     pub(crate) light: Light,
-    /// What its receivers lie in.
+    /// Region that contains the part's receivers.
     pub(crate) region: Region,
-    /// Corners of a convex body that holds them.
+    /// Corners of a convex body that contains these receivers.
     pub(crate) hull: Vec<Vec3>,
-    /// Those of the points that the camera is known to see.
+    /// Seen points of the frame that lie in the region.
     pub(crate) seen: Vec<Vec3>,
-    /// Corners of a box that holds the hull and mostly stays where it is; of a sun's cascade.
+    /// Corners of a box that contains the hull and rarely changes; `None` unless the light is a sun.
     pub(crate) stable_box: Option<[Vec3; 8]>,
 }
 
-/// How far rings reach, as a multiple of the ring inside: each map's texels then differ about as much as the middle's.
+/// Ratio of a ring's outer to its inner tangent: texels then vary about as much in each map as in the middle's.
 const RING_RATIO: f32 = 4.0;
 
-/// A cube's faces reach so much farther than their regions, as tangents: no receiver at an edge is left out by rounding.
+/// Tangent by which views of cube faces exceed their regions, so that rounding loses no receiver at an edge.
 const FACE_OVERLAP: f32 = 1e-3;
 
-/// The number of the part that is all there is.
+/// Identifier of the part that is the whole light.
 const WHOLE: u32 = u32::MAX;
 
-/// The parts of a frame whose places are counted from an anchor; none where the light as it is does for all of them. `still`
-/// is what the frames before left, `shared` what other lights have found.
+/// Returns the parts of a frame with positions relative to `anchor`; none if the undivided light suffices. `stable_boxes` persist
+/// from frame to frame, `shared` has values found for other lights.
 pub(crate) fn parts_of(
     frame: &PreparedFrame<'_>,
     coverage: Coverage,
@@ -121,8 +121,8 @@ pub(crate) fn parts_of(
     }
     let radius_m = central_reach(light);
     let with_receivers = sectors.into_iter().filter_map(|(id, Sector { light, region, along })| {
-        // Those that are nearer than the light is large, if there are others, are in the region and not in the hull: seen
-        // from the light's rim they lie in any direction, and a view that held them would hold little else.
+        // Receivers nearer than the light's radius are in the region but, if there are others, not in the hull: seen from
+        // the light's rim they lie in any direction, and a view that held them would hold little else.
         let beyond_light = along.extend(-radius_m);
         let mut hull = if radius_m > 0.0 { region.corners_within(body, beyond_light) } else { Vec::new() };
         if hull.is_empty() {
@@ -130,7 +130,7 @@ pub(crate) fn parts_of(
         }
         let seen = receivers.seen.iter().copied().filter(|x| region.holds(*x)).collect();
         let stable_box = (light.is_distant() && !hull.is_empty()).then(|| stable_boxes.hold(id, &hull, anchor));
-        // Without receivers the whole is still a part: where nothing is near enough, that is what has to be known.
+        // The whole light is a part even without receivers: an empty list would mean the undivided light.
         (!hull.is_empty() || id == WHOLE).then_some(Part { id, light, region, hull, seen, stable_box })
     });
     let parts: Vec<Part> = with_receivers.collect();
@@ -141,8 +141,8 @@ pub(crate) fn parts_of(
     parts
 }
 
-/// Whether the light as it is does for all receivers, whose convex hull these corners span, as far as that is told without
-/// looking at what the camera sees of them.
+/// Whether the undivided light suffices for all receivers, whose convex hull these corners span. Does not consider which
+/// receivers the camera sees.
 fn does_as_it_is(frame: &PreparedFrame<'_>, coverage: Coverage, corners: &[Vec3]) -> bool {
     let light = frame.light;
     let is_open = light.shines_all_around() || light.is_distant();
@@ -151,21 +151,21 @@ fn does_as_it_is(frame: &PreparedFrame<'_>, coverage: Coverage, corners: &[Vec3]
     is_hosts_map || coverage >= enough || light.validate().is_err() || one_map_holds(light, corners)
 }
 
-/// Whether receivers of one part alone have casters, of a light whose view is that of all of its parts: its map holds those
-/// casters, and what lies beside it is lit.
+/// Whether at most one part has casters, for a light whose own view holds all of its parts: its map then contains these
+/// casters, and receivers outside the map are lit.
 fn one_view_suffices(light: &Light, parts: &[Part], meshes: &[MeshCaster<'_>]) -> bool {
     let has_casters = |part: &&Part| !part.casters_of(meshes).is_empty();
     !light.is_distant() && !light.shines_all_around() && parts.iter().filter(has_casters).count() <= 1
 }
 
-/// Whether one map holds all of some corners' hull that a lamp reaches; of a sun that is another question.
+/// Whether one map holds all that a lamp reaches of the hull of some corners; `false` for suns.
 fn one_map_holds(light: &Light, corners: &[Vec3]) -> bool {
     let reaches_no_farther = light.reach_tangent().is_some_and(|tangent| tangent <= MIDDLE_TANGENT);
     !light.is_distant() && (reaches_no_farther || is_within(corners, &middle_frame(light), MIDDLE_TANGENT))
 }
 
-/// What the light reaches, cut into what one map holds each, with numbers that are the same from frame to frame; none where
-/// one does for all of the body.
+/// Divides the light's reach into sectors that one map holds each, with identifiers stable from frame to frame; none if one map
+/// holds all of the body.
 fn sectors_of(
     light: &Light,
     receivers: &PreparedReceivers<'_>,
@@ -185,24 +185,24 @@ fn sectors_of(
     }
 }
 
-/// A part that there may be.
+/// Candidate for a part: it becomes one if it has receivers.
 #[derive(Clone, Debug, PartialEq)]
 struct Sector {
     light: Light,
     region: Region,
-    /// The unit vector from the light into the region's middle; zero where there is no such.
+    /// Unit vector from the light into the region's middle; zero if there is none.
     along: Vec3,
 }
 
 impl Sector {
-    /// All that a light reaches.
+    /// Sector of all that a light reaches.
     fn whole(light: &Light) -> Self {
         Self { light: light.clone(), region: Region::of_planes(light.center, Vec::new()), along: Vec3::ZERO }
     }
 }
 
 impl Part {
-    /// The casters that may shade the part's receivers, with the bounds of what of them may.
+    /// Returns the casters that may shade the part's receivers, for suns with bounds cut to the part that may.
     pub(crate) fn casters_of<'a>(&self, casters: &[MeshCaster<'a>]) -> Vec<MeshCaster<'a>> {
         if self.light.is_distant() && !self.hull.is_empty() {
             let held = self.stable_box.as_ref().map_or(&self.hull[..], |corners| &corners[..]);
@@ -215,7 +215,7 @@ impl Part {
     }
 }
 
-/// Points whose convex hull holds every receiver: of the casters' boxes where nothing more is known.
+/// Returns points whose convex hull contains all receivers: corners of the casters' boxes if nothing more is known.
 fn corners_of(receivers: &PreparedReceivers<'_>, meshes: &[MeshCaster<'_>]) -> Vec<Vec3> {
     let mut corners = receivers.corners();
     if corners.is_empty() {
@@ -225,7 +225,7 @@ fn corners_of(receivers: &PreparedReceivers<'_>, meshes: &[MeshCaster<'_>]) -> V
     corners
 }
 
-/// The light's axes about where it is seen from: its centre, or the mean of its points.
+/// Light's axes about the origin of its views: its centre, or the mean of its points.
 fn middle_frame(light: &Light) -> LightFrame {
     let frame = light.frame();
     match light.shape {
@@ -243,7 +243,7 @@ fn is_within(points: &[Vec3], frame: &LightFrame, tangent: f32) -> bool {
     })
 }
 
-/// The light as it looks along each of its axes and their opposites, held to a frustum of 90 degrees.
+/// Returns the light turned along each of its axes and their opposites, limited to a frustum of 90 degrees.
 fn cube_of(light: &Light, frame: &LightFrame) -> Vec<Sector> {
     let LightFrame { center, right, up, axis } = *frame;
     // Axis, up, right: the same vectors, to the bit, on both sides of an edge.
@@ -264,7 +264,7 @@ fn cube_of(light: &Light, frame: &LightFrame) -> Vec<Sector> {
     faces.into_iter().map(of_face).collect()
 }
 
-/// The light's shape as said along other axes of its own.
+/// Returns the light's shape in terms of other axes of its own.
 fn shape_along(light: &Light, axes: [Vec3; 3]) -> LightShape {
     match &light.shape {
         LightShape::Ellipsoid { radii_m } => {
@@ -278,10 +278,10 @@ fn shape_along(light: &Light, axes: [Vec3; 3]) -> LightShape {
     }
 }
 
-/// The middle of what is before the light, and square rings about it, up to the frustum that it is held to.
+/// Returns the middle sector in front of the light, and square rings around it, up to the light's own frustum.
 fn rings_of(light: &Light, frame: &LightFrame) -> Vec<Sector> {
     let LightFrame { center, right, up, axis } = *frame;
-    // In front of these is what is farther off the axis than a tangent, along a direction.
+    // Plane in front of which points are farther off the axis than a tangent, along a direction.
     let beyond = |tangent: f32, along: Vec3| along - tangent * axis;
     let reach = light.reach_tangent().unwrap_or(f32::INFINITY);
     let sides = [right, up, -right, -up];

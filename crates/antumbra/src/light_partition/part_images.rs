@@ -1,5 +1,5 @@
-//! Images of one part's receivers and mask. A pass picks the receivers, the technique runs on them, a pass joins its mask to the light's. One
-//! set of images serves all parts and all lights: it is filled and read before the next part.
+//! Images of one part's receivers and mask. A pass picks the receivers, the technique runs on them, and a pass joins its mask to
+//! the light's. One set of images serves all parts and all lights: it is filled and read before the next part.
 
 use std::num::NonZeroU64;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ bindings! {
 }
 
 gpu_structs! {
-    /// How a part's mask comes into the light's.
+    /// Parameters for joining a part's mask to the light's.
     pub(crate) struct JoiningGpu {
         is_first: u32,
         padding_0: u32,
@@ -40,21 +40,21 @@ gpu_structs! {
     }
 }
 
-/// Offsets of bindings are multiples of WebGPU's default alignment.
+/// Stride of bindings in a buffer, bytes: WebGPU's default alignment of offsets.
 const SLOT_BYTES: usize = 256;
 
-/// What takes a frame's receivers apart and joins masks.
+/// Passes that pick the receivers of parts and join their masks.
 #[derive(Debug)]
 pub(crate) struct PartImages {
     inputs: FrameInputs,
     layouts: [wgpu::BindGroupLayout; 2],
     pick: wgpu::ComputePipeline,
     join: wgpu::ComputePipeline,
-    /// A texture of one texel in place of normals that the host has.
+    /// Texture of one texel in place of normals, if the host has them.
     no_normals: wgpu::TextureView,
-    /// The same in place of depth that points have none of.
+    /// Texture of one texel in place of depth, for points.
     no_depth: wgpu::TextureView,
-    /// Of the last frame.
+    /// Image of the last frame.
     image: Option<PartImage>,
 }
 
@@ -63,7 +63,7 @@ pub(crate) struct PartImages {
 pub(crate) struct PreparedPartImages {
     inputs: PreparedInputs,
     image: PartImage,
-    /// Part by part, groups of `pick` and, where parts have a mask of their own, of `join`.
+    /// Bind groups by part: of `pick` and, if parts have a mask of their own, of `join`.
     groups: Vec<(wgpu::BindGroup, Option<wgpu::BindGroup>)>,
     pick: wgpu::ComputePipeline,
     join: wgpu::ComputePipeline,
@@ -72,13 +72,13 @@ pub(crate) struct PreparedPartImages {
 /// Receivers and mask of a part.
 #[derive(Clone, Debug)]
 struct PartImage {
-    /// None of points, which normals alone tell from background.
+    /// Depth; `None` for points, since normals mark their background.
     depth: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
-    /// None where the host's do.
+    /// Normals; `None` if the host's are used.
     normals: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
-    /// None where parts write noisy visibility.
+    /// Mask; `None` if parts write noisy visibility.
     mask: Option<Mask>,
-    /// Of the mask.
+    /// Texture of the mask.
     scratch: Option<Arc<wgpu::Texture>>,
 }
 
@@ -111,7 +111,7 @@ impl PartImages {
         }
     }
 
-    /// Makes ready for the parts of a frame, whose mask is of 32 bits, or whose visibility is noisy.
+    /// Prepares the parts of a frame. The frame's mask must have 32 bits per channel, or its visibility must be noisy.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -144,7 +144,7 @@ impl PartImages {
 }
 
 impl PreparedPartImages {
-    /// A part's frame: its light, its receivers, a mask of its own; the frame's casters.
+    /// Returns a part's frame: the part's light, receivers and mask, and the frame's casters.
     pub(crate) fn frame_of<'a>(&'a self, frame: &PreparedFrame<'a>, part: &'a Part) -> PreparedFrame<'a> {
         let image = &self.image;
         let surfaces = match (&image.depth, frame.receivers.surfaces) {
@@ -164,12 +164,12 @@ impl PreparedPartImages {
         PreparedFrame { light: &part.light, receivers, mask, ..*frame }
     }
 
-    /// Records the receivers of part `i`.
+    /// Records the pass that picks the receivers of part `i`.
     pub(crate) fn pick(&self, recorder: &mut Recorder<'_>, i: usize) {
         self.record(recorder, "receivers of a part", &self.pick, &self.groups[i].0);
     }
 
-    /// Records the way of its mask into the frame's, where it has one.
+    /// Records the pass that joins the mask of part `i`, if it has its own, to the frame's.
     pub(crate) fn join(&self, recorder: &mut Recorder<'_>, i: usize) {
         if let Some(group) = &self.groups[i].1 {
             self.record(recorder, "mask of a part", &self.join, group);
@@ -193,11 +193,11 @@ impl PreparedPartImages {
 }
 
 impl PartImage {
-    /// With the textures of an earlier one, where they do.
+    /// Creates the image, and reuses the mask of an earlier one if its texture is the same.
     fn prepare(stage: &Stage<'_>, frame: &PreparedFrame<'_>, earlier: Option<&Self>) -> Self {
         let receivers = &frame.receivers;
         let are_seen = receivers.camera().is_some();
-        // The host's normals are read where they are, and depth beside them.
+        // The host's normals are read in place, so depth has the same texel positions.
         let size_px = receivers.origin_px + receivers.size_px;
         let texture = |scratch, format| {
             let texture = stage.device.scratch_texture(scratch, &receivers_of(format, size_px));
@@ -217,8 +217,8 @@ impl PartImage {
     }
 }
 
-/// Regions of some parts and how their masks are joined, a slot each, in one buffer: one upload for all. It has room for as many
-/// parts as a light mostly has, which come and go. No uniforms, since drivers may compile for their values.
+/// Uploads the regions and joining parameters of all parts into one buffer, in slots. It has room for the usual number of parts,
+/// which come and go. It is no uniform buffer, since drivers may specialise shaders for uniform values.
 fn places_of_parts(stage: &Stage<'_>, parts: &[Part]) -> wgpu::Buffer {
     const ROOM: usize = 8;
     let mut bytes = vec![0u8; 2 * SLOT_BYTES * parts.len().next_multiple_of(ROOM)];

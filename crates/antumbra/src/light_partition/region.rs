@@ -1,4 +1,4 @@
-//! A convex part of space about a light: a few planes.
+//! Convex region of space about a light, bounded by a few planes.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use glam::{DVec4, Vec3, Vec4};
 use crate::contract::{MeshCaster, PreparedReceivers};
 use crate::gpu::{SharedValues, gpu_structs};
 
-/// Planes that a region may have: as many as `light_partition/region.wesl` has room for.
+/// Largest number of a region's planes, as in `light_partition/region.wesl`.
 const MOST_PLANES: usize = 6;
 
 gpu_structs! {
@@ -20,10 +20,10 @@ gpu_structs! {
     }
 }
 
-/// Where `plane · (x − origin, 1) ≥ 0` for all planes.
+/// Region of points x with `plane · (x − origin, 1) ≥ 0` for all planes.
 ///
-/// Two regions that share a side have its plane with opposite signs, to the bit: of any place, rounding or not, one of
-/// them says that it is inside.
+/// Two regions that share a side have its plane with opposite signs, to the bit: whatever the rounding, every point is inside
+/// at least one of them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Region {
     origin: Vec3,
@@ -31,19 +31,19 @@ pub(crate) struct Region {
 }
 
 impl Region {
-    /// In front of planes through the origin that have these normals, of any length.
+    /// Region in front of planes through the origin with these normals, of any length.
     pub(crate) fn cone(origin: Vec3, normals: &[Vec3]) -> Self {
         debug_assert!(normals.len() <= MOST_PLANES, "{} planes", normals.len());
         Self { origin, planes: normals.iter().map(|normal| normal.extend(0.0)).collect() }
     }
 
-    /// In front of planes about the origin.
+    /// Region in front of planes given relative to the origin.
     pub(crate) fn of_planes(origin: Vec3, planes: Vec<Vec4>) -> Self {
         debug_assert!(planes.len() <= MOST_PLANES, "{} planes", planes.len());
         Self { origin, planes }
     }
 
-    /// Takes off what is behind a plane of the world.
+    /// Cuts off what is behind a world-space plane.
     pub(crate) fn add(&mut self, plane: DVec4) {
         debug_assert!(self.planes.len() < MOST_PLANES, "{} planes and one more", self.planes.len());
         let normal = plane.truncate();
@@ -67,17 +67,17 @@ impl Region {
         self.planes.iter().all(|plane| plane.truncate().dot(x - self.origin) + plane.w >= 0.0)
     }
 
-    /// Corners of the part of a body that is inside, and in front of one plane more, about the origin; none where there is
-    /// no such part.
+    /// Returns the corners of the part of `body` inside the region and in front of the plane `more`, which is relative to the
+    /// origin; empty if there is no such part.
     pub(crate) fn corners_within(&self, body: &Body, more: Vec4) -> Vec<Vec3> {
         let of_region = self.planes.iter().chain([&more]).map(|plane| self.in_world(*plane));
         body.polytope.corners_within(&of_region.collect::<Vec<_>>())
     }
 
-    /// The casters that may stand between what is inside and a light about the origin that reaches `radius_m` from it.
+    /// Returns the casters that may lie between points inside and a light of radius `radius_m` about the origin.
     pub(crate) fn casters_of<'a>(&self, casters: &[MeshCaster<'a>], radius_m: f32) -> Vec<MeshCaster<'a>> {
-        // Receivers are in front of each plane, the light's points no farther behind it than the origin and the radius,
-        // and so is what lies between.
+        // Receivers are in front of each plane, and light points at most by the radius farther behind it than the
+        // origin; the same holds for all points between them.
         let least = |plane: &Vec4| (plane.w - radius_m * plane.truncate().length()).min(0.0);
         let planes: Vec<(Vec4, f32)> = self.planes.iter().map(|plane| (*plane, least(plane))).collect();
         let may_shade = |caster: &&MeshCaster<'a>| {
@@ -86,7 +86,7 @@ impl Region {
                 let normal = plane.truncate();
                 let farthest = Vec3::select(normal.cmpge(Vec3::ZERO), max, min) - self.origin;
                 let in_front = normal.dot(farthest) + plane.w;
-                // A box without numbers may be anywhere.
+                // A box with NaN may be anywhere.
                 in_front.is_nan() || in_front >= *least
             })
         };
@@ -96,20 +96,20 @@ impl Region {
     }
 }
 
-/// A convex body that holds every receiver.
+/// Convex body that contains every receiver.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
-    /// Of those planes alone that bound it: what is cut out of it has few corners to look for.
+    /// Polytope of only those planes that bound the body, so that cuts have few corners to compute.
     polytope: Polytope,
     corners: Vec<Vec3>,
 }
 
-/// What a body depends on: points, and the planes that the camera sees between.
+/// Cache key of a body: points, and the planes between which the camera sees.
 type BodyKey = (Vec<Vec3>, Vec<DVec4>);
 
 impl Body {
-    /// What the camera sees of the convex hull of some corners, as far as there are shadows, or little more. Lights that see the
-    /// same receivers share it.
+    /// Returns a body that contains what the camera sees of the convex hull of some corners, up to the shadow distance. Lights with
+    /// the same receivers share it.
     pub(crate) fn of(
         receivers: &PreparedReceivers<'_>,
         corners: Vec<Vec3>,
@@ -133,7 +133,7 @@ impl Body {
         Self { polytope: Polytope::new(&planes, size_m), corners }
     }
 
-    /// Its corners, each several times over.
+    /// Corners, each repeated several times.
     pub(crate) fn corners(&self) -> &[Vec3] {
         &self.corners
     }

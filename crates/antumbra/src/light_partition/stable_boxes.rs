@@ -1,27 +1,27 @@
 //! Boxes that keep a cascade's maps in place while the camera moves.
 //!
-//! A map that is fitted to what the camera sees lies elsewhere in every frame of a walk, and its texels with it: edges crawl
-//! over what stands still, filters change their minds, and all is drawn again. So what a cascade receives is held by a box
-//! along the sun's axes, somewhat larger than it, and the box stays as long as it holds it and is not far too large. Its side
-//! is one of few: a new box mostly has the old one's texels, and is laid in whole ones of them by
+//! A map fitted to what the camera sees moves in every frame of a walk, and its texels with it: edges and filtered shadows of
+//! static objects flicker, and the map must be redrawn. So a cascade's receivers are enclosed in a slightly larger box along
+//! the sun's axes, which is kept while it contains them and is not far too large. Its side is quantised, so that a new box
+//! mostly has texels of the old size, and the map's texels are aligned with the old ones by
 //! [`in_whole_texels`](crate::light_map::stable_fit::in_whole_texels) (Valient, "Stable rendering of cascaded shadow maps",
-//! ShaderX6, 2008, who fits spheres instead: those never change their size, and are up to twice as wide).
+//! ShaderX6, 2008, fits spheres instead, which never change their size and are up to twice as wide).
 
 use antumbra_light::Light;
 use glam::{DVec3, Vec3};
 
 use super::cascades::CascadeEnds;
 
-/// A box is larger than what it holds by this part of its longer side at least, on each side.
+/// Smallest margin of a box on each side, as a fraction of the longer side of what it contains.
 const SLACK: f64 = 1.0 / 128.0;
 
-/// Sides of boxes in an octave.
+/// Number of box sides per octave.
 const SIDES_IN_OCTAVE: f64 = 32.0;
 
-/// A box is too large where one of as many sides less would do.
+/// Largest number of steps by which a box's side may exceed the smallest that suffices.
 const TOO_LARGE: f64 = 5.0;
 
-/// Of one light, from frame to frame.
+/// Stable boxes of one light, kept from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StableBoxes {
     /// The sun's axes, which the boxes lie along.
@@ -30,19 +30,19 @@ pub(crate) struct StableBoxes {
     pub(super) ends: Option<CascadeEnds>,
 }
 
-/// A box about what a part receives, its coordinates along the axes and from the world's origin, wherever frames are counted
-/// from.
+/// Box around a part's receivers, with coordinates along the axes from the world's origin, independent of the frame's
+/// anchor.
 #[derive(Clone, Copy, Debug)]
 struct StableBox {
     part: u32,
     min: DVec3,
     max: DVec3,
-    /// The longer side across the axis.
+    /// Longer side across the axis, metres.
     side_m: f64,
 }
 
 impl StableBoxes {
-    /// Begins a frame: boxes along other axes are forgotten.
+    /// Begins a frame: discards boxes along other axes.
     pub(super) fn begin(&mut self, sun: &Light) {
         let frame = sun.frame();
         let axes = [frame.right, frame.up, frame.axis];
@@ -51,13 +51,13 @@ impl StableBoxes {
         }
     }
 
-    /// Ends it: boxes of parts that it had not are forgotten.
+    /// Ends a frame: discards boxes of parts that it did not have.
     pub(super) fn keep(&mut self, is_part: impl Fn(u32) -> bool) {
         self.boxes.retain(|held| is_part(held.part));
     }
 
-    /// The corners of a box that holds some points of a part, all counted from an anchor: the frame's before, where that
-    /// does.
+    /// Returns the corners of a box that contains a part's points, all relative to `anchor`: the previous frame's box if it
+    /// suits.
     pub(super) fn hold(&mut self, part: u32, points: &[Vec3], anchor: Vec3) -> [Vec3; 8] {
         let axes = self.axes.map(Vec3::as_dvec3);
         let along = |x: &Vec3| DVec3::from_array(axes.map(|axis| axis.dot(x.as_dvec3() + anchor.as_dvec3())));
@@ -98,7 +98,7 @@ fn longer_side(min: DVec3, max: DVec3) -> f64 {
     (max - min).truncate().max_element()
 }
 
-/// The least side of those that there are that leaves slack about so much.
+/// Returns the smallest quantised side that leaves slack around `needed_m`.
 fn side_for(needed_m: f64) -> f64 {
     let least = (needed_m * (1.0 + 2.0 * SLACK)).max(1e-6);
     ((least.log2() * SIDES_IN_OCTAVE).ceil() / SIDES_IN_OCTAVE).exp2()

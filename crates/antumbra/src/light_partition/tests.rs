@@ -14,7 +14,7 @@ fn unit(i: u32) -> Vec3 {
     Vec3::from_array([0, 1, 2].map(|k| unit_f32(hash_u32(3 * i + k)) * 2.0 - 1.0))
 }
 
-/// The lights of all regions that there may be.
+/// All sectors that a light may have.
 fn all_parts(light: &Light) -> Vec<Sector> {
     let frame = middle_frame(light);
     if light.shines_all_around() { cube_of(light, &frame) } else { rings_of(light, &frame) }
@@ -29,7 +29,7 @@ fn every_place_that_is_reached_is_in_a_part_that_reaches_it() {
         let frame = light.frame();
         let parts = all_parts(&light);
         for i in 0..20_000 {
-            // Every other one close to the light's plane.
+            // Every other point is close to the light's plane.
             let p = unit(i);
             let height = if i % 2 == 0 { 1.0 } else { 0.02 };
             let x = frame.center + 5.0 * (p.x * frame.right + p.y * frame.up + height * p.z * frame.axis);
@@ -41,7 +41,7 @@ fn every_place_that_is_reached_is_in_a_part_that_reaches_it() {
             let of_part = &holders[0].light;
             assert!(of_part.reaches(&of_part.frame(), x), "{x} of {of_part:?}");
         }
-        // On the edges themselves there may be several, and must be one.
+        // On an edge a place may be in several parts, and must be in one.
         for (a, b) in [(1.0, 1.0), (1.0, 0.0), (-1.0, 0.3), (1.0, -1.0), (0.2, 1.0)] {
             let x = frame.center + 3.0 * (frame.axis + a * frame.right + b * frame.up);
             assert!(parts.iter().any(|part| part.region.holds(x)), "{x}");
@@ -49,7 +49,7 @@ fn every_place_that_is_reached_is_in_a_part_that_reaches_it() {
     }
 }
 
-/// Turned, an ellipsoid is the same body.
+/// A turned ellipsoid is the same body.
 #[test]
 fn an_ellipsoid_keeps_its_shape_in_every_part() {
     let light = light(LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.3, 0.1) });
@@ -66,7 +66,7 @@ fn an_ellipsoid_keeps_its_shape_in_every_part() {
     }
 }
 
-/// Whatever stands between a part's receiver and a point of the light is drawn for it.
+/// All casters between a part's receiver and a light point are drawn for the part.
 #[test]
 fn no_caster_is_left_out_that_shades_a_part() {
     let Some(gpu) = gpu() else { return };
@@ -103,7 +103,7 @@ fn no_caster_is_left_out_that_shades_a_part() {
     assert!(kept < 4 * meshes.len(), "{kept} of {} are drawn", 6 * meshes.len());
 }
 
-/// A light whose receivers lie before it is drawn as ever; parts without receivers are none.
+/// A light whose receivers lie in front of it is not divided; parts without receivers are omitted.
 #[test]
 fn there_are_parts_where_there_are_receivers_and_no_others() {
     let Some(gpu) = gpu() else { return };
@@ -112,7 +112,7 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
     let depth = empty_depth(gpu, SIZE);
     let mask = Mask::new(gpu.device(), SIZE);
     let parts_with = |casters: &[MeshCaster<'_>], light: &Light, hull: &[Vec3], coverage| {
-        // From so high that all of it is seen.
+        // From high enough to see all of it.
         let view_from_world = look_at_mat4(Vec3::new(0.0, 150.0, 1.0), Vec3::ZERO, Vec3::Y);
         let receivers = Receivers { hull, view_from_world, ..test_receivers(SIZE, &depth) };
         let frame = PreparedFrame {
@@ -139,7 +139,7 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
     let rings = parts(&square, &floor(9.0), Coverage::Window);
     assert_eq!(rings.len(), 5, "the middle and a ring");
     assert_eq!(parts(&square, &floor(30.0), Coverage::Window).len(), 9, "and another");
-    // Where nothing casts beyond the middle's edge, one view does.
+    // Without casters beyond the middle's edge, one view suffices.
     let small = Mesh::horizontal(gpu, Vec2::splat(-0.5), Vec2::splat(0.5), 0.5);
     let only_small = |light: &Light| parts_with(&[small.caster()], light, &floor(9.0), Coverage::Window).len();
     assert_eq!(only_small(&square), 0, "no ring has casters");
@@ -150,7 +150,7 @@ fn there_are_parts_where_there_are_receivers_and_no_others() {
     assert_eq!(parts(&lamp, &ceiling, Coverage::Window).len(), 5, "all but down");
 }
 
-/// A camera in a street, a world about it, and a sun.
+/// A sun, and the corners of a world's bounds around a camera in a street.
 fn world(half_m: f32) -> (Light, [Vec3; 8]) {
     let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.0093 }, Vec3::ZERO, Vec3::new(0.7, -0.4, -0.3));
     (sun, Aabb { min: Vec3::new(-half_m, -0.1, -half_m), max: Vec3::new(half_m, 12.0, half_m) }.corners())
@@ -168,7 +168,7 @@ fn a_sun_has_cascades_where_one_map_is_too_coarse() {
     let world_from_view = receivers.view_from_world.inverse();
     let mut held = vec![0; cascades.len()];
     for i in 0..4000 {
-        // At every depth alike, as far as the corners, behind the camera too.
+        // Evenly over the logarithm of depth, up to the corners, and behind the camera.
         let p = unit(i);
         let depth_m = 1400f32.powf(p.z) - 0.5;
         let x = world_from_view.transform_point3(Vec3::new(p.x, p.y, -1.0) * depth_m);
@@ -177,7 +177,7 @@ fn a_sun_has_cascades_where_one_map_is_too_coarse() {
         held[holders[0]] += 1;
     }
     assert!(held.iter().all(|count| *count > 50), "{held:?}");
-    // Where it is known what is seen, cascades begin there.
+    // If seen points are known, cascades begin at them.
     let seen: Vec<Vec3> = (0..500).map(|i| world_from_view.transform_point3(Vec3::Z * -(200.0 + i as f32))).collect();
     let receivers = Receivers { seen: &seen, ..receivers };
     assert!(cascades::cascades_of(&sun, &receivers.into(), &far, &mut None).is_empty(), "all that is seen is far");
@@ -189,7 +189,7 @@ fn a_sun_has_cascades_where_one_map_is_too_coarse() {
     );
 }
 
-/// Of what stands between a body and the sun the sweep holds all, and of a ground little more.
+/// The sweep contains everything between a body and the sun, and little more of a large ground.
 #[test]
 fn a_sweep_holds_what_shades_a_body() {
     let (sun, _) = world(1.0);
@@ -213,8 +213,8 @@ fn a_sweep_holds_what_shades_a_body() {
     assert_eq!(sweep.part_of(&behind), None);
 }
 
-/// A camera that walks along a street sees a little more or less in each frame; what it sees is cut at the same depths, and
-/// boxes stay where they are until they do not hold it.
+/// While a camera walks along a street and sees a little more or less in each frame, cascades keep their ends, and boxes stay
+/// in place as long as they contain the receivers.
 #[test]
 fn cascades_stay_while_a_camera_walks() {
     let Some(gpu) = gpu() else { return };
@@ -231,11 +231,11 @@ fn cascades_stay_while_a_camera_walks() {
         let eye = Vec3::new(0.02 * frame as f32, 1.7, 0.03 * frame as f32);
         let view_from_world = look_at_mat4(eye, eye + Vec3::new(-1.0, -0.05, -0.3), Vec3::Y);
         let world_from_view = view_from_world.inverse();
-        // The nearest that is seen comes and goes by a tenth about an end of cascades.
+        // The nearest seen depth varies by a tenth around an end of cascades.
         let nearest_m = cascades::ONE_END_M / cascades::CASCADE_RATIO.powi(2) * (1.0 + 0.1 * unit(frame).x);
         let seen: Vec<Vec3> =
             (0..200).map(|i| world_from_view.transform_point3(Vec3::Z * -(nearest_m + 3.0 * i as f32))).collect();
-        // As far as it goes.
+        // The world's extent varies.
         let far = 700.0 * (1.0 + 0.02 * unit(1000 + frame).y);
         let hull = Aabb { min: Vec3::new(-far, -0.1, -far), max: Vec3::new(40.0, 9.0, 40.0) }.corners();
         let receivers = Receivers { hull: &hull, seen: &seen, view_from_world, ..test_receivers(SIZE, &depth) };
@@ -262,11 +262,11 @@ fn cascades_stay_while_a_camera_walks() {
         boxes = now;
     }
     assert!(boxes.len() >= 3, "{} cascades", boxes.len());
-    // The first is some metres wide, and the camera walks two.
+    // The first box is some metres wide, and the camera walks two metres.
     assert!((1..12).contains(&moves), "{moves} boxes moved in {FRAMES} frames");
 }
 
-/// Counted from elsewhere, a box is where it was.
+/// Boxes do not depend on the anchor.
 #[test]
 fn boxes_know_no_anchor() {
     let (sun, _) = world(1.0);
@@ -280,14 +280,14 @@ fn boxes_know_no_anchor() {
     for (here, there) in here.iter().zip(there) {
         assert!(here.distance(there + anchor) < 1e-3, "{here} and {}", there + anchor);
     }
-    // Another sun's are others.
+    // Another sun has other boxes.
     stable_boxes.begin(&Light { axis: Vec3::new(0.6, -0.8, 0.0), ..sun.clone() });
     let turned = stable_boxes.hold(7, &points, Vec3::ZERO);
     assert!(turned[0].distance(here[0]) > 1.0);
 }
 
-/// Under a sun and under lamps: nothing that is farther than shadows are drawn is in a part, nor are casters that shade
-/// nothing nearer; where one map does there is one part.
+/// Under a sun and under lamps, no part has receivers beyond the shadow distance, or casters that shade nothing nearer; if
+/// one map suffices, there is one part.
 #[test]
 fn parts_end_where_shadows_do() {
     let Some(gpu) = gpu() else { return };

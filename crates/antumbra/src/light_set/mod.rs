@@ -1,4 +1,4 @@
-//! Lights that one camera sees, each with a state and a mask, of which a budget's worth is redrawn in a frame.
+//! Set of lights seen by one camera, each with a state and a mask. A frame redraws as many as a budget allows.
 //!
 //! ```text
 //!  lights ──► seen? ──► changed? ──► rank ──► first of them ──► prepare ──► record
@@ -7,8 +7,8 @@
 //!               └► culled   └► mask is current
 //! ```
 //!
-//! A light has a range, beyond which the host does not shade by it. Lights of whose ranges the camera sees nothing are culled; casters
-//! outside of a light's range are not drawn for it, and change nothing for it. Maps and masks of lights that wait stay as they are.
+//! A light has a range, beyond which the host does not shade by it. Lights whose ranges are out of view are culled. Casters outside
+//! of a light's range are not drawn for it, and their changes do not redraw it. Lights that wait keep their maps and masks.
 //!
 //! ```no_run
 //! # use antumbra::*; use antumbra::light::Light; use glam::UVec2;
@@ -26,9 +26,9 @@
 //! ```
 //!
 //! # Limits
-//! A mask that is kept is an image of the frame that drew it. Where the camera has moved since, its shadows lag behind the surfaces that
-//! they lie on by as much as these have moved in the image; [`MaskState::Kept`] has the number of frames. Give a light whose shadows
-//! must never lag a state of its own beside the set.
+//! A kept mask is an image of the frame that drew it. If the camera has moved since, its shadows lag behind their surfaces by the
+//! surfaces' motion in the image; [`MaskState::Kept`] has the number of frames. Give a light whose shadows must never lag a state
+//! of its own outside the set.
 
 use antumbra_light::Light;
 use slotmap::SlotMap;
@@ -54,20 +54,20 @@ slotmap::new_key_type! {
 pub struct RangedLight {
     /// Light.
     pub light: Light,
-    /// Distance from the light's centre beyond which the host does not shade by it, metres; infinite for a sun. Visibility is not right
-    /// beyond it.
+    /// Distance from the light's centre beyond which the host does not shade by it, metres; infinite for a sun. Visibility is not
+    /// correct beyond it.
     pub range_m: f32,
-    /// A bit for each layer whose casters the light sees; `u32::MAX`, the default, for all.
+    /// Bit mask of the layers whose casters the light sees; `u32::MAX`, the default, for all.
     pub layers: u32,
 }
 
 impl RangedLight {
-    /// A light that sees casters of all layers.
+    /// Creates a light that sees casters of all layers.
     pub fn new(light: Light, range_m: f32) -> Self {
         Self { light, range_m, layers: u32::MAX }
     }
 
-    /// Ball that holds the light and all that it shades, and so all that casts a shadow there.
+    /// Ball that contains the light and all that it shades, and therefore all casters that matter.
     fn ball(&self) -> Ball {
         let Light { center, .. } = self.light;
         let radius_m = if self.light.is_distant() { f32::INFINITY } else { self.light.bounding_radius() };
@@ -96,20 +96,20 @@ impl RangedLight {
     }
 }
 
-/// Upper limit of what a frame redraws; a light at least.
+/// Upper limit of what a frame redraws. At least one light is redrawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
-    /// So many lights; `u32::MAX` for all.
+    /// Number of lights; `u32::MAX` for all.
     Lights(u32),
-    /// Lights whose masks' pixels and maps' texels, layers behind included, are so many together. What a light has drawn last is what it is
-    /// taken to draw again, and one that was never drawn counts as the largest of the others.
+    /// Total number of mask pixels and map texels, layers behind included. A light counts with what it drew last; one that was
+    /// never drawn counts as the largest of the others.
     Texels(u64),
 }
 
 /// Frame of a light set.
 #[derive(Clone, Copy, Debug)]
 pub struct LightSetFrame<'a> {
-    /// Casters, brought to the GPU by [`CasterSet::update`].
+    /// Casters, uploaded by [`CasterSet::update`].
     pub casters: &'a CasterSet,
     /// Receivers, of the masks' size. With a [`version`](Receivers::version), masks of frames in which nothing changed are not redrawn.
     pub receivers: Receivers<'a>,
@@ -120,16 +120,16 @@ pub struct LightSetFrame<'a> {
 /// State of a light's mask in the frame prepared last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaskState {
-    /// The frame draws it.
+    /// The frame draws the mask.
     Drawn,
-    /// Nothing that it depends on has changed since it was drawn.
+    /// Nothing that the mask depends on has changed since it was drawn.
     Current,
-    /// It is of an earlier frame.
+    /// The mask is of an earlier frame.
     Kept {
-        /// Frames since it was drawn, or last was current.
+        /// Number of frames since the mask was drawn, or last was current.
         age: u32,
     },
-    /// The light came into view and was not drawn yet: the mask holds nothing of use. Shade without it, or leave the light out.
+    /// The light came into view and was not drawn yet: the mask has no valid content. Shade without the mask, or skip the light.
     Missing,
     /// The camera sees nothing within the light's range: the mask is not read.
     Culled,
@@ -147,13 +147,13 @@ struct Entry {
     shadow: AnyShadow,
     mask: Mask,
     state: MaskState,
-    /// What the mask was drawn with, where it is of this view.
+    /// Light and casters that the mask was drawn with, if it is of this view.
     drawn: Option<Drawing>,
-    /// Frames for which the mask was not theirs.
+    /// Number of frames for which the mask was out of date.
     waits: u32,
-    /// Pixels and texels of the frame that was drawn last.
+    /// Number of mask pixels and map texels that the light drew last.
     texels: Option<u64>,
-    /// What the mask is to be drawn with, where the frame redraws it.
+    /// Light and casters to draw the mask with, if the frame redraws it.
     chosen: Option<Drawing>,
 }
 
@@ -167,7 +167,7 @@ pub struct PreparedLights<'a> {
     works: Vec<(LightId, Prepared<'a>)>,
 }
 
-/// What errors name in place of a technique.
+/// Name in errors, in place of a technique's.
 const WHO: &str = "light set";
 
 impl LightSet {
@@ -179,7 +179,7 @@ impl LightSet {
     /// Adds a light with its state and its mask, which is [`MaskState::Missing`] until a frame draws it.
     ///
     /// # Errors
-    /// Where light or range are not usable, or another light has the mask.
+    /// If light or range are invalid, or another light has the mask.
     pub fn add(&mut self, light: RangedLight, shadow: AnyShadow, mask: Mask) -> Result<LightId, Error> {
         light.check()?;
         self.check_mask(None, &mask)?;
@@ -198,17 +198,17 @@ impl LightSet {
     /// Moves or changes a light.
     ///
     /// # Errors
-    /// Where there is no such light, or light or range are not usable.
+    /// If there is no such light, or light or range are invalid.
     pub fn set_light(&mut self, id: LightId, light: RangedLight) -> Result<(), Error> {
         light.check()?;
         self.lights.get_mut(id).ok_or_else(gone)?.light = light;
         Ok(())
     }
 
-    /// Gives a light another mask, of a resized view: it is drawn anew.
+    /// Replaces a light's mask, as for a resized view. The new mask is redrawn.
     ///
     /// # Errors
-    /// Where there is no such light, or another light has the mask.
+    /// If there is no such light, or another light has the mask.
     pub fn set_mask(&mut self, id: LightId, mask: Mask) -> Result<(), Error> {
         self.check_mask(Some(id), &mask)?;
         let entry = self.lights.get_mut(id).ok_or_else(gone)?;
@@ -216,7 +216,7 @@ impl LightSet {
         Ok(())
     }
 
-    /// Removes a light; its state and mask, where there was one.
+    /// Removes a light and returns its state and mask; `None` if there is no such light.
     pub fn remove(&mut self, id: LightId) -> Option<(AnyShadow, Mask)> {
         self.lights.remove(id).map(|entry| (entry.shadow, entry.mask))
     }
@@ -236,22 +236,22 @@ impl LightSet {
         self.lights.keys()
     }
 
-    /// A light.
+    /// Light of a handle.
     pub fn light(&self, id: LightId) -> Option<&RangedLight> {
         self.lights.get(id).map(|entry| &entry.light)
     }
 
-    /// A light's mask.
+    /// Mask of a light.
     pub fn mask(&self, id: LightId) -> Option<&Mask> {
         self.lights.get(id).map(|entry| &entry.mask)
     }
 
-    /// A light's state, for its reports.
+    /// State of a light, for its reports.
     pub fn shadow(&self, id: LightId) -> Option<&AnyShadow> {
         self.lights.get(id).map(|entry| &entry.shadow)
     }
 
-    /// A light's state, for its parameters: another value redraws the light.
+    /// State of a light, for setting its parameters: a different value redraws the light.
     pub fn shadow_mut(&mut self, id: LightId) -> Option<&mut AnyShadow> {
         self.lights.get_mut(id).map(|entry| &mut entry.shadow)
     }
@@ -268,11 +268,11 @@ impl LightSet {
 
     /// Prepares a frame: culls and ranks the lights, and prepares those that it redraws. Submit in the order of recording.
     ///
-    /// Of lights that change in every frame, each is redrawn within five times as many frames as the budget needs for all of them; by
-    /// [`Budget::Texels`], within four times as many and one for each light.
+    /// A light that changes in every frame is redrawn within five times the number of frames that the budget needs for all such
+    /// lights; with [`Budget::Texels`], within four times that number plus one frame per light.
     ///
     /// # Errors
-    /// Where the budget is nothing or the casters were changed since their last update, and as [`AnyShadow::prepare`].
+    /// If the budget is zero or the casters were changed since their last update, and as [`AnyShadow::prepare`].
     pub fn prepare<'a>(&'a mut self, frame: &LightSetFrame<'a>) -> Result<PreparedLights<'a>, Error> {
         check_budget(frame.budget)?;
         frame.casters.check_updated()?;
@@ -286,7 +286,7 @@ impl LightSet {
         Ok(PreparedLights { works })
     }
 
-    /// Sets the state of each light's mask, and which lights the frame redraws.
+    /// Sets the state of each light's mask, and chooses the lights that the frame redraws.
     fn choose(&mut self, frame: &LightSetFrame<'_>) {
         let seen = SeenSpace::of(&frame.receivers);
         let largest = self.lights.values_mut().map(Entry::known_texels).max().flatten();
@@ -328,7 +328,7 @@ impl<'a> PreparedLights<'a> {
 }
 
 impl Entry {
-    /// Pixels and texels of the frame drawn last; `None` where there was none.
+    /// Number of mask pixels and map texels that the light drew last; `None` if it was never drawn.
     fn known_texels(&mut self) -> Option<u64> {
         if self.state == MaskState::Drawn {
             self.texels = Some(self.shadow.map_texels() + self.pixels());
@@ -336,12 +336,12 @@ impl Entry {
         self.texels
     }
 
-    /// Pixels of the mask.
+    /// Number of pixels of the mask.
     fn pixels(&self) -> u64 {
         self.mask.size_px().as_u64vec2().element_product()
     }
 
-    /// Candidate for the schedule, and what it would draw with; `None` where the light need not be redrawn.
+    /// Candidate for the schedule, with the light and casters to draw; `None` if the light need not be redrawn.
     fn candidate(
         &mut self,
         frame: &LightSetFrame<'_>,

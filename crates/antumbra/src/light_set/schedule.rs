@@ -1,13 +1,13 @@
-//! Schedule of a frame: which lights are redrawn, of those whose masks are of an earlier one.
+//! Schedule of a frame: which lights with masks of an earlier frame are redrawn.
 //!
-//! A light ranks by the part of the image that it may reach, by what has changed, and by the frames that it has waited for: the
-//! product of all three, so that of two lights one of which counts for twice the other it is redrawn about twice as often. Whoever
-//! has waited for too long goes first, the longest before others, so that none waits for ever.
+//! A light's rank is the product of the fraction of the image that it may reach, a weight for what has changed, and the number of
+//! frames that it has waited. A light for which the first two make twice as much is redrawn about twice as often. Lights that have
+//! waited for too long go first, the longest wait before others, so that none waits for ever.
 
-/// Change since a light's mask was drawn; later ones weigh more.
+/// Change since a light's mask was drawn; later variants weigh more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Change {
-    /// Camera, receivers or settings: what the mask holds is right at the same surfaces.
+    /// Camera, receivers or settings: the mask's visibility is still correct on the same surfaces.
     View,
     /// The light, or casters in its range.
     Shadows,
@@ -16,7 +16,7 @@ pub(super) enum Change {
 }
 
 impl Change {
-    /// Weight in the rank. Only their order matters much, for waiting outweighs each in turn.
+    /// Weight in the rank. Mostly the order of weights matters, because waiting outweighs each in turn.
     fn weight(self) -> f32 {
         match self {
             Self::View => 0.5,
@@ -29,30 +29,31 @@ impl Change {
 /// A light that would be redrawn if there were no budget.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
-    /// Part of the image that it may reach, 0 to 1.
+    /// Fraction of the image that the light may reach, 0 to 1.
     pub(super) area: f32,
     pub(super) change: Change,
-    /// Frames for which its mask was not theirs, this one included.
+    /// Number of frames for which the mask was out of date, this one included.
     pub(super) waits: u32,
-    /// Part of the budget that redrawing it takes.
+    /// Part of the budget that redrawing the light takes.
     pub(super) cost: u64,
 }
 
-/// Smaller lights count for as much as one of this part of the image: they are to be redrawn some time, too.
+/// Minimum area in the rank, as a fraction of the image, so that small lights are redrawn some time, too.
 const LEAST_AREA: f32 = 0.01;
 
-/// A round is the number of frames in which all candidates could be redrawn once. After so many rounds one goes first.
+/// Number of rounds after which a waiting candidate goes first. A round is the number of frames in which all candidates could be
+/// redrawn once.
 const MOST_ROUNDS: u64 = 4;
 
 impl Candidate {
     fn rank(&self) -> f32 {
-        // A camera without numbers has areas without.
+        // The area is NaN if the camera's matrices are; the comparison is then false.
         let area = if self.area > LEAST_AREA { self.area } else { LEAST_AREA };
         self.change.weight() * area * self.waits as f32
     }
 }
 
-/// Places of the candidates that are redrawn: as many of the first as the budget has room for, and one at least.
+/// Returns the indices of the candidates to redraw, in order of priority: at least one, and each further one that fits the budget.
 pub(super) fn chosen(candidates: &[Candidate], budget: u64) -> Vec<usize> {
     let all = candidates.iter().fold(0u64, |sum, candidate| sum.saturating_add(candidate.cost));
     let rounds = all.div_ceil(budget.max(1));
@@ -105,8 +106,8 @@ mod tests {
         assert_eq!(chosen(&of([u64::MAX, 1, u64::MAX, 2]), u64::MAX), [0, 1, 2, 3]);
     }
 
-    /// Whatever their areas and costs, all lights that change in every frame are redrawn again and again: after so many rounds they are
-    /// overdue, and of those one a frame is drawn at least, the longest waiting.
+    /// Lights that change in every frame are all redrawn again and again, for any areas and costs: after [`MOST_ROUNDS`] rounds
+    /// they are overdue, and each frame draws at least the overdue light that has waited longest.
     #[test]
     fn none_waits_for_ever() {
         for (count, budget, most_cost) in [(16, 1, 1), (16, 5, 1), (64, 4, 1), (64, 1, 1), (24, 30, 20), (24, 7, 20)] {

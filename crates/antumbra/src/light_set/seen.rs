@@ -1,4 +1,4 @@
-//! Part of the image that a light's range may cover.
+//! Fraction of the image that a light's range may cover.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -8,13 +8,13 @@ use glam::DVec4;
 use crate::casters::Ball;
 use crate::contract::{Camera, PreparedReceivers, Receivers};
 
-/// Space that a camera sees, with what it knows of receivers there.
+/// Space that a camera sees, with the bounds of the receivers there.
 #[derive(Debug)]
 pub(super) struct SeenSpace {
     camera: Camera,
-    /// Those between which the camera sees, and the one at which shadows end.
+    /// Frustum planes, and the plane of the shadow distance if there is one.
     planes: Vec<DVec4>,
-    /// Box of the receivers, where the host says one.
+    /// Box of the receivers; `None` if the host gives none.
     bounds: Option<Aabb>,
 }
 
@@ -27,7 +27,7 @@ impl SeenSpace {
         Self { camera: receivers.camera(), planes, bounds: of_hull.or(receivers.bounds) }
     }
 
-    /// The part of the image that a ball may cover, 0 to 1; `None` where no receiver in it can be seen.
+    /// Returns the fraction of the image that a ball may cover, 0 to 1; `None` if no receiver in the ball can be visible.
     pub(super) fn share_of(&self, ball: &Ball) -> Option<f32> {
         let (center, radius) = (ball.center.as_dvec3(), f64::from(ball.radius_m));
         let is_beyond = |plane: &DVec4| plane.dot(center.extend(1.0)) < -radius * plane.truncate().length();
@@ -35,7 +35,7 @@ impl SeenSpace {
         is_seen.then(|| self.area_of(ball) as f32)
     }
 
-    /// An ellipse about the ball as if it were in the middle of the image; of one that holds the eye, all of the image.
+    /// Returns the area of an ellipse around the ball as if it were in the middle of the image; 1 if the ball contains the eye.
     fn area_of(&self, ball: &Ball) -> f64 {
         let Camera { view_from_world, clip_from_view, .. } = &self.camera;
         let radius = f64::from(ball.radius_m);
@@ -45,7 +45,7 @@ impl SeenSpace {
         if !is_parallel && distance_squared <= radius * radius {
             return 1.0;
         }
-        // The tangent of the angle that the ball's rim is off its centre.
+        // Tangent of the angle between the ball's centre and its rim.
         let tangent = if is_parallel { radius } else { radius / (distance_squared - radius * radius).sqrt() };
         let half = |axis: glam::Vec4| tangent * f64::from(axis.truncate().length());
         (FRAC_PI_4 * half(clip_from_view.row(0)) * half(clip_from_view.row(1))).min(1.0)
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
     use crate::contract::DepthConvention;
 
-    /// At the origin, looking along −z, as wide as high.
+    /// Space of a camera at the origin that looks along −z.
     fn space(clip_from_view: Mat4, bounds: Option<Aabb>, end_m: Option<f32>) -> SeenSpace {
         let camera = Camera {
             view_from_world: look_at_mat4(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y),

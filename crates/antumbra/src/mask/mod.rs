@@ -1,5 +1,5 @@
-//! Passes over masks: how a technique's visibility is written, made smooth, faded, resized and converted to the host's format. Nothing here knows
-//! a light map.
+//! Passes over masks: writing a technique's visibility, smoothing, fading, resizing and conversion to the host's format. They know nothing
+//! of light maps.
 
 #[cfg(feature = "receiver_lists")]
 pub(crate) mod accumulation;

@@ -1,37 +1,37 @@
-//! The pass over the receivers that writes the mask: for every pixel; or, where it is sparse, for every other in both directions,
-//! then for those that interpolation between them would get wrong ([`sparse_upsample`](super::sparse_upsample)).
+//! Resolve pass over the receivers, which writes the mask. It covers every pixel, or (sparse) every other one in both directions,
+//! then those that interpolation between them would get wrong ([`sparse_upsample`](super::sparse_upsample)).
 //!
-//! A shader for it has two entry points: `resolve`, of a thread for each `known_pixel`, and, if the technique can be sparse,
-//! `resolve_missing`.
+//! Its shader has two entry points: `resolve`, one thread per `known_pixel`, and `resolve_missing` if the technique can be
+//! sparse.
 
 use super::sparse_upsample::{PreparedUpsample, SparseUpsample};
 use crate::contract::PreparedFrame;
 use crate::gpu::{Gpu, Recorder, Span, Stage, compute_entry};
 use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 
-/// What is compiled.
+/// Shader of a resolve pass.
 pub(crate) struct ResolveShader<'a> {
     pub(crate) label: &'a str,
     pub(crate) wgsl: &'static str,
-    /// Values of overridable constants, by their names.
+    /// Values of overridable constants, by name.
     pub(crate) constants: &'a [(&'static str, f64)],
-    /// Of the groups behind the frame's inputs; the same for one shader.
+    /// Bind group layouts that follow the frame's inputs; the same for one shader.
     pub(crate) layouts: &'a [&'a wgpu::BindGroupLayout],
 }
 
-/// The pass.
+/// Resolve pass.
 #[derive(Debug, Default)]
 pub(crate) struct Resolve {
     program: Option<Program>,
     upsample: Option<SparseUpsample>,
 }
 
-/// The pass of one frame.
+/// Resolve pass of one frame.
 #[derive(Debug)]
 pub(crate) struct PreparedResolve {
     inputs: PreparedInputs,
     known: wgpu::ComputePipeline,
-    /// Where every other pixel is resolved: how the others are found, and what resolves those that interpolation would get wrong.
+    /// Upsampling and pipeline of missing pixels; `None` if every pixel is resolved.
     sparse: Option<(PreparedUpsample, wgpu::ComputePipeline)>,
 }
 
@@ -40,12 +40,12 @@ struct Program {
     wgsl: &'static str,
     constants: Vec<(&'static str, f64)>,
     known: wgpu::ComputePipeline,
-    /// Where it was sparse once.
+    /// Pipeline of missing pixels; `None` until a frame is sparse.
     missing: Option<wgpu::ComputePipeline>,
 }
 
 impl Resolve {
-    /// Uploads the frame, all pixels or every other, and compiles what is not compiled yet.
+    /// Uploads the frame's inputs, for all pixels or every other one, and compiles missing pipelines.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -54,7 +54,7 @@ impl Resolve {
         is_sparse: bool,
         shader: &ResolveShader<'_>,
     ) -> PreparedResolve {
-        // Nothing can be interpolated between points in any order.
+        // Points are in any order, so that nothing can be interpolated between them.
         let is_sparse = is_sparse && frame.receivers.have_neighbours();
         let stride_px = if is_sparse { SparseUpsample::STRIDE_PX } else { 1 };
         let of_frame = inputs.prepare_known(stage, frame, stride_px);
@@ -68,7 +68,7 @@ impl Resolve {
         PreparedResolve { inputs: of_frame, known, sparse }
     }
 
-    /// The program of every pixel, compiled where it is not compiled yet.
+    /// Returns the program of known pixels and compiles it if necessary.
     fn compile(&mut self, gpu: &Gpu, inputs: &FrameInputs, shader: &ResolveShader<'_>) -> &mut Program {
         let is_made = |made: &Program| std::ptr::eq(made.wgsl, shader.wgsl) && made.constants == shader.constants;
         let made = self.program.take().filter(is_made).unwrap_or_else(|| Program {
@@ -80,7 +80,7 @@ impl Resolve {
         self.program.insert(made)
     }
 
-    /// Compiles the program of every pixel before there is a frame.
+    /// Compiles the program of known pixels before the first frame.
     pub(crate) fn compile_ahead(&mut self, gpu: &Gpu, inputs: &FrameInputs, shader: &ResolveShader<'_>) {
         self.compile(gpu, inputs, shader);
     }
@@ -94,19 +94,19 @@ impl ResolveShader<'_> {
 }
 
 impl Program {
-    /// The pipeline of missing pixels.
+    /// Returns the pipeline of missing pixels.
     fn missing(&mut self, gpu: &Gpu, shader: &ResolveShader<'_>) -> &wgpu::ComputePipeline {
         self.missing.get_or_insert_with(|| shader.pipeline(gpu, "resolve_missing", &FrameInputs::missing_layout(gpu)))
     }
 }
 
 impl PreparedResolve {
-    /// Group 0 of the frame.
+    /// Bind group 0 of the frame.
     pub(crate) fn inputs(&self) -> &PreparedInputs {
         &self.inputs
     }
 
-    /// Records the pass; `bind` sets the groups behind the frame's inputs.
+    /// Records the pass; `bind` sets the groups that follow the frame's inputs.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, bind: impl Fn(&mut wgpu::ComputePass<'_>)) {
         recorder.compute("resolve", Span::Only, |pass| {
             pass.set_pipeline(&self.known);

@@ -1,4 +1,4 @@
-//! Building blocks that know neither light nor shadow, each with a CPU reference that it is tested against.
+//! Building blocks independent of light and shadow, each tested against a CPU reference.
 
 #[cfg(test)]
 pub(crate) mod depth_basis;

@@ -1,4 +1,4 @@
-//! Bind group 0 of every pass that runs over the receivers: the receivers, the light, the mask. The shader side is
+//! Bind group 0 of every pass over the receivers: receivers, light and mask. The shader side is
 //! `receivers/inputs.wesl`.
 
 use antumbra_light::{Light, LightShape};
@@ -10,11 +10,11 @@ use crate::gpu::{
     Bindings, EmbeddedGroup, Gpu, Stage, bindings, create_uniform, gpu_structs, texels, upload_storage, write_uniform,
 };
 
-/// Threads along each side of a workgroup over the receivers.
+/// Width of a workgroup over the receivers, threads.
 const TILE: u32 = 8;
 
 gpu_structs! {
-    /// The receivers: the camera of a depth buffer, or points, which have none.
+    /// Receivers: the camera of a depth buffer, or the layout of points, which have no camera.
     pub(crate) struct ReceiverView {
         view_from_clip: Mat4,
         world_from_view: Mat4,
@@ -39,24 +39,24 @@ gpu_structs! {
         padding_3: u32,
     }
 
-    /// The light, for visibility: shape, pose, reach. The host applies its colour.
+    /// Light for visibility: shape, pose, reach. The host applies its colour.
     pub(crate) struct LightSource {
         center_in_world: Vec3,
         kind: u32,
         right_in_world: Vec3,
-        /// Half the extent along right: half width, radius, half-axis, tangent of the half-angle.
+        /// Half the extent along right: half width, radius, half-axis, or tangent of the half-angle.
         half_right: f32,
         up_in_world: Vec3,
         half_up: f32,
         axis_in_world: Vec3,
         half_axis: f32,
-        /// Tangent of the frustum's half-angle; 0 where all in front of the light is inside.
+        /// Tangent of the frustum's half-angle; 0 if the frustum is unbounded.
         reach_tangent: f32,
-        /// Entries of the data buffer: positions of a list of points.
+        /// Number of entries in the data buffer: positions of a list of points.
         point_count: u32,
-        /// Size of an emission texture in the data buffer; 0 for uniform emission.
+        /// Size of the emission texture in the data buffer; 0 for uniform emission.
         emission_size: UVec2,
-        /// Cosine of a spot's outer angle; −1 where there is no cone.
+        /// Cosine of a spot's outer angle; −1 without a cone.
         cone_cosine: f32,
         padding_0: f32,
         padding_1: f32,
@@ -65,8 +65,8 @@ gpu_structs! {
 }
 
 bindings! {
-    /// Fragments and vertices that are no receivers' may ask about receivers, but write none. Held against shaders as part of
-    /// `MissingInputs`.
+    /// Vertex and fragment shaders may read receivers, but only compute shaders write the mask. Checked against shaders as
+    /// part of `MissingInputs`.
     struct Inputs = "frame inputs", COMPUTE | VERTEX_FRAGMENT {
         0 receiver_view: Uniform,
         1 light_source: Uniform,
@@ -77,7 +77,7 @@ bindings! {
         6 noise_tile: Texture(texels::FLOAT),
     }
 
-    /// What of them functions of hosts' shaders read. Held against shaders as part of the embedded groups.
+    /// Bindings that functions in hosts' shaders read. Checked against shaders as part of the embedded groups.
     struct EmbeddedInputs = "frame inputs of hosts' shaders", COMPUTE {
         0 receiver_view: Uniform,
         1 light_source: Uniform,
@@ -85,14 +85,14 @@ bindings! {
         6 noise_tile: Texture(texels::FLOAT),
     }
 
-    /// For entry points that write the pixels that interpolation left missing.
+    /// Bindings of entry points that write the pixels that interpolation left missing.
     struct MissingInputs = "frame inputs of missing pixels", COMPUTE, group 0 of [PCSS_RESOLVE, VIEW_SAMPLES_MARK_MISSING], with inputs: Inputs {
-        /// Their count, then each as x | y << 16.
+        /// Number of missing pixels, then each as x | y << 16.
         7 missing: Storage,
     }
 }
 
-/// `LightSource::kind`: the shaders' `KIND_…`; a test compares the numbers.
+/// Returns `LightSource::kind`, the shaders' `KIND_…`; a test compares the numbers.
 pub(crate) fn kind_of(shape: &LightShape) -> u32 {
     match shape {
         LightShape::Rectangle { .. } => 0,
@@ -137,8 +137,8 @@ fn light_source(light: &Light) -> LightSource {
     }
 }
 
-/// Positions of a list of points, or luminances of an emission texture in x; one entry at least, since a binding
-/// cannot be empty.
+/// Returns the positions of a list of points, or the luminances of an emission texture in x. It has at least one entry,
+/// because a binding cannot be empty.
 fn light_data(light: &Light) -> Vec<Vec4> {
     match (&light.shape, &light.emission) {
         (LightShape::Points { positions_m }, _) => positions_m.iter().map(|p| p.extend(1.0)).collect(),
@@ -149,7 +149,7 @@ fn light_data(light: &Light) -> Vec<Vec4> {
     }
 }
 
-/// The buffers behind bind group 0.
+/// Buffers of bind group 0.
 #[derive(Debug)]
 pub(crate) struct FrameInputs {
     pub(crate) layout: wgpu::BindGroupLayout,
@@ -160,13 +160,13 @@ pub(crate) struct FrameInputs {
     noise_tile: wgpu::TextureView,
 }
 
-/// Bind group 0 of one frame, and the size of its picture.
+/// Bind group 0 of one frame, and the size of its image.
 #[derive(Clone, Debug)]
 pub(crate) struct PreparedInputs {
     group: wgpu::BindGroup,
     light_data: wgpu::Buffer,
     size_px: UVec2,
-    /// Pixels from one thread of a [known](Self::dispatch_known) pixel to the next.
+    /// Distance between [known](Self::dispatch_known) pixels.
     stride_px: u32,
 }
 
@@ -193,12 +193,12 @@ impl FrameInputs {
         }
     }
 
-    /// Uploads the frame, which was found to be good.
+    /// Uploads a frame that has been validated.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> PreparedInputs {
         self.prepare_known(stage, frame, 1)
     }
 
-    /// The same where the pixels that are known are those whose column and row are multiples of `stride_px`.
+    /// Uploads a frame whose known pixels are those with column and row a multiple of `stride_px`.
     pub(crate) fn prepare_known(
         &mut self,
         stage: &Stage<'_>,
@@ -214,12 +214,12 @@ impl FrameInputs {
         PreparedInputs { group, light_data, size_px: frame.receivers.size_px, stride_px }
     }
 
-    /// The layout of [`missing_group`](Self::missing_group).
+    /// Returns the layout of [`missing_group`](Self::missing_group).
     pub(crate) fn missing_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
         MissingInputs::layout(gpu)
     }
 
-    /// Group 0 of a frame, with a list of pixels.
+    /// Returns group 0 of a frame, with a list of pixels.
     pub(crate) fn missing_group(
         &self,
         stage: &Stage<'_>,
@@ -231,7 +231,7 @@ impl FrameInputs {
         MissingInputs { inputs: self.inputs_of(frame, &prepared.light_data), missing }.group(stage, layout)
     }
 
-    /// What of group 0 functions of hosts' shaders read, of the frame prepared last; `None` before there was one.
+    /// Returns the part of group 0 that functions in hosts' shaders read, for the last prepared frame; `None` before the first.
     pub(crate) fn embedded(&self) -> Option<EmbeddedGroup> {
         Some(EmbeddedGroup::of(&EmbeddedInputs {
             receiver_view: &self.receiver_view,
@@ -260,50 +260,50 @@ impl PreparedInputs {
         pass.set_bind_group(0, &self.group, &[]);
     }
 
-    /// Binds group 0 while something is drawn.
+    /// Binds group 0 in a render pass.
     pub(crate) fn bind_drawn(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_bind_group(0, &self.group, &[]);
     }
 
-    /// Dispatches one thread a pixel.
+    /// Dispatches one thread per pixel.
     pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.dispatch_rows(pass, self.size_px.y);
     }
 
-    /// Dispatches one thread for each pixel that is known: `known_pixel` in the shader.
+    /// Dispatches one thread per known pixel: `known_pixel` in the shader.
     pub(crate) fn dispatch_known(&self, pass: &mut wgpu::ComputePass<'_>) {
         let known = self.size_px.map(|px| px.div_ceil(self.stride_px).div_ceil(TILE));
         pass.dispatch_workgroups(known.x, known.y, 1);
     }
 
-    /// Dispatches one thread a pixel and layer.
+    /// Dispatches one thread per pixel and layer.
     pub(crate) fn dispatch_layers(&self, pass: &mut wgpu::ComputePass<'_>, layers: u32) {
         pass.dispatch_workgroups(self.size_px.x.div_ceil(TILE), self.size_px.y.div_ceil(TILE), layers);
     }
 
-    /// Dispatches one thread a pixel of so many rows.
+    /// Dispatches one thread per pixel for a number of rows.
     pub(crate) fn dispatch_rows(&self, pass: &mut wgpu::ComputePass<'_>, rows: u32) {
         pass.dispatch_workgroups(self.size_px.x.div_ceil(TILE), rows.div_ceil(TILE), 1);
     }
 }
 
-/// How far the host's matrices may have moved what it drew, metres, where the frame is counted from an anchor and coordinates no
-/// longer tell: a translation and a rotation whose entries were rounded, and as much again for the products of each corner, are
-/// eight halves of a unit in the last place of the camera's distance from the world's origin.
+/// Error of positions due to rounding in the host's matrices, metres; 0 without an anchor, because coordinates then show it. The
+/// rounded entries of a translation and a rotation, and as much again for the products at each vertex, sum to eight half units
+/// in the last place of the camera's distance from the world's origin.
 pub(crate) fn matrix_rounding_m(stage: &Stage<'_>, receivers: &PreparedReceivers<'_>) -> f32 {
     let anchor = stage.anchor();
     if anchor == Vec3::ZERO {
         return 0.0;
     }
-    // Points are rounded as they are, and what casts by its own matrices.
+    // For points, coordinates and the casters' matrices are rounded at the anchor's scale.
     let eye = receivers.camera().map_or(DVec3::ZERO, Camera::eye_in_world);
     4.0 * f32::EPSILON * (eye + anchor.as_dvec3()).length() as f32
 }
 
-/// Metres across a pixel, the wider way, where the clip position's w is 1: 1 m before a perspective camera, anywhere before an
-/// orthographic one.
+/// Returns the larger side of a pixel, metres, where the clip position's w is 1: 1 m in front of a perspective camera,
+/// anywhere in front of an orthographic one.
 fn pixel_m_per_w(view_from_clip: &Mat4, size_px: UVec2) -> f32 {
-    // Where w and depth stay, a step of the clip position's x or y over w is a step of the view position by the inverse's column.
+    // At constant w and depth, a step of the clip position's x or y over w moves the view position by the inverse's column.
     let Mat4 { x_axis, y_axis, .. } = view_from_clip;
     let per_ndc = Vec2::new(x_axis.truncate().length(), y_axis.truncate().length());
     (2.0 * per_ndc / size_px.as_vec2()).max_element()
@@ -326,7 +326,7 @@ fn receiver_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> ReceiverView {
     let Surfaces::Depth { camera, .. } = &receivers.surfaces else {
         return ReceiverView { are_points: 1, ..common };
     };
-    // The same for all lights, and all parts of them, that are seen by one camera.
+    // Shared by all lights, and all their parts, that one camera sees.
     let of_camera = stage.device.shared_values().get_or_make(*camera, CameraMatrices::of);
     let CameraMatrices { view_from_clip, world_from_view, clip_depth_rows: [clip_z_row, clip_w_row] } = of_camera.1;
     ReceiverView {
@@ -359,7 +359,7 @@ impl CameraMatrices {
     }
 }
 
-/// The rows of the camera's matrix that depth comes from; zero of points, whose positions come from no depth.
+/// Returns the rows of the camera's matrix that yield depth; zero for points, whose positions do not come from depth.
 pub(crate) fn clip_depth_rows(receivers: &PreparedReceivers<'_>) -> [Vec4; 2] {
     receivers.camera().map_or([Vec4::ZERO; 2], |camera| camera.clip_depth_rows())
 }
@@ -370,7 +370,7 @@ mod tests {
 
     use super::*;
 
-    /// Two neighbours of one clip position, by the inverse of the matrix itself.
+    /// The width equals the distance to a neighbour at the same clip position, computed with the inverse matrix.
     #[test]
     fn a_pixel_is_as_wide_as_to_its_neighbour() {
         let size_px = UVec2::new(160, 90);

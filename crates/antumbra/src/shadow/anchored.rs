@@ -1,7 +1,7 @@
 //! Prepared frames: positions relative to an anchor near the light.
 //!
-//! Far from the world's origin 32-bit floats are a millimetre apart: places are counted from an anchor near what the frame is
-//! about, in double precision on the processor. And boxes whose sides are not known have finite sides all the same.
+//! Far from the world's origin 32-bit floats are a millimetre apart, so positions are taken relative to an anchor near the light or
+//! the camera, matrices in double precision on the CPU. Unknown sides of boxes become finite.
 
 use antumbra_light::{Aabb, Light, anchor_near};
 use glam::{DVec3, Mat4, Vec3};
@@ -12,13 +12,13 @@ use crate::contract::{
 };
 use crate::light_map::occluding_bounds::{KNOWN_REACH_M, is_known};
 
-/// Sides of boxes are no farther from the anchor than this, metres.
+/// Maximum distance of a box's sides from the anchor, metres.
 const MOST_REACH_M: f32 = 10.0 * KNOWN_REACH_M;
 
-/// How far from the camera receivers are looked for, metres, where neither they nor the casters are known to lie anywhere.
+/// Assumed distance of receivers from the camera, metres, if the bounds of neither receivers nor casters are known.
 const UNKNOWN_RECEIVERS_M: f32 = 1000.0;
 
-/// A frame's places counted from an anchor.
+/// Positions of a frame relative to an anchor.
 #[derive(Debug)]
 pub(super) struct Anchored<'a> {
     anchor: Vec3,
@@ -26,11 +26,11 @@ pub(super) struct Anchored<'a> {
     bounds: Option<Aabb>,
     hull: Vec<Vec3>,
     seen: Vec<Vec3>,
-    /// Where the casters are meshes.
+    /// `Some` if the casters are meshes.
     meshes: Option<Vec<MeshCaster<'a>>>,
 }
 
-/// Near the light; of a sun near the camera, or in the middle of points where that is known.
+/// Returns the anchor of a frame: near the light; for a sun, near the camera or the middle of the points' box, if known.
 pub(super) fn anchor_of(asked: &Asked<'_>) -> Vec3 {
     let about = match asked {
         _ if !asked.light().is_distant() => asked.light().center,
@@ -45,20 +45,20 @@ pub(super) fn anchor_of(asked: &Asked<'_>) -> Vec3 {
 }
 
 impl<'a> Anchored<'a> {
-    /// Whether a frame has to be said otherwise.
+    /// Whether a frame must be converted: its anchor is not the origin, or a box has unknown sides.
     pub(super) fn is_needed(anchor: Vec3, frame: &PreparedFrame<'_>, meshes: Option<&[MeshCaster<'_>]>) -> bool {
         let mut boxes = meshes.unwrap_or_default().iter().map(|mesh| mesh.bounds).chain(frame.receivers.bounds);
         anchor != Vec3::ZERO || boxes.any(|bounds| !bounds.is_empty() && !is_known(&bounds))
     }
 
-    /// What of the frame has to be said otherwise.
+    /// Converts a frame's positions.
     pub(super) fn new(anchor: Vec3, frame: &PreparedFrame<'_>, meshes: Option<&[MeshCaster<'a>]>) -> Self {
         let near = |points: &[Vec3]| points.iter().map(|x| *x - anchor).collect();
         let light = frame.light.counted_from(anchor);
         let mesh_near = |mesh: &MeshCaster<'a>| MeshCaster { bounds: finite(moved(mesh.bounds, anchor)), ..*mesh };
         let meshes: Option<Vec<_>> = meshes.map(|meshes| meshes.iter().map(mesh_near).collect());
         let given = frame.receivers.bounds.map(|bounds| moved(bounds, anchor));
-        // Where receivers are looked for: about the camera, else about what is anchored.
+        // Receivers with unknown bounds are assumed around the camera, or else around the anchor.
         let eye = frame.receivers.camera().map_or(anchor.as_dvec3(), Camera::eye_in_world);
         let eye = (eye - anchor.as_dvec3()).as_vec3();
         Self {
@@ -71,12 +71,12 @@ impl<'a> Anchored<'a> {
         }
     }
 
-    /// The casters' meshes, where they are such.
+    /// Converted meshes; `None` if the casters are a depth map.
     pub(super) fn meshes(&self) -> Option<&[MeshCaster<'a>]> {
         self.meshes.as_deref()
     }
 
-    /// The frame, with its mask and depth as they are.
+    /// Returns the converted frame; mask and depth buffer are unchanged.
     pub(super) fn frame<'f>(&'f self, frame: &PreparedFrame<'f>) -> PreparedFrame<'f> {
         let PreparedFrame { receivers, casters, .. } = frame;
         let casters = match casters {
@@ -99,7 +99,7 @@ impl<'a> Anchored<'a> {
     }
 }
 
-/// A box with finite sides; an empty one as it is.
+/// Clamps a box to finite sides; an empty box is unchanged.
 fn finite(bounds: Aabb) -> Aabb {
     if bounds.is_empty() {
         return bounds;
@@ -108,8 +108,8 @@ fn finite(bounds: Aabb) -> Aabb {
     Aabb { min: bounds.min.clamp(-most, most), max: bounds.max.clamp(-most, most) }
 }
 
-/// The box of what receives: the host's, or the casters', with sides near the camera in place of those that are not known. `None`
-/// where the host has none and the casters' are all known.
+/// Returns the receivers' box: the host's, or the casters', with unknown sides replaced by sides near the camera. Returns `given`
+/// if it is missing or empty and the casters' box is known.
 fn bounds_of_receivers(given: Option<Aabb>, meshes: &[MeshCaster<'_>], eye: Vec3) -> Option<Aabb> {
     let known = |bounds: &Aabb| bounds.is_empty() || is_known(bounds);
     let of_casters = || meshes.iter().fold(Aabb::EMPTY, |all, mesh| all.union(mesh.bounds));
@@ -133,7 +133,7 @@ fn moved(bounds: Aabb, anchor: Vec3) -> Aabb {
     Aabb { min: bounds.min - anchor, max: bounds.max - anchor }
 }
 
-/// A matrix on places in the world, on places counted from an anchor.
+/// Converts a matrix on world positions to one on positions relative to an anchor.
 fn from_anchor(of_world: Mat4, anchor: Vec3) -> Mat4 {
     (of_world.as_dmat4() * glam::DMat4::from_translation(DVec3::from(anchor))).as_mat4()
 }

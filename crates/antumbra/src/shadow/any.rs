@@ -1,4 +1,4 @@
-//! One light's shadow by a technique chosen while the program runs.
+//! Shadow of one light by a technique chosen at run time.
 
 use std::fmt;
 
@@ -136,12 +136,12 @@ impl AnyShadow {
     /// Sets a parameter from text, for the next frame.
     ///
     /// # Errors
-    /// Names the keys there are, or what the key takes.
+    /// Lists the technique's keys, or the values that the key accepts.
     pub fn set(&mut self, key: &str, text: &str) -> Result<(), ParamError> {
         self.inner.set(key, text)
     }
 
-    /// Sets a parameter to a value of its type, for the next frame: `set_value("map_size", 2048)`. A choice is its name.
+    /// Sets a parameter to a value of its type, for the next frame: `set_value("map_size", 2048)`. Give a choice by its name.
     ///
     /// # Errors
     /// As [`set`](Self::set).

@@ -1,5 +1,5 @@
-//! Ends of a frame's data: the host's receivers and mask, and the textures that techniques read and write in their place where
-//! they need others.
+//! Conversions at both ends of a frame's data: textures that techniques read and write in place of the host's receivers and mask,
+//! if they need other formats.
 
 use super::frame::{Asked, Frame, PointFrame};
 use crate::contract::{Mask, PreparedReceivers};
@@ -7,22 +7,22 @@ use crate::gpu::{Recorder, Stage};
 use crate::mask::format::NarrowMask;
 use crate::receivers::points::PointTextures;
 
-/// Ends of one frame.
+/// Inputs and output of one frame, with their conversions.
 pub(super) enum Ends<'a> {
     /// A mask of a depth buffer.
     Mask {
         frame: Frame<'a>,
-        /// Where the host's mask has fewer bits than techniques write.
+        /// Conversion to the host's format; `None` if techniques write the host's mask directly.
         narrow: Option<NarrowMask>,
     },
     /// Visibilities of points.
     Points { frame: PointFrame<'a>, textures: PointTextures },
 }
 
-/// Resources of the last frame's ends.
+/// Resources of the last frame's conversions.
 #[derive(Clone, Debug, Default)]
 pub(super) enum KeptEnds {
-    /// The host's own did.
+    /// No conversion.
     #[default]
     Nothing,
     Narrow(Box<NarrowMask>),
@@ -30,7 +30,7 @@ pub(super) enum KeptEnds {
 }
 
 impl<'a> Ends<'a> {
-    /// Makes ready for what a host asks for. `earlier` is the frame before's.
+    /// Prepares the conversions of a host's request. `earlier` has the resources of the previous frame.
     pub(super) fn prepare(stage: &Stage<'_>, asked: &Asked<'a>, earlier: KeptEnds) -> Self {
         match asked {
             Asked::Mask(frame) => {
@@ -47,7 +47,7 @@ impl<'a> Ends<'a> {
         }
     }
 
-    /// Receivers and mask as techniques have them.
+    /// Receivers and mask as techniques receive them.
     pub(super) fn inner(&self) -> (PreparedReceivers<'_>, &Mask) {
         match self {
             Self::Mask { frame, narrow } => {
@@ -57,14 +57,14 @@ impl<'a> Ends<'a> {
         }
     }
 
-    /// Records the way from the host's receivers to the technique's.
+    /// Records the conversion of the host's receivers to the technique's.
     pub(super) fn record_read(&self, recorder: &mut Recorder<'_>) {
         if let Self::Points { textures, .. } = self {
             textures.record_read(recorder);
         }
     }
 
-    /// Records the way from the technique's mask to where the host wants visibility.
+    /// Records the conversion of the technique's mask to the host's output.
     pub(super) fn record_write(&self, recorder: &mut Recorder<'_>) {
         match self {
             Self::Mask { frame, narrow: Some(narrow) } => narrow.record(recorder, frame.mask),

@@ -1,4 +1,4 @@
-//! One light's work for one frame, as a host hands it over, and what of it is drawn.
+//! Frame of one light as a host describes it, and its casters as they are drawn.
 
 use antumbra_light::Light;
 use glam::Vec3;
@@ -31,14 +31,14 @@ pub struct PointFrame<'a> {
     pub casters: Casters<'a>,
     /// Points.
     pub receivers: PointReceivers<'a>,
-    /// Where visibility goes: a 32-bit float for each point and channel, red, green and blue of a point after one another. Usage
+    /// Output buffer: a 32-bit float per point and channel, with red, green and blue of a point next to one another. Usage
     /// `STORAGE`, no larger than a binding.
     pub visibilities: &'a wgpu::Buffer,
     /// Number of channels; [`Casters::mask_channels`] returns the number that the casters need.
     pub channels: MaskChannels,
 }
 
-/// What a host asks for.
+/// Request of a host.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Asked<'a> {
     /// A mask of a depth buffer.
@@ -66,29 +66,29 @@ impl<'a> Asked<'a> {
 /// Casters in one of four forms.
 #[derive(Clone, Copy, Debug)]
 pub enum Casters<'a> {
-    /// A set of casters that lights share; every technique takes it.
+    /// A set of casters that lights share. Every technique supports it.
     Set {
-        /// The casters, brought to the GPU by [`CasterSet::update`].
+        /// Casters, uploaded by [`CasterSet::update`].
         set: &'a CasterSet,
-        /// A bit for each layer whose casters the light sees; `u32::MAX` for all.
+        /// Bit mask of the layers whose casters the light sees; `u32::MAX` for all.
         layers: u32,
     },
-    /// The same of the casters that reach into a ball, such as a light's range: no others are drawn, and what changes outside of the ball
-    /// redraws nothing. Visibility is right within it if it holds the light; every technique takes it.
+    /// Casters of a set that reach into a ball, such as a light's range. No others are drawn, and changes outside of the ball
+    /// redraw nothing. Visibility is correct within the ball if it contains the light. Every technique supports it.
     Within {
-        /// The casters, brought to the GPU by [`CasterSet::update`].
+        /// Casters, uploaded by [`CasterSet::update`].
         set: &'a CasterSet,
-        /// A bit for each layer whose casters the light sees; `u32::MAX` for all.
+        /// Bit mask of the layers whose casters the light sees; `u32::MAX` for all.
         layers: u32,
         /// Centre of the ball, world space.
         center: Vec3,
         /// Radius of the ball, metres; may be infinite.
         radius_m: f32,
     },
-    /// Geometry in the host's own buffers, for those that have it in just this form; every technique takes it.
+    /// Geometry in the host's own buffers, for hosts that have it in this form. Every technique supports it.
     Meshes(&'a [MeshCaster<'a>]),
-    /// The host's own light depth map, for the techniques that need no more: `hard`, `pcf`, `pcss`,
-    /// `vsm`, `lvsm`, `evsm`, `esm`, `convolution`, `moment`.
+    /// The host's own light depth map, for the techniques that need nothing else: `hard`, `pcf`, `pcss`, `vsm`, `lvsm`, `evsm`,
+    /// `esm`, `convolution`, `moment`.
     DepthMap(DepthMapCaster<'a>),
 }
 
@@ -102,7 +102,7 @@ impl Casters<'_> {
         }
     }
 
-    /// Key of the casters; `None` where nothing tells when they change.
+    /// Cache key of the casters; `None` if their changes are unknown.
     pub(crate) fn key(&self) -> Option<CastersKey> {
         match *self {
             Self::Set { set, layers } => Some(set.key(layers, None)),
@@ -112,7 +112,7 @@ impl Casters<'_> {
     }
 }
 
-/// A frame's casters, with a set's meshes in the set's place.
+/// A frame's casters, with a set resolved to its meshes.
 pub(super) enum FrameCasters<'a> {
     /// Meshes of a set.
     Set(Vec<MeshCaster<'a>>),
@@ -121,10 +121,10 @@ pub(super) enum FrameCasters<'a> {
 }
 
 impl<'a> FrameCasters<'a> {
-    /// Of a frame's casters.
+    /// Resolves a frame's casters.
     ///
     /// # Errors
-    /// Where a set has changes that were not brought to the GPU.
+    /// If a set has changes that were not uploaded.
     pub(super) fn of(casters: &Casters<'a>) -> Result<Self, Error> {
         Ok(match *casters {
             Casters::Set { set, layers } => Self::Set(set.meshes(layers, None)?),
@@ -136,7 +136,7 @@ impl<'a> FrameCasters<'a> {
         })
     }
 
-    /// The meshes; none where the host has drawn them.
+    /// Meshes; `None` for a host's depth map.
     pub(super) fn meshes(&self) -> Option<&[MeshCaster<'a>]> {
         match self {
             Self::Set(meshes) => Some(meshes),
@@ -146,7 +146,7 @@ impl<'a> FrameCasters<'a> {
     }
 }
 
-/// A frame with its casters as they are drawn.
+/// Creates a frame with its casters as they are drawn.
 pub(super) fn prepared<'f>(
     light: &'f Light,
     casters: &'f FrameCasters<'_>,

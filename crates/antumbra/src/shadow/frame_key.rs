@@ -20,7 +20,7 @@ pub(super) struct FrameKey<P> {
     version: u64,
 }
 
-/// Key of receivers and of where their visibility goes.
+/// Key of receivers and of their output.
 #[derive(Debug, PartialEq)]
 enum ReceiversKey {
     Mask {
@@ -37,7 +37,7 @@ enum ReceiversKey {
         visibilities: (wgpu::Buffer, MaskChannels),
         count: u32,
         row_length: Option<u32>,
-        /// Of positions, normals and widths.
+        /// Buffer, offset and stride of positions, normals and widths.
         buffers: [Option<(wgpu::Buffer, u64, u32)>; 3],
         width_m: Option<f32>,
         bounds: Aabb,
@@ -78,7 +78,7 @@ impl ReceiversKey {
 }
 
 impl<P: Params> FrameKey<P> {
-    /// `None` where the host does not say when receivers or casters change.
+    /// Creates the key of a frame; `None` if receivers or casters have no version.
     pub(super) fn of(
         params: &P,
         (denoise, is_half_resolution): (Option<&Denoise>, bool),

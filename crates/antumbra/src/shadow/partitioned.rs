@@ -1,4 +1,4 @@
-//! A light's state where what it reaches is cut into parts: a technique for each, and what they share.
+//! State of a light that is covered in parts: a technique for each part, and what the parts share.
 
 use glam::Vec3;
 
@@ -9,34 +9,34 @@ use crate::light_partition::stable_boxes::StableBoxes;
 use crate::light_partition::{Part, parts_of};
 use crate::techniques::Technique;
 
-/// The parts of a light.
+/// State of a light's parts.
 pub(super) struct Parted<T> {
     images: PartImages,
-    /// Of the frame prepared; none where the technique covers all that it reaches.
+    /// Parts of the frame prepared last; empty if the technique covers all that the light reaches.
     parts: Vec<Part>,
-    /// Of every part that a frame has had: those that come and go make nothing anew.
+    /// State of every part that any frame had, so that parts that come and go create nothing.
     states: Vec<PartState<T>>,
-    /// Of a sun's parts: where their maps lie.
+    /// Boxes that keep a sun's cascades in place.
     stable_boxes: StableBoxes,
 }
 
 struct PartState<T> {
     id: u32,
-    /// Whether it ever had casters: maps of those that come and go keep their size.
+    /// Whether the part ever had casters, so that its maps keep their size while casters come and go.
     has_cast: bool,
     technique: T,
     keep: Keep,
 }
 
-/// What a part is prepared with.
+/// Inputs for preparing a part.
 struct PartStage<'a> {
     of_light: &'a Stage<'a>,
     stable_box: Option<[Vec3; 8]>,
-    /// Parts of the light.
+    /// Number of parts of the light.
     part_count: usize,
 }
 
-/// Passes of all parts in one frame; `P` is the technique's.
+/// Passes of all parts in one frame; `P` is the technique's prepared work.
 pub(super) struct PartedPasses<'a, P> {
     images: PreparedPartImages,
     parts: Vec<PartPasses<'a, P>>,
@@ -48,7 +48,7 @@ struct PartPasses<'a, P> {
 }
 
 impl<T: Technique> Parted<T> {
-    /// Makes ready for a frame whose reach the technique does not cover; `None`, and nothing is done, where it does.
+    /// Prepares a frame in parts. Does nothing and returns `None` if the technique covers all that the light reaches.
     pub(super) fn prepare<'a>(
         earlier: &mut Option<Self>,
         stage: &Stage<'_>,
@@ -113,7 +113,7 @@ impl<T: Technique> Parted<T> {
         }
     }
 
-    /// Whether the frame prepared is in parts.
+    /// Whether the frame prepared last is in parts.
     pub(super) fn is_in_use(&self) -> bool {
         !self.parts.is_empty()
     }
@@ -130,29 +130,29 @@ impl<T: Technique> Parted<T> {
         self.states.iter().map(|state| state.technique.memory_bytes() + state.keep.memory_bytes()).sum()
     }
 
-    /// Texels along a side of the map of each part where that is chosen for each frame; of a part without casters none.
+    /// Texels along a side of each part's map, if chosen per frame; omits parts without casters.
     pub(super) fn auto_map_sizes(&self) -> impl Iterator<Item = u32> {
         self.states_in_use().filter_map(|state| state.keep.auto_texels())
     }
 
-    /// The maps of each part.
+    /// Depth maps of all parts.
     pub(super) fn drawn_maps(&self) -> impl Iterator<Item = DrawnMap> {
         self.states_in_use().flat_map(|state| state.technique.drawn_maps())
     }
 
-    /// The lists of each part.
+    /// Lists of all parts.
     pub(super) fn drawn_lists(&self) -> impl Iterator<Item = DrawnLists> {
         self.states_in_use().flat_map(|state| state.technique.drawn_lists())
     }
 
-    /// The part that lacked the most.
+    /// Largest overflow of any part.
     pub(super) fn overflow(&self) -> Option<Overflow> {
         let overflows = self.states_in_use().filter_map(|state| state.technique.overflow());
         overflows.max_by_key(|overflow| overflow.needed - overflow.had)
     }
 }
 
-/// Parameters of a part without casters, whose maps hold nothing.
+/// Returns parameters with the smallest maps, for a part without casters.
 fn with_least_maps<P: Params>(params: &P) -> P {
     const SIZES: [&str; 2] = ["map_size", "view_size"];
     let mut least = params.clone();
@@ -164,7 +164,7 @@ fn with_least_maps<P: Params>(params: &P) -> P {
     least
 }
 
-/// A part's casters; a host's map is every part's.
+/// Returns a part's casters; a host's depth map serves every part.
 fn of_meshes<'a>(of_frame: &PreparedCasters<'a>, of_part: &'a [MeshCaster<'a>]) -> PreparedCasters<'a> {
     match of_frame {
         PreparedCasters::HostDepthMap(map) => PreparedCasters::HostDepthMap(*map),

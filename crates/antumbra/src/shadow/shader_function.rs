@@ -1,4 +1,4 @@
-//! A light's visibility as a function of a host's own shaders, for what no depth buffer holds: glass, particles, fog.
+//! Visibility of a light as a function in a host's own shaders, for surfaces that no depth buffer holds: glass, particles, fog.
 
 use std::sync::Arc;
 
@@ -14,11 +14,11 @@ mod tests;
 #[derive(Debug, Default)]
 pub(super) struct ShaderFunctions {
     keep: Keep,
-    /// Text of the last one, with its key.
+    /// Text of the last function, with its key.
     text: Option<(TextKey, Arc<str>)>,
 }
 
-/// Key of a text.
+/// Cache key of a function's text.
 #[derive(Debug, PartialEq)]
 struct TextKey {
     wgsl: &'static str,
@@ -28,16 +28,17 @@ struct TextKey {
 }
 
 impl<T: Technique> Shadow<T> {
-    /// Visibility at any place, as a function of the host's own shaders: `visibility_at(position, normal, pixel)`, linked from the same
-    /// source as the mask's pass, for transparent surfaces, particles and fog. `hard`, `pcf` and `pcss` have it. It answers for the
-    /// frame prepared last once its commands have run, for places within that frame's `bounds`; a tint is no part of it. Name and
-    /// bindings: `prefix` begins all names, a letter first, and `group` is the host's bind group.
+    /// Returns a function for the host's own shaders, `visibility_at(position, normal, pixel)`: visibility at any position, linked
+    /// from the same source as the mask's pass, for transparent surfaces, particles and fog. `hard`, `pcf` and `pcss` have it. It
+    /// is valid for the frame prepared last once its commands have run, at positions within that frame's `bounds`; it leaves out
+    /// tints. All names start with `prefix`, which starts with a letter or is empty; `group` is the index of its bind group.
     ///
-    /// Call it after each [`prepare`](Self::prepare) that was recorded: where nothing changed, text, layout and group are those of before.
+    /// Call it after each [`prepare`](Self::prepare) that was recorded: if nothing changed, text, layout and bind group are the
+    /// same as before.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] of other techniques, before a frame, where the light is covered in parts, and where its map is shared with
-    /// other lights; [`Error::BadFrame`] where the prefix does not begin a name.
+    /// [`Error::Unsupported`] for other techniques, before the first frame, if the light is covered in parts, and if its map is
+    /// shared with other lights; [`Error::BadFrame`] if the prefix cannot begin a name.
     pub fn shader_function(&mut self, group: u32, prefix: &str) -> Result<ShaderFunction, Error> {
         check_prefix(T::NAME, prefix)?;
         let of = self.embeddable()?;

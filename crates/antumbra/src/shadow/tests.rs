@@ -1,4 +1,4 @@
-//! What every technique owes a host that draws frame after frame: nothing made in vain, and frames in any order.
+//! Tests of every technique over sequences of frames: resources are reused, and frames come in any order.
 
 use antumbra_light::{Aabb, Light, LightShape, ShadowDistance};
 use glam::{DMat4, Mat4, Vec2, Vec3};
@@ -33,21 +33,21 @@ fn visibility(gpu: &Gpu, mask: &Mask) -> Vec<f32> {
     bytemuck::pod_collect_to_vec(&read_texture(gpu, mask.texture(), 0, SIZE))
 }
 
-/// A light over the case's scene, the farther along its way the later the frame.
+/// Returns the light moved by 5 cm per frame.
 fn moved(light: &Light, frame: u32) -> Light {
     Light { center: light.center + 0.05 * frame as f32 * Vec3::X, ..light.clone() }
 }
 
-/// A property of the frames of a technique, over a case.
+/// Property of a technique's frames of a test scene, with its name.
 type Property = (&'static str, fn(&Gpu, &Case, TechniqueKind));
 
-/// Properties by their functions, which name them where they fail.
+/// Lists properties with the names of their functions, for failure messages.
 macro_rules! properties {
     ($($property:ident),* $(,)?) => { [$((stringify!($property), $property as fn(&Gpu, &Case, TechniqueKind))),*] };
 }
 
-/// A test for each technique. It holds all properties, since most of its time is the technique's shaders compiled, which each process does
-/// anew: a test for each property as well takes more than twice as long.
+/// Declares one test per technique. Each checks all properties, because most of its time is spent compiling the technique's
+/// shaders, which every process repeats: a test per technique and property takes more than twice as long.
 macro_rules! techniques {
     ($($technique:ident: $kind:ident),* $(,)?) => {
         mod frames_under_a_rectangle {
@@ -100,10 +100,10 @@ fn holds(gpu: &Gpu, case: &Case, kind: TechniqueKind, properties: &[Property]) {
     }
 }
 
-/// Where one map holds what the light reaches.
+/// Checks the properties under a light that one map covers.
 fn under_a_rectangle(kind: TechniqueKind) {
     let Some(shared) = gpu() else { return };
-    // Counters of its own.
+    // A separate `Gpu` has separate counters.
     let gpu = &Gpu::new(shared.device(), shared.queue());
     let properties = properties![
         warm_frames_compile_nothing,
@@ -116,7 +116,7 @@ fn under_a_rectangle(kind: TechniqueKind) {
     holds(gpu, &Case::half_plane(gpu, RECTANGLE), kind, &properties);
 }
 
-/// Where one map does not hold what the light reaches: by one technique of each family, since it is none of theirs to know.
+/// Properties under a light that needs several maps: for one technique per family, because techniques do not know of parts.
 mod frames_all_around_a_sphere {
     use super::TechniqueKind;
 
@@ -155,7 +155,7 @@ fn all_around_a_sphere(kind: TechniqueKind) {
     let Some(shared) = gpu() else { return };
     let gpu = &Gpu::new(shared.device(), shared.queue());
     let ground_below = Case::half_plane(gpu, LightShape::Sphere { radius_m: 0.2 });
-    // Close above the half-plane, so that what may receive lies up to its height on all sides.
+    // Close above the half-plane, so that receivers may lie on all sides, up to the lamp's height.
     let lamp = Light { center: Vec3::new(-0.6, 1.9, 0.0), ..ground_below.light.clone() };
     let case = Case { light: lamp, ..ground_below };
     let of_all = properties![
@@ -164,7 +164,7 @@ fn all_around_a_sphere(kind: TechniqueKind) {
         what_stands_still_is_not_drawn_again,
     ];
     holds(gpu, &case, kind, &of_all);
-    // Its first frames lack room here, and what finds room depends on the order of fragments.
+    // Its first frames overflow here, and which fragments fit depends on their order.
     if kind != TechniqueKind::MultiLayer {
         let of_those_with_room =
             properties![frames_before_one_submission_are_those_of_two, frames_that_come_to_nothing_leave_nothing];
@@ -172,8 +172,8 @@ fn all_around_a_sphere(kind: TechniqueKind) {
     }
 }
 
-/// Ten kilometres from the world's origin, where 32-bit floats are a millimetre apart, all that a frame says of its scene is
-/// the same but for the camera's matrix, whose rounding is the host's.
+/// Ten kilometres from the world's origin, where 32-bit floats are a millimetre apart, masks are those at the origin, except for
+/// the rounding of the camera's matrix by the host.
 fn frames_far_from_the_origin_are_as_at_it(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let near = case
@@ -195,7 +195,7 @@ fn frames_far_from_the_origin_are_as_at_it(gpu: &Gpu, case: &Case, kind: Techniq
         let squares: f32 = far.iter().zip(&near).map(|(a, b)| (a - b).powi(2)).sum();
         let rms = (squares / far.len() as f32).sqrt();
         println!("{kind}, {away}: {rms:.5} from the same at the origin");
-        // A variance near to none is taken for one or for none by its last bits.
+        // Whether a variance near zero counts as zero depends on its last bits.
         let is_of_variances = matches!(kind, TechniqueKind::Vssm | TechniqueKind::Evssm);
         let bound = if is_of_variances { 0.05 } else { 0.003 };
         assert!(rms <= bound, "{kind}, {away}: {rms}");
@@ -219,8 +219,8 @@ fn frames_that_only_move_make_no_objects(gpu: &Gpu, case: &Case, kind: Technique
         gpu.objects_made()
     };
     assert!(draw(0..6).total() > 0, "{kind}: nothing is counted");
-    // Tests share the device: where another's poll has taken the callback that frees a staging buffer and not yet called it, the
-    // next frame takes a second one. What frames make of themselves they make in each round.
+    // Tests share the device: if another test's poll has taken the callback that frees a staging buffer but not yet called it, the
+    // next frame creates a second one. Resources that frames always create would appear in every round.
     let mut rounds = [6..10, 6..10, 6..10].into_iter().map(|frames| {
         let before = gpu.objects_made();
         (before, draw(frames))
@@ -228,8 +228,8 @@ fn frames_that_only_move_make_no_objects(gpu: &Gpu, case: &Case, kind: Technique
     assert!(rounds.any(|(before, after)| before == after), "{kind}: {:?}", gpu.objects_made());
 }
 
-/// Texels of maps whose size is chosen for each frame are those that are drawn, 1024 at least for an image however small; they stay while the light moves a little, and none are
-/// reported where sizes are given.
+/// Automatic map sizes are those that are drawn, at least 1024 texels for any image. They stay while the light moves a little. None
+/// are reported if sizes are fixed.
 #[test]
 fn chosen_map_sizes_are_those_drawn() {
     let Some(gpu) = gpu() else { return };
@@ -254,8 +254,8 @@ fn chosen_map_sizes_are_those_drawn() {
     }
 }
 
-/// Two lights, each with a state of its own and then both with one: prepared or recorded before one submission, they give
-/// the bits that they give in submissions of their own.
+/// Two lights, first with a state each, then with one for both: frames in one submission have the bits of frames in two
+/// submissions.
 fn frames_before_one_submission_are_those_of_two(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let lights = [moved(&case.light, 0), moved(&case.light, 12)];
@@ -296,7 +296,7 @@ fn frames_before_one_submission_are_those_of_two(gpu: &Gpu, case: &Case, kind: T
     });
 }
 
-/// A frame that is prepared and dropped, and one that fails, leave a state that draws the next as ever.
+/// After a frame that was prepared and dropped, or one that failed, the state draws the next frame correctly.
 fn frames_that_come_to_nothing_leave_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let elsewhere = moved(&case.light, 12);
@@ -324,20 +324,20 @@ fn frames_that_come_to_nothing_leave_nothing(gpu: &Gpu, case: &Case, kind: Techn
     assert!(draw(&mut shadow) == expected, "{kind}: after a frame that failed");
 }
 
-/// What a frame of a set's casters came to.
+/// Outcome of a frame with a set's casters.
 struct Outcome {
     /// Whether casters were drawn or read.
     draws: bool,
-    /// How many passes there were.
+    /// Number of passes.
     passes: usize,
-    /// The mask where the commands were submitted.
+    /// Mask, which the frame has changed if it was submitted.
     mask: Vec<f32>,
-    /// Whether the frame before lacked room.
+    /// Whether the frame before overflowed.
     has_lacked: bool,
 }
 
-/// The second frame of a scene in which nothing moves draws no caster, and has the first one's bits; later ones record nothing at all,
-/// whatever the light's brightness. Whatever moves is drawn again, and so is what commands would have drawn that were never submitted.
+/// The second frame of a static scene draws no caster, and has the first one's bits; later ones record nothing at all, even if the
+/// light's brightness changes. If the light or a caster moves, or commands were never submitted, the frame is drawn again.
 fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     let (mut set, ids) = set_of(gpu, case);
     update(gpu, &mut set);
@@ -370,7 +370,7 @@ fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueK
     }
     assert!(!second.draws, "{kind}: the second frame draws none");
     assert!(second.mask == first.mask, "{kind}: and shows the same");
-    // What the first frame needed may be read in the second.
+    // The second frame may still read back what the first one needed.
     let bright = Light { name: "bright".into(), color: Vec3::X, intensity: 7.0, ..case.light.clone() };
     let third = draw(&set, &bright, true);
     assert_eq!(third.passes, 0, "{kind}: the third frame records nothing");
@@ -385,7 +385,7 @@ fn what_stands_still_is_not_drawn_again(gpu: &Gpu, case: &Case, kind: TechniqueK
     assert!(after.draws && after.mask != first.mask, "{kind}: the frame before was never submitted");
 }
 
-/// Steps compile what a warm-up does at once, each a part of it, and say how many are left.
+/// Warm-up steps together compile what a warm-up compiles at once, and report the number of steps left.
 #[test]
 fn warm_up_steps_compile_a_part_each() {
     let Some(shared) = gpu() else { return };
@@ -413,16 +413,16 @@ fn warm_up_steps_compile_a_part_each() {
             parts += u32::from(made() > before);
         }
         assert!(steps.next().is_none() && made() > first, "{kind}");
-        // What passes share is there from the first technique on.
+        // Pipelines that techniques share exist after the first technique.
         let least = if kind == TechniqueKind::Pcss { 3 } else { 1 };
         assert!(parts >= least, "{kind}: {parts} of {all} steps compile anything");
         assert_eq!(made(), at_once.objects_made().programs, "{kind}");
     }
 }
 
-/// After a warm-up the first frame finds its programs, whatever its casters.
+/// After a warm-up the first frame compiles nothing, for any kind of caster.
 fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
-    // Programs of its own.
+    // A separate `Gpu` has separate pipelines.
     let gpu = &Gpu::new(gpu.device(), gpu.queue());
     let (mut set, ids) = set_of(gpu, case);
     small(gpu, kind).warm_up(WarmUp::default()).expect("any device");
@@ -440,7 +440,7 @@ fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
         let mask = Mask::with_channels(gpu.device(), SIZE, channels);
         case.with_frame(Casters::Set { set: &set, layers: u32::MAX }, |frame| {
             drop(small(gpu, kind).prepare(&Frame { mask: &mask, ..*frame }).expect("a good frame"));
-            // Not flat, which some compile for.
+            // This light is not flat, and some techniques compile for that.
             let ball = Light { shape: LightShape::Sphere { radius_m: 0.2 }, ..frame.light.clone() };
             drop(small(gpu, kind).prepare(&Frame { light: &ball, mask: &mask, ..*frame }));
         });
@@ -448,8 +448,8 @@ fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     assert_eq!(gpu.objects_made().programs, programs, "{kind}: a frame compiled something");
 }
 
-/// Shadows are what they are without a distance up to where the fade begins, fade as [`ShadowDistance`] says, and are gone
-/// from its end on: of techniques that cover all by themselves, of those that do not, and under a host's map.
+/// Shadows are unchanged up to where the fade begins, fade as [`ShadowDistance`] defines, and are gone beyond its end: for
+/// techniques that cover everything by themselves, and for those that do not.
 #[test]
 fn shadows_fade_and_end_at_a_distance() {
     let Some(gpu) = gpu() else { return };
@@ -484,7 +484,7 @@ fn shadows_fade_and_end_at_a_distance() {
         let off = off / ground.len() as f32;
         println!("{name}: {off:.4} from what is expected; {dark:?} dark pixels");
         assert!(dark.iter().all(|count| *count > 20), "{name}: {dark:?} dark pixels");
-        // Maps of what is near alone have other texels.
+        // Maps of the near part alone have other texels.
         assert!(off < 0.01, "{name}: {off}");
         let bad = ShadowDistance { fade_m: 7.0, ..distance };
         case.with_frame(Casters::Meshes(&casters), |frame| {
@@ -495,8 +495,8 @@ fn shadows_fade_and_end_at_a_distance() {
     }
 }
 
-/// While a camera walks under a sun, the maps of cascades that still hold what is seen are not drawn again, and what they show
-/// is what a state of its own shows.
+/// While a camera walks under a sun, maps of cascades that still cover the view are not redrawn, and masks match those of a new
+/// state.
 #[test]
 fn cascades_that_hold_are_not_drawn_again() {
     let Some(gpu) = gpu() else { return };
@@ -529,7 +529,7 @@ fn cascades_that_hold_are_not_drawn_again() {
                 (draws, visibility(gpu, &case.mask))
             })
         };
-        // Lists find their room.
+        // Lists grow to the size they need.
         for _ in 0..3 {
             draw(&mut shadow, &first);
         }

@@ -1,7 +1,7 @@
 //! Validation of a frame: light, receivers, mask and casters, once for all techniques and before any other work.
 //!
-//! wgpu does not tell a view's aspect, dimension or device. So a view that is new is bound on trial, within an error scope:
-//! native devices answer at once. Browsers answer later, by a message of their own.
+//! wgpu does not expose a view's aspect, dimension or device, so each new view is bound on trial, within an error scope. Native
+//! devices report the error at once, browsers later, by a message of their own.
 
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec3};
@@ -24,7 +24,7 @@ pub(super) struct Validator {
     buffers: Good<wgpu::Buffer>,
 }
 
-/// One frame, and who asks.
+/// Frame to validate, with the technique's name for errors.
 struct Check<'a, F> {
     technique: &'static str,
     gpu: &'a Gpu,
@@ -32,7 +32,7 @@ struct Check<'a, F> {
 }
 
 impl Validator {
-    /// Refuses what does not fit together, or the device.
+    /// Refuses inputs that do not fit one another or the device.
     pub(super) fn check(
         &mut self,
         technique: &'static str,
@@ -198,14 +198,14 @@ impl<F> Check<'_, F> {
         if let Casters::DepthMap(map) = casters { self.depth_map(validator, map) } else { Ok(()) }
     }
 
-    /// Refuses points that are nowhere.
+    /// Refuses points that are not finite.
     fn finite(&self, what: &'static str, points: &[Vec3]) -> Result<(), Error> {
         let Some(i) = points.iter().position(|point| !point.is_finite()) else { return Ok(()) };
         self.bad(what, format!("not finite (point {i})"), "finite points in the world")
     }
 }
 
-/// Entries of the buffer that a light's points or its picture take.
+/// Number of buffer entries that a light's points or emission texture take.
 fn light_data_len(light: &Light) -> usize {
     match (&light.shape, &light.emission) {
         (LightShape::Points { positions_m }, _) => positions_m.len(),

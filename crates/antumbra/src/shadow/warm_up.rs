@@ -1,5 +1,5 @@
-//! Compiling before the first frame: a frame of a dummy scene is prepared on a state that is dropped, and what it compiled
-//! stays with the device.
+//! Compilation before the first frame: a frame of a dummy scene is prepared on a state that is dropped, and its pipelines stay with
+//! the device.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -25,21 +25,21 @@ use crate::techniques::{Coverage, Technique};
 /// Features of a scene that decide which pipelines its frames need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WarmUp {
-    /// Casters with holes, and translucent ones that do not tint.
+    /// Whether casters may be alpha-tested, or translucent without a tint.
     pub masked: bool,
-    /// Casters that tint, and masks of three channels.
+    /// Whether casters may tint, with masks of three channels.
     pub tinted: bool,
 }
 
 impl Default for WarmUp {
-    /// Whatever a scene may have.
+    /// All features.
     fn default() -> Self {
         Self { masked: true, tinted: true }
     }
 }
 
-/// Steps of compiling before the first frame, for hosts that show progress: each item compiles part of it, at most what one frame of a
-/// light needs. Its length is the number of steps that are left. A browser, which has no threads to spare, takes one a frame.
+/// Steps of compilation before the first frame, for hosts that show progress: each item compiles at most what one frame of a light
+/// needs. The length is the number of steps left. In a browser, which has no threads to spare, take one per frame.
 #[must_use = "nothing is compiled before a step is taken"]
 pub struct WarmUpSteps {
     steps: VecDeque<Box<dyn Step>>,
@@ -52,7 +52,7 @@ impl fmt::Debug for WarmUpSteps {
 }
 
 impl Iterator for WarmUpSteps {
-    /// What [`Shadow::warm_up`] returns.
+    /// Result of a step, as of [`Shadow::warm_up`].
     type Item = Result<(), Error>;
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -66,12 +66,12 @@ impl Iterator for WarmUpSteps {
 
 impl ExactSizeIterator for WarmUpSteps {}
 
-/// A part of what is compiled.
+/// Step of compilation.
 trait Step: wgpu::WasmNotSendSync {
     fn run(self: Box<Self>) -> Result<(), Error>;
 }
 
-/// Passes about a technique.
+/// Step that compiles passes before or after a technique.
 struct PassesStep {
     gpu: Gpu,
     compile: fn(&Gpu),
@@ -84,13 +84,14 @@ impl Step for PassesStep {
     }
 }
 
-/// A frame of a technique under a light over a dummy scene.
+/// Step that prepares a technique's frame of a dummy scene, under a light of one shape.
 struct FrameStep<T: Technique> {
     gpu: Gpu,
     params: T::Params,
     scene: WarmUp,
     shape: LightShape,
-    /// Whether what no frame can do is an error: of the first light of a scene. Of the others it is said when it is asked for.
+    /// Whether the step returns the frame's error: for the first light shape of a scene. Errors of other shapes appear when a frame
+    /// uses them.
     is_asked: bool,
 }
 
@@ -104,8 +105,8 @@ impl<T: Technique> Step for FrameStep<T> {
 }
 
 impl<T: Technique + 'static> Shadow<T> {
-    /// Compiles what frames with the present parameters need, so that no frame does: while a host loads, be it on another
-    /// thread with a state of its own. What is compiled stays with the device and serves every light.
+    /// Compiles what frames with the current parameters need, so that no frame compiles anything. Call it while the host loads, if
+    /// you like on another thread with a separate state. Pipelines stay with the device and serve every light.
     ///
     /// # Errors
     /// As [`new`](Shadow::new) and [`prepare`](Shadow::prepare).
@@ -113,7 +114,8 @@ impl<T: Technique + 'static> Shadow<T> {
         self.warm_up_steps(what).collect()
     }
 
-    /// The same in steps, a few a frame, for hosts that must not wait: a loading screen with progress, a browser.
+    /// Returns the steps of [`warm_up`](Self::warm_up), to be taken a few per frame by hosts that must not wait: a loading screen
+    /// with progress, a browser.
     pub fn warm_up_steps(&self, what: WarmUp) -> WarmUpSteps {
         let mut compile: Vec<fn(&Gpu)> = vec![PointTextures::compile_ahead];
         if T::coverage(&self.params) != Coverage::Everything {
@@ -133,7 +135,7 @@ impl<T: Technique + 'static> Shadow<T> {
             step
         });
         let frames = scenes_of(what).into_iter().flat_map(|scene| {
-            // Some compile for the light's kind, and once more for each kind of caster.
+            // Some techniques compile for each light shape, and again for each kind of caster.
             shapes().into_iter().enumerate().map(move |(i, shape)| {
                 let (gpu, params) = (self.gpu.clone(), self.params.clone());
                 let step: Box<dyn Step> = Box::new(FrameStep::<T> { gpu, params, scene, shape, is_asked: i == 0 });
@@ -144,7 +146,7 @@ impl<T: Technique + 'static> Shadow<T> {
     }
 }
 
-/// Scenes that need pipelines of their own: some techniques compile otherwise where any caster is not opaque.
+/// Scenes that need pipelines of their own, because some techniques compile variants for casters that are not opaque.
 fn scenes_of(what: WarmUp) -> Vec<WarmUp> {
     let mut scenes = vec![WarmUp { masked: false, tinted: false }];
     scenes.extend(
@@ -155,12 +157,12 @@ fn scenes_of(what: WarmUp) -> Vec<WarmUp> {
     scenes
 }
 
-/// A light of a shape, above the scene.
+/// Creates a light of a shape, above the scene.
 fn light_of(shape: LightShape) -> Light {
     Light::new(shape, Vec3::new(0.3, 4.0, 0.2), Vec3::ZERO)
 }
 
-/// One of every kind.
+/// One light shape of every kind.
 fn shapes() -> [LightShape; 6] {
     [
         LightShape::Disk { radius_m: 0.1 },
@@ -172,7 +174,7 @@ fn shapes() -> [LightShape; 6] {
     ]
 }
 
-/// A scene of one triangle for each kind of caster.
+/// Dummy scene: one triangle for each kind of caster.
 struct DummyScene {
     set: CasterSet,
     depth: wgpu::TextureView,
@@ -198,7 +200,7 @@ impl DummyScene {
             view: texture(wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureUsages::TEXTURE_BINDING),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
         };
-        // Zeroed: positions and coordinates of one triangle, twice as many as it has.
+        // Zero-initialised positions and texture coordinates of one triangle, with room for twice as many.
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("antumbra warm-up"),
             size: 72,

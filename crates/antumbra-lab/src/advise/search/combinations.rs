@@ -1,25 +1,25 @@
-//! Combinations of moves: sets of steps on different parameters, by what they promise together.
+//! Combinations of moves: sets of steps on different parameters, ranked by their predicted error and time.
 
-/// Combinations that are measured, by the part of the budget that they may take as predicted.
+/// Loads that the measured combinations may have as predicted.
 const TARGETS: [f64; 3] = [0.97, 0.8, 0.6];
-/// A move gains something where error falls by so much, or time.
+/// Minimum fall of the logarithm of the error, or of the relative time, for a move to count as a gain.
 const WORTH: f64 = 0.003;
 const WORTH_SAVING: f64 = 0.08;
-/// Sums of moves that are kept on the way.
+/// Maximum number of partial sums kept.
 const MOST_SUMS: usize = 48;
 
-/// A step of one parameter, and what came of it.
+/// A step of one parameter with its measured effect.
 #[derive(Clone, Debug)]
 pub(super) struct Move {
     pub(super) key: &'static str,
     pub(super) value: String,
-    /// The natural logarithm of the errors' ratio.
+    /// Natural logarithm of the ratio of errors.
     pub(super) error: f64,
-    /// Parts of the budget.
+    /// Difference of loads (fractions of the budget).
     pub(super) load: f64,
 }
 
-/// Moves that are made at once, with what they are predicted to sum up to.
+/// Set of moves with the sums of their effects.
 #[derive(Clone, Debug, Default)]
 struct Sum {
     error: f64,
@@ -27,14 +27,14 @@ struct Sum {
     moves: Vec<usize>,
 }
 
-/// Sets of moves on different parameters that promise the least error within parts of the budget, from a configuration that takes
-/// `load` of it; where none keeps it, the one that saves most.
+/// Returns the sets of moves on different parameters with the least predicted error within each target load, from a configuration of the
+/// given `load`. If no set keeps a target, returns the cheapest set.
 pub(super) fn combinations(moves: &[Move], load: f64) -> Vec<Vec<Move>> {
     let mut keys: Vec<&str> = moves.iter().map(|step| step.key).collect();
     keys.dedup();
     let mut sums = vec![Sum::default()];
     for key in keys {
-        // What is lost in the noise of times is no gain.
+        // A saving within the noise of times is no gain.
         let useful =
             |(_, step): &(usize, &Move)| step.key == key && (step.error < -WORTH || step.load < -WORTH_SAVING * load);
         let here: Vec<(usize, &Move)> = moves.iter().enumerate().filter(useful).collect();
@@ -58,13 +58,13 @@ pub(super) fn combinations(moves: &[Move], load: f64) -> Vec<Vec<Move>> {
         chosen.extend(cheapest());
     }
     let mut sets: Vec<Vec<usize>> = chosen.into_iter().map(|sum| sum.moves.clone()).collect();
-    // One move alone has been measured.
+    // Single moves have been measured already.
     sets.retain(|set| set.len() > 1);
     sets.dedup();
     sets.into_iter().map(|set| set.into_iter().map(|i| moves[i].clone()).collect()).collect()
 }
 
-/// The sums that none beats in both error and load, thinned evenly where they are many.
+/// Returns the Pareto front of error and load, thinned evenly to the maximum number.
 fn front(mut sums: Vec<Sum>) -> Vec<Sum> {
     sums.sort_by(|a, b| a.load.total_cmp(&b.load).then(a.error.total_cmp(&b.error)));
     let mut least = f64::INFINITY;
@@ -88,7 +88,7 @@ mod tests {
         Move { key, value: value.into(), error, load }
     }
 
-    /// Time saved on what does not matter pays for what does.
+    /// Time saved on an unimportant parameter pays for an important one.
     #[test]
     fn moves_are_joined_within_the_budget() {
         let moves = [
@@ -102,12 +102,12 @@ mod tests {
         let values = |set: &[Move]| set.iter().map(|step| step.value.clone()).collect::<Vec<_>>();
         assert_eq!(values(&sets[0]), ["512", "128"]);
         assert!(sets.iter().all(|set| set.len() > 1));
-        // Beyond what moves can mend, all that saves is taken.
+        // If no set keeps the budget, the set with the largest saving is taken.
         assert_eq!(values(&combinations(&moves, 1.5)[0]), ["512", "32"]);
         assert!(combinations(&[], 0.5).is_empty());
     }
 
-    /// A saving of time that is noise is not joined to others; one of which the same error is left pays.
+    /// A move whose time saving is noise is not combined; one with a real saving at equal error is.
     #[test]
     fn moves_that_gain_nothing_are_not_joined() {
         let saving = |part: f64| step("rotate", "false", 0.0, -part * 0.9);

@@ -1,20 +1,20 @@
-//! Growth of times with the size of pictures, pass by pass.
+//! Growth of times with image size, per pass.
 
 use std::collections::BTreeMap;
 
 use crate::advise::store::Measured;
 
-/// By how much a technique's time grows from a rung to the full size, measured with one of its configurations.
+/// Growth of a technique's time from a rung to full size, measured with one of its configurations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Growth {
     by_pass: BTreeMap<String, f64>,
-    /// Of all of it, and of what is in no pass.
+    /// Growth of the whole frame, also used for time outside passes.
     whole: f64,
 }
 
 impl Growth {
-    /// `None` where one took no time. No pass is taken for one that grows faster than the pictures, nor for one that shrinks:
-    /// software renderers date some as nothing.
+    /// Returns the growth, or `None` if a time is zero. The growth of a pass is clamped to the range from 1 to the ratio of pixels,
+    /// because software renderers report zero for some passes.
     pub(super) fn between(small: &Measured, full: &Measured, budget_ms: &[f64], pixels: f64) -> Option<Self> {
         let (load, load_full) = (small.load(budget_ms), full.load(budget_ms));
         if !(load > 0.0 && load_full > 0.0) {
@@ -28,10 +28,10 @@ impl Growth {
         Some(Self { by_pass: full.pass_ms.iter().map(of_pass).collect(), whole })
     }
 
-    /// Of one that was measured on the rung.
+    /// Returns the growth of a configuration measured on the rung.
     pub(super) fn of(&self, measured: &Measured) -> f64 {
         let passes_ms: f64 = measured.pass_ms.values().sum();
-        // Time between passes, which timestamps leave out.
+        // Time between passes, which timestamps do not cover.
         let rest_ms = (measured.ms.iter().sum::<f64>() - passes_ms).max(0.0);
         let all_ms = passes_ms + rest_ms;
         if all_ms <= 0.0 {
@@ -46,7 +46,7 @@ impl Growth {
 mod tests {
     use super::*;
 
-    /// A map takes as long for any picture, so that what spares time there spares as much at the full size, and taps save more.
+    /// The time of a map is independent of image size, so its savings stay constant while savings of taps grow.
     #[test]
     fn passes_grow_each_by_itself() {
         let measured = |map_ms: f64, resolve_ms: f64, rest_ms: f64| Measured {
@@ -60,11 +60,11 @@ mod tests {
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} for {b}");
         close(growth.of(&measured(1.0, 1.0, 0.0)) * 2.0, 17.0);
         close(growth.of(&measured(4.0, 0.5, 0.0)) * 4.5, 12.0);
-        // What no pass has goes as the whole; so does a pass that was not there, or was dated as nothing.
+        // Time outside passes grows as the whole does; so does a pass that is missing or reported as zero.
         close(growth.of(&measured(0.0, 0.0, 3.0)), 4.0);
         let late = Growth::between(&measured(4.0, 0.0, 1.0), &full, &[10.0], 16.0).unwrap();
         assert_eq!(late.by_pass["resolve"], 4.0);
-        // Nothing grows faster than the pictures or shrinks.
+        // No pass grows faster than the image or shrinks.
         let odd = Growth::between(&measured(4.0, 0.01, 1.0), &measured(3.0, 16.0, 1.0), &[10.0], 16.0).unwrap();
         assert_eq!((odd.by_pass["map"], odd.by_pass["resolve"]), (1.0, 16.0));
         assert_eq!(Growth::between(&Measured::default(), &full, &[10.0], 16.0), None);

@@ -1,4 +1,4 @@
-//! Refinement of a technique: steps of its parameters from its best configuration, alone and several at once.
+//! Refinement of a technique: parameter steps from its best configuration, singly and combined.
 
 use antumbra::TechniqueKind;
 use antumbra::contract::ParamSpec;
@@ -10,20 +10,20 @@ use crate::advise::space::{Config, Stride, axes, set_by_qualities, steps};
 use crate::advise::store::Measured;
 use crate::error::LabError;
 
-/// A move whose error differs by less, and that saves less time, is not tried again on larger pictures.
+/// Minimum change of the error's logarithm, or of the relative time, for a parameter to be tried again on larger images.
 const RELEVANT: f64 = 0.01;
 const RELEVANT_SAVING: f64 = 0.08;
-/// So many parameters of a technique are tried again, those that did most.
+/// Maximum number of a technique's parameters tried again, those with the largest effect.
 const MOST_RELEVANT: usize = 6;
-/// At the full size a better configuration is started from again where the score falls to this part.
+/// Score ratio below which the refinement at full size restarts from the better configuration.
 const LEADS_ON: f64 = 0.95;
-/// From what takes more than so many times the budget only ways down are looked for, so many times.
+/// Multiple of the budget above which only cheaper settings are tried, and the number of such descents.
 const TOO_DEAR: f64 = 1.3;
 const DESCENTS: usize = 3;
 
 impl Search<'_, '_> {
-    /// Moves every parameter of a technique's best by a step (or those of some keys), then several at once as the moves promise.
-    /// Which keys mattered.
+    /// Moves every parameter (or those in `keys`) of a technique's best configuration by a step, then measures the most promising
+    /// combinations. Returns the keys that mattered.
     pub(super) fn refine(
         &mut self,
         kind: TechniqueKind,
@@ -43,7 +43,7 @@ impl Search<'_, '_> {
         let here = self.known(&centre, rung).map_or(0.0, Measured::error).max(1e-9);
         let best = self.best(kind, rung, 1).pop().map_or(f64::INFINITY, |(_, score)| score);
         for chosen in combinations(&moves, load) {
-            // What moves promise together has to be less than what is found.
+            // A combination is measured only if its predicted error is below the best score.
             if chosen.iter().map(|step| step.error).sum::<f64>() >= (best / here).ln() {
                 continue;
             }
@@ -61,7 +61,7 @@ impl Search<'_, '_> {
         };
         relevant.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
         relevant.truncate(MOST_RELEVANT);
-        // At the full size once more from where that led, for as long as it leads on.
+        // At full size, refine again from a clearly better configuration.
         if rung == FULL
             && let Some((_, better)) = self.best(kind, rung, 1).pop()
             && better < LEADS_ON * score
@@ -71,7 +71,7 @@ impl Search<'_, '_> {
         Ok(relevant)
     }
 
-    /// Looks for ways down from a best configuration that is beyond the budget: less of every number that qualities set.
+    /// Descends from a best configuration beyond the budget by reducing the numbers that qualities set.
     fn descend(&mut self, kind: TechniqueKind, rung: usize) -> Result<(), LabError> {
         for _ in 0..DESCENTS {
             let Some((centre, _)) = self.best(kind, rung, 1).pop() else { return Ok(()) };
@@ -93,7 +93,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Every step from a configuration along some parameters, from one value to the next, that is wanted.
+    /// Measures every wanted step of some parameters from a configuration.
     fn moves(
         &mut self,
         centre: &Config,

@@ -1,4 +1,4 @@
-//! Rounds of the search: from every technique's qualities on small pictures to the full size, the worse half dropped each time.
+//! Rounds of the search: from the qualities of all techniques on small images to full size, dropping the worse half each time.
 
 use std::collections::HashMap;
 
@@ -11,25 +11,25 @@ use crate::advise::bench::FULL;
 use crate::advise::space::{Config, QUALITIES, Stride, set_by_qualities};
 use crate::error::LabError;
 
-/// Where a small picture is expected to take more than so many times the budget, a quality and dearer ones are not looked at: at
-/// the full size they take longer still.
+/// Multiple of the budget: a quality expected to exceed it on a small image is skipped with all dearer ones,
+/// because it takes longer still at full size.
 const HOPELESS: f64 = 1.3;
-/// Nor where the technique errs so many times as much as the best so far, and its last step of quality took off less than this part.
+/// Error ratio to the best so far, and minimum gain of the last quality step: a technique worse in both is not tried further.
 const FAR_BEHIND: f64 = 2.0;
 const LAGGING: f64 = 0.1;
-/// Rounds keep the better half, and so many at least.
+/// Minimum number of techniques kept in each round.
 const LEAST_KEPT: [usize; 3] = [4, 3, 2];
-/// And beyond those least none that is so many times as bad as the best: what moves gain falls from round to round.
+/// Maximum score ratio to the best beyond that minimum: moves gain less from round to round.
 const WITHIN_REACH: [f64; 3] = [3.0, 2.0, 1.5];
-/// One stays that takes no more of the budget than this: what others will take at the full size is not known yet.
+/// Maximum load of one technique that is always kept, because the others' times at full size are not known yet.
 const SURELY_FITS: f64 = 0.7;
-/// Where nothing keeps the budget at the full size in the end, so many of what did on smaller pictures are looked at.
+/// Maximum number of fallbacks tried at full size when no candidate keeps the budget there.
 const MOST_FALLBACKS: usize = 8;
-/// Techniques of which all parameters are looked at.
+/// Number of techniques of which all parameters are tried.
 const LOOKED_AT_IN_FULL: usize = 2;
 
 impl Search<'_, '_> {
-    /// Runs all rounds; what came of it is in `tried` and in the store.
+    /// Runs all rounds. Results are in `tried` and in the store.
     pub(in crate::advise) fn run(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
         self.progress.begin("round 1: every technique's qualities", kinds.len() as u64);
         self.survey(kinds)?;
@@ -41,7 +41,7 @@ impl Search<'_, '_> {
             self.progress.begin(&stage, left.len() as u64);
             for (place, kind) in left.clone().into_iter().enumerate() {
                 self.carry_over(kind, rung)?;
-                // On small pictures what qualities set; then all that is declared, of those that are likely to be kept.
+                // On small images, refine only what qualities set; then all parameters of the techniques that are likely to be kept.
                 let looks_at_all = rung > 0 && place < LOOKED_AT_IN_FULL;
                 let keys = (!looks_at_all).then(|| keys_of_qualities(kind));
                 let matters = self.refine(kind, rung, keys.as_deref(), Stride::Whole)?;
@@ -59,12 +59,12 @@ impl Search<'_, '_> {
             self.refine(kind, FULL, relevant.get(&kind).map(Vec::as_slice), Stride::Whole)?;
             self.progress.reach(done);
         }
-        // What was promising may have turned out to be too slow; what is left has not been looked at as closely.
+        // A promising technique may be too slow at full size, and the replacement has not been refined as closely.
         self.fall_back(kinds)?;
         if let Some(kind) = self.first_that_fits(kinds, FULL, 1.0).filter(|kind| !left.contains(kind)) {
             self.refine(kind, FULL, Some(&keys_of_qualities(kind)), Stride::Whole)?;
         }
-        // A budget lies between two steps.
+        // Half steps, because the budget may lie between two whole ones.
         if let Some(kind) = self.first_that_fits(kinds, FULL, 1.0) {
             self.refine(kind, FULL, Some(&keys_of_qualities(kind)), Stride::Half)?;
         }
@@ -72,14 +72,14 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Techniques' qualities on small pictures, the cheapest of all first: so that what the next is worth is known when it is its turn.
+    /// Measures the techniques' qualities on small images, cheapest first, so that the best error is known for the dearer ones.
     fn survey(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
         let mut left: Vec<(TechniqueKind, Vec<Step>)> = kinds.iter().map(|kind| (*kind, Vec::new())).collect();
         let mut least = f64::INFINITY;
         for (done, quality) in (1..).zip(QUALITIES) {
             for (kind, seen) in &mut left {
                 let measured = self.measure(&Config::of_quality(*kind, quality), 0)?;
-                // Without an error there is nothing to go on from.
+                // Without an error there is nothing to compare.
                 let refused = measured.refused.is_some();
                 let error = if refused { f64::INFINITY } else { measured.error() };
                 let step = Step { error, load: self.load(*kind, 0, &measured) };
@@ -91,7 +91,7 @@ impl Search<'_, '_> {
             left.retain(|(_, seen)| goes_on(seen, least));
             self.progress.reach(done * kinds.len() as u64 / QUALITIES.len() as u64);
         }
-        // The dearest qualities may be another algorithm, which costs hardly more with the numbers of a cheap one.
+        // The dearest qualities may use another algorithm that costs little more with the numbers of a cheap one.
         for kind in kinds {
             let Some((centre, _)) = self.best_that_fits(*kind, 0, 1.0) else { continue };
             for (key, value) in switches_of_qualities(*kind) {
@@ -101,7 +101,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// The better half of techniques, by their best, and the best of those that surely keep the budget.
+    /// Returns the better half of the techniques by their best score, plus the best one that is sure to keep the budget.
     fn keep(&self, kinds: &[TechniqueKind], rung: usize, round: usize) -> Vec<TechniqueKind> {
         let best = |kind: &TechniqueKind| self.best(*kind, rung, 1).first().map(|(_, score)| (*kind, *score));
         let mut scored: Vec<(TechniqueKind, f64)> = kinds.iter().filter_map(best).collect();
@@ -112,7 +112,7 @@ impl Search<'_, '_> {
         kept
     }
 
-    /// What errs least of a technique within a part of the budget, and its error.
+    /// Returns the configuration of a technique with the least error within a load, and its error.
     fn best_that_fits(&self, kind: TechniqueKind, rung: usize, part: f64) -> Option<(Config, f64)> {
         let fitting = self.tried[rung].iter().filter(|config| config.kind == kind).filter_map(|config| {
             let measured = self.known(config, rung)?;
@@ -122,13 +122,13 @@ impl Search<'_, '_> {
         fitting.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The technique that errs least within a part of the budget.
+    /// Returns the technique with the least error within a load.
     fn first_that_fits(&self, kinds: &[TechniqueKind], rung: usize, part: f64) -> Option<TechniqueKind> {
         let fitting = kinds.iter().filter_map(|kind| self.best_that_fits(*kind, rung, part));
         fitting.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(config, _)| config.kind)
     }
 
-    /// Where nothing keeps the budget at the full size, looks there at what did on smaller pictures, until something does.
+    /// Measures, at full size, the configurations that kept the budget on smaller images, until one keeps it there too.
     fn fall_back(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
         for _ in 0..MOST_FALLBACKS {
             if self.first_that_fits(kinds, FULL, 1.0).is_some() {
@@ -143,7 +143,7 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Times a technique's best at the full size, and measures the best of the rung before on this one.
+    /// Times a technique's best configuration at full size, and measures the best ones of the previous rung on this one.
     fn carry_over(&mut self, kind: TechniqueKind, rung: usize) -> Result<(), LabError> {
         let before = rung.saturating_sub(1);
         let best = self.best(kind, before, if rung == 0 { 1 } else { 2 });
@@ -161,26 +161,26 @@ impl Search<'_, '_> {
     }
 }
 
-/// What a quality came to on small pictures.
+/// Result of a quality on small images.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     error: f64,
     load: f64,
 }
 
-/// Whether a technique's next quality is worth a look, after those that were `seen`, where the least error within the budget is `least`.
+/// Returns whether a technique's next quality is worth measuring, given those `seen` and the `least` error within the budget.
 fn goes_on(seen: &[Step], least: f64) -> bool {
     let Some(last) = seen.last() else { return true };
     let Some(before) = seen.len().checked_sub(2).map(|i| seen[i]) else {
         return last.error.is_finite() && last.load <= HOPELESS;
     };
-    // Qualities take longer from step to step in about one ratio.
+    // Times of successive qualities grow by about a constant ratio.
     let next_load = last.load * (last.load / before.load.max(1e-9)).max(1.0);
     let lags = last.error > FAR_BEHIND * least && last.error > (1.0 - LAGGING) * before.error;
     last.error.is_finite() && next_load <= HOPELESS && !lags
 }
 
-/// How many of sorted scores, of `count` techniques that were in it, a round keeps.
+/// Returns how many of the sorted scores a round keeps, out of `count` techniques.
 fn count_kept(scores: &[f64], count: usize, round: usize) -> usize {
     let best = scores.first().copied().unwrap_or(0.0);
     let within = scores.iter().filter(|score| **score <= WITHIN_REACH[round] * best).count();
@@ -191,7 +191,7 @@ fn keys_of_qualities(kind: TechniqueKind) -> Vec<&'static str> {
     set_by_qualities(kind).into_iter().map(|(spec, _)| spec.key).collect()
 }
 
-/// What is no number among that which qualities set, where it is not the default.
+/// Returns the non-numeric parameters that qualities set to other values than the default.
 fn switches_of_qualities(kind: TechniqueKind) -> Vec<(&'static str, String)> {
     let other_of = |(spec, values): (&'static ParamSpec, Vec<String>)| {
         let is_switch = spec.range.is_none();
@@ -211,7 +211,7 @@ mod tests {
     use crate::progress::Silent;
     use crate::test_support::lab_or_skip;
 
-    /// A search with a budget of a millisecond, all of whose measurements are known: technique, rung, error and milliseconds.
+    /// Runs `judge` on a search with a budget of 1 ms and known measurements: technique, rung, error and milliseconds.
     fn with_known(known: &[(TechniqueKind, usize, f64, f64)], judge: impl FnOnce(&mut Search<'_, '_>)) {
         let Some(lab) = lab_or_skip() else { return };
         let request = request("builtin:overlap", &[], Budget::Ms(1.0));
@@ -223,7 +223,7 @@ mod tests {
         }
         let fresh = store.fresh();
         let mut search = Search::new(&bench, &mut store, &Silent, vec![1.0], Limits::default());
-        // What is known of small pictures has been tried there.
+        // Known measurements on small images count as tried.
         for (kind, rung, ..) in known.iter().filter(|(_, rung, ..)| *rung < FULL) {
             search.measure(&Config::default_of(*kind), *rung).unwrap();
         }
@@ -231,7 +231,7 @@ mod tests {
         assert_eq!(search.store.fresh(), fresh, "nothing was measured");
     }
 
-    /// However it errs, the best of what surely keeps the budget goes on with the better half.
+    /// The best technique that is sure to keep the budget is kept whatever its error.
     #[test]
     fn what_surely_fits_stays() {
         let kinds = &TechniqueKind::ALL[..12];
@@ -246,7 +246,7 @@ mod tests {
         });
     }
 
-    /// One after the other in the order of their errors, until one keeps the budget at the full size.
+    /// Fallbacks are tried in order of error until one keeps the budget at full size.
     #[test]
     fn where_nothing_keeps_the_budget_what_did_on_smaller_pictures_is_looked_at() {
         let kinds = [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::Vsm];
@@ -262,7 +262,7 @@ mod tests {
             );
             assert_eq!(search.first_that_fits(&kinds, FULL, 1.0), Some(pcf));
         });
-        // And it ends where none does.
+        // The search for fallbacks ends if none keeps the budget.
         let full = full.map(|(kind, rung, rmse, _)| (kind, rung, rmse, 5.0));
         with_known(&[&small[..], &full[..]].concat(), |search| {
             search.fall_back(&kinds).unwrap();
@@ -276,7 +276,7 @@ mod tests {
         assert!(switches_of_qualities(TechniqueKind::Vsm).is_empty());
     }
 
-    /// Qualities are followed while they fit and lead on; one that lags far behind or would not fit is not looked at.
+    /// Qualities are followed while they keep the budget and gain; one that lags far behind or would exceed it is skipped.
     #[test]
     fn qualities_are_followed_while_they_are_worth_it() {
         let seen = |steps: &[(f64, f64)]| -> Vec<Step> {

@@ -1,4 +1,4 @@
-//! Gallery of a report: the pictures of each technique, with its numbers, parameters and passes.
+//! Gallery of a report: images of each technique with its errors, parameters and passes.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -22,7 +22,7 @@ fn shot(src: &str, alt: &str, caption: &str, size_px: glam::UVec2) -> String {
     )
 }
 
-/// The error map, with an outline of the worst tile.
+/// Returns the error map with an outline of the worst tile.
 fn error_shot(stem: &str, worst_tile_at: Option<[u32; 2]>, size_px: glam::UVec2) -> String {
     let shot = shot(
         &error_path(stem),
@@ -80,7 +80,7 @@ pub(super) fn gallery(report: &Report, rows: &[Measured]) -> String {
     html
 }
 
-/// Numbers with commas between them.
+/// Formats numbers as a list with commas.
 fn listed(numbers: &[u32]) -> String {
     numbers.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
 }

@@ -1,4 +1,4 @@
-//! Plots of a report: errors against costs, times by pass, and what they show at a glance.
+//! Plots of a report: errors against costs, times by pass, and the main findings.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -7,7 +7,7 @@ use super::{Measured, metric_text};
 use crate::report::html::{css_color, escape, three_figures};
 use crate::report::scatter::{Axes, Point, front, scatter_svg};
 
-/// The techniques that have both an error and a cost.
+/// Returns the points of techniques that have both an error and a cost.
 fn points(
     rows: &[Measured],
     error: impl Fn(&Measured) -> Option<f64>,
@@ -32,7 +32,7 @@ fn rmse(row: &Measured) -> Option<f64> {
     row.measured.metrics.rmse
 }
 
-/// Every error against every cost; without a script the first alone is seen.
+/// Plots every error against every cost. Without a script, only the first plot is visible.
 pub(super) fn scatters(rows: &[Measured]) -> String {
     type Value = fn(&Measured) -> Option<f64>;
     let errors: [(&str, Value); 4] = [
@@ -64,7 +64,7 @@ pub(super) fn scatters(rows: &[Measured]) -> String {
     )
 }
 
-/// What the numbers say at a glance, and no more than they say.
+/// Lists the main findings that the numbers support.
 pub(super) fn findings(rows: &[Measured]) -> String {
     let cost =
         |row: &Measured| row.measured.total_ms.map(|ms| format!(", {} ms", three_figures(ms))).unwrap_or_default();
@@ -105,7 +105,7 @@ pub(super) fn findings(rows: &[Measured]) -> String {
     html
 }
 
-/// A colour for each pass, by name, the same in every row.
+/// Returns a colour for each pass name, the same in every row.
 pub(super) fn pass_colors(rows: &[Measured]) -> BTreeMap<String, String> {
     let mut colors = BTreeMap::new();
     for pass in rows.iter().flat_map(|row| &row.measured.passes) {
@@ -148,7 +148,7 @@ pub(super) fn bars(rows: &[Measured]) -> String {
         let _ = write!(html, "</span></span><span>{} ms</span></div>", three_figures(total));
     }
     html += "<div class=\"keys\">";
-    // In the order in which passes first come, not by name.
+    // Passes are listed in order of first appearance, not by name.
     let mut seen = Vec::new();
     for pass in rows.iter().flat_map(|row| &row.measured.passes) {
         if !seen.contains(&&pass.name) {

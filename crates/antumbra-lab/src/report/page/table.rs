@@ -1,4 +1,4 @@
-//! Table of a report: a row for each technique, a column for each metric, and the note on its times.
+//! Table of a report: a row per technique, a column per metric, and the note on its times.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use crate::report::html::{bytes, escape, three_figures};
 use crate::report::model::{Measurement, Outcome, Report};
 use crate::report::paths::REFERENCE_STEM;
 
-/// A sortable head of a column: its tooltip is the title until the script takes it over.
+/// Returns a sortable column head. Its tooltip is the title attribute until the script replaces it.
 fn head(key: &str, label: &str, meaning: &str, direction: &str) -> String {
     format!(
         "<th scope=\"col\" data-key=\"{key}\" title=\"{} ({})\" data-direction=\"{}\" data-meaning=\"{}\">{}</th>",
@@ -24,7 +24,7 @@ fn cell(value: Option<f64>, text: impl Fn(f64) -> String, is_best: bool) -> Stri
     cell_with(value, text, is_best, "")
 }
 
-/// A cell with some HTML behind its value, where it has one.
+/// Returns a cell with HTML appended to its value, if it has one.
 fn cell_with(value: Option<f64>, text: impl Fn(f64) -> String, is_best: bool, behind: &str) -> String {
     match value {
         None => "<td data-value=\"\">–</td>".into(),
@@ -62,7 +62,7 @@ pub(super) fn table(report: &Report, rows: &[Measured]) -> String {
         METRICS.len() + 2,
         tracing_text(report.reference.info)
     );
-    // Rows whose numbers read the same as the best one's are as good.
+    // Rows that print the same value as the best one are marked, too.
     let best_text = |info: &MetricInfo| {
         info.best(rows.iter().map(|row| &row.measured.metrics)).map(|(_, v)| metric_text(v)).filter(|_| rows.len() > 1)
     };

@@ -1,9 +1,9 @@
-//! Lauritzen, McCool 2008. 1920 × 1200 with 4× multisampling of the picture; ours have one sample a pixel.
+//! Lauritzen, McCool 2008. 1920 × 1200 with 4× multisampling of the image; ours have one sample per pixel.
 //!
-//! The pictures are of fixed kernels, and so are held against exact filtering by the same kernel. At equal storage a term of
-//! the convolution basis takes two bytes a texel and a layer four. The convolution basis measures depth along the light's axis,
-//! where it behaves as the paper says; see docs/limits.md for the world's axis. What bleeds is judged by the light in umbrae, what
-//! shows at layers' edges by noise.
+//! The images have fixed kernels, so they are compared with exact filtering by the same kernel. At equal storage, a term of the
+//! convolution basis takes two bytes per texel and a layer four. The convolution basis measures depth along the light's axis, where
+//! it behaves as the paper says; see docs/limits.md for the world's axis. Light bleeding is judged by the light in umbrae,
+//! artefacts at layers' edges by noise.
 
 use crate::motion::Motion;
 use crate::reproduce::claim::{Rule, claim};
@@ -14,7 +14,7 @@ use crate::reproduce::figure::Figure::{Flicker, Ms, Noise, Rmse, UmbraLeak};
 const OVERLAP: &str = "builtin:overlap";
 const BENCH: &str = "builtin:bench-under-tree";
 
-/// The kernel of every picture: as wide as the penumbrae in which variance bleeds, and the one of our tests.
+/// Kernel of every image: as wide as the penumbrae in which variance bleeds, and the kernel of our tests.
 macro_rules! wide {
     ($($more:tt)*) => {
         &[("map_size", "384"), ("kernel_size", "9.1"), ("filter", "box"), ("mips", "false"), $($more)*]
@@ -24,7 +24,7 @@ macro_rules! wide {
 const WIDE: &[(&str, &str)] = wide!();
 const FOUR_LAYERS: &[(&str, &str)] = wide!(("layers", "4"));
 
-/// Figure 8: the same along the light's axis.
+/// Figure 8: the same kernel along the light's axis.
 macro_rules! along_the_light {
     ($($more:tt)*) => {
         wide!(("depth_axis", "light"), $($more)*)
@@ -39,18 +39,18 @@ const fn layered(what: &'static str, settings: Settings) -> Row {
     filtered_error(what, OVERLAP, "lvsm").with(settings).at(640, 360)
 }
 
-/// The map and the picture that the paper's times are of.
+/// Creates a row with the map and image size of the paper's times.
 const fn timed(what: &'static str, technique: &'static str, settings: Settings) -> Row {
     ms(what, BENCH, technique, "", Drawn).with(settings).at(1920, 1200)
 }
 
-/// Whether a map of so many texels times so many layers takes a software renderer seconds.
+/// Returns whether a map of this size with this many layers takes a software renderer seconds.
 const fn is_large(size: &str, layers: &str) -> bool {
     let is_of_four_digits = size.len() == 4;
     is_of_four_digits && (size.as_bytes()[0] == b'2' || layers.len() == 2 || layers.as_bytes()[0] == b'8')
 }
 
-/// Figure 9: one size of map, by plain variance and by 2 to 14 layers.
+/// Figure 9: one map size, for plain variance and for 2 to 14 layers.
 macro_rules! figure9 {
     ($($size:literal),+) => {
         &[$(
@@ -72,7 +72,7 @@ macro_rules! figure9 {
     };
 }
 
-/// One line of algebra.
+/// Reason of contradicted claims: a layer's bound is not always tighter, by algebra.
 const AT_LEAST_AS_GOOD: &str = "of depths that lie y = t − x before the receiver the bound is 1 − E[y]² / E[y²]. A layer holds y to \
                                 m = t − p at the most, which lowers it where all y ≥ 0, as in umbrae; but of a share a at m and \
                                 1 − a behind the receiver, at −n, it is 1 − (a m − (1 − a) n)² / (a m² + (1 − a) n²), which rises \
@@ -143,7 +143,7 @@ pub const PAPER: Paper = Paper {
             rows: &[filtered_error("VSM", BENCH, "vsm").with(WIDE).at(640, 360)],
             claims: &[claim(
                 "The penumbra of the tree's shadow bleeds through the bench.",
-                // A step of eight bits is 0.004.
+                // One step of eight bits is 0.004.
                 &[Rule::AtLeast(UmbraLeak, "VSM", 0.005)],
             )],
             note: "",

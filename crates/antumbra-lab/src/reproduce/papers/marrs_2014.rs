@@ -1,4 +1,4 @@
-//! Marrs, Watson, Healey 2014. Times are drawn as curves but for Figure 1's two numbers; the window's size is not said.
+//! Marrs, Watson, Healey 2014. Times are curves except Figure 1's two numbers; the window size is not given.
 
 use super::SKETCHED_PCSS;
 use crate::motion::Motion;
@@ -7,16 +7,16 @@ use crate::reproduce::exhibit::Reported::{Drawn, Number};
 use crate::reproduce::exhibit::{Exhibit, Paper, Row, Settings, difference, error, in_motion, ms};
 use crate::reproduce::figure::Figure::{Flicker, LitLoss, Ms, Rmse, UmbraLeak};
 
-/// Poisson-disc light points, even maps of 512², 2 × 2 hardware comparison: the paper's section 4.
+/// Poisson-disc light samples, even maps of 512², 2 × 2 hardware comparison: the paper's section 4.
 const VIEWS_64: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("compare", "hardware"), ("window", "plain")];
 const VIEWS_32: Settings =
     &[("samples", "32"), ("view_size", "512"), ("sample_set", "poisson"), ("compare", "hardware"), ("window", "plain")];
 const VIEWS_16: Settings =
     &[("samples", "16"), ("view_size", "512"), ("sample_set", "poisson"), ("compare", "hardware"), ("window", "plain")];
-/// The same views reprojected from a central map of twice their size.
+/// The same views, reprojected from a central map of twice their size.
 const SYNC_64: Settings = &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson")];
-/// Synchronised as the paper's times are: the integer maps are copied to filterable ones (section 4.1.2).
+/// Synchronised, as for the paper's times: the integer maps are copied to filterable ones (section 4.1.2).
 const COPIED_64: Settings = &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("filter", "copy")];
 const COPIED_32: Settings = &[("samples", "32"), ("view_size", "512"), ("sample_set", "poisson"), ("filter", "copy")];
 const COPIED_16: Settings = &[("samples", "16"), ("view_size", "512"), ("sample_set", "poisson"), ("filter", "copy")];
@@ -26,7 +26,7 @@ const UNSYNC_32: Settings =
     &[("samples", "32"), ("view_size", "512"), ("sample_set", "poisson"), ("synchronized", "false")];
 const UNSYNC_16: Settings =
     &[("samples", "16"), ("view_size", "512"), ("sample_set", "poisson"), ("synchronized", "false")];
-/// Section 3.1.2 and 4.1: the same in fragment shaders, and the ways to a filterable map of section 4.1.2.
+/// Sections 3.1.2 and 4.1: reprojection in fragment shaders, and the ways of section 4.1.2 to a filterable map.
 const THREE_PASS: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("path", "fragment")];
 const TWO_PASS: Settings =
@@ -38,15 +38,15 @@ const SAME_SIZE: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("central_scale", "1")];
 const FOUR_TIMES: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("central_scale", "4")];
-/// The view's size, which is the paper's; all else by the form.
+/// View size of the paper; the form sets all other parameters.
 const VIEWS_OF_512: Settings = &[("view_size", "512")];
-/// Figure 2, with integer maps filtered by hand (section 4.1.2): drawing them to depth has a slope of its own.
+/// Figure 2, with integer maps filtered by hand (section 4.1.2), because drawing them to depth has a slope of its own.
 const BIAS_BEFORE: Settings =
     &[("samples", "64"), ("view_size", "512"), ("sample_set", "poisson"), ("filter", "manual"), ("bias", "before")];
 
 const WINDOW: &str = "builtin:window";
 const SHANTY: &str = "builtin:shanty";
-/// A bench in the shade of a high crown: more depths before a receiver than the shanty town has.
+/// A bench in the shade of a high crown: more depths in front of a receiver than the shanty town has.
 const BENCH: &str = "builtin:bench-under-tree";
 const DRAGON: &str = "builtin:knot?triangles=100000";
 const TEN: &str = "builtin:ten-knots";
@@ -67,7 +67,7 @@ const fn picture(what: &'static str, scene: &'static str, technique: &'static st
     error(what, scene, technique).with(settings).at(640, 360)
 }
 
-/// As the paper's figures 4 and 6 take errors: against brute force with as many views, not against rays.
+/// Errors as in the paper's figures 4 and 6: against brute force with as many views, not against rays.
 const fn from_brute_force(what: &'static str, scene: &'static str, technique: &'static str, settings: Settings) -> Row {
     difference(what, scene, technique, ("multi_view", VIEWS_64)).with(settings).at(640, 360)
 }
@@ -443,5 +443,5 @@ pub const PAPER: Paper = Paper {
     ],
 };
 
-/// Part of the labels of the passes that make depth maps, central or of views.
+/// Part of the labels of the passes that create depth maps, central or of views.
 const DEPTH: &str = "depth";

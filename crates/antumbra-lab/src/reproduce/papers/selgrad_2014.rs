@@ -1,7 +1,7 @@
-//! Selgrad, Dachsbacher, Meyer, Stamminger 2014. Maps of 1024² unless said otherwise.
+//! Selgrad, Dachsbacher, Meyer, Stamminger 2014. Maps of 1024² unless stated otherwise.
 //!
-//! Times are by MIP-maps and with ε = 2w unless a row says otherwise, errors by Y-maps; all else is of the form: `multi_layer:paper`
-//! has ε = 2w doubling from level to level, addition throughout, fragments weighted by hats over depth, every level in full.
+//! Unless a row says otherwise, times use MIP-maps and ε = 2w, and errors use Y-maps. The form sets everything else: `multi_layer:paper`
+//! has ε = 2w doubling from level to level, addition throughout, fragments weighted by hat functions over depth, every level in full.
 
 use super::SKETCHED_PCSS;
 use crate::reproduce::claim::{Claim, Rule, claim};
@@ -16,7 +16,7 @@ const STREET: &str = "builtin:street";
 const TREE: &str = "builtin:tree";
 const LANTERN: &str = "builtin:lantern-wall";
 
-/// The passes of "soft shadows": the lookup, what it looks up first, and what is between the pixels it skips.
+/// Passes of "soft shadows": the lookup, the passes that prepare it, and the interpolation of skipped pixels.
 const LOOKUP: &str = "resolve|upsample|nearest";
 const MIP_MAP: (&str, &str) = ("hierarchy", "mip_map");
 const Y_MAP: (&str, &str) = ("hierarchy", "y_map");
@@ -26,7 +26,7 @@ const LEVELS_5: (&str, &str) = ("levels", "5");
 const WITH_SUB: (&str, &str) = ("sub", "true");
 
 const DEFAULT: Settings = &[EPSILON_2, MIP_MAP];
-/// Section 6: what comes together multiplies.
+/// Section 6: accumulation by multiplication.
 const MULTIPLIED: Settings = &[("list_accumulation", "multiply"), ("level_accumulation", "multiply")];
 const LARGE_EPSILON: Settings = &[EPSILON_10, MIP_MAP];
 const FIVE_LEVELS: Settings = &[EPSILON_2, MIP_MAP, LEVELS_5];
@@ -35,7 +35,7 @@ const ALL: Settings = &[EPSILON_10, MIP_MAP, LEVELS_5, WITH_SUB];
 const ALL_Y_MAP: Settings = &[EPSILON_10, Y_MAP, LEVELS_5, WITH_SUB];
 const ALL_2048: Settings = &[EPSILON_10, MIP_MAP, ("levels", "6"), WITH_SUB, ("map_size", "2048")];
 const ALL_512: Settings = &[EPSILON_10, MIP_MAP, LEVELS_5, WITH_SUB, ("map_size", "512")];
-/// Figures 12 and 13: of each list so many fragments.
+/// Figures 12 and 13: number of fragments used of each list.
 const ONE_LAYER: Settings = &[("layers", "1")];
 const TWO_LAYERS: Settings = &[("layers", "2")];
 const SIXTEEN_LAYERS: Settings = &[("layers", "16")];
@@ -46,12 +46,12 @@ const BOTH_FACES: &str =
 const OWN_LEVELS: &str = "ours makes the levels that a receiver looks up and no more, of eleven about five, and keeps in each what is looked \
                           up: little is left to save.";
 
-/// What the paper has in its tables 1 and 2, which are one table of two scenes.
+/// Numbers of the paper's tables 1 and 2, which are one table for two scenes.
 struct StageTimes {
     scene_ms: f64,
-    /// Counting, scan, collecting, sorting: alike under all settings.
+    /// Counting, scan, collecting, sorting: the same under all settings.
     list_ms: [f64; 4],
-    /// By default, and with ε = 10w, with 5 levels, with sub-sampling and with all of them.
+    /// By default, with ε = 10w, with 5 levels, with sub-sampling, and with all of them.
     filter_ms: [f64; 5],
     lookup_ms: [f64; 5],
     fps: [f64; 5],
@@ -104,14 +104,14 @@ const ADDED_TOO_DARK: &str = "leaves one behind the other are added up, and what
 const MULTIPLIED_LEAVES: &str = "each fragment counts in two levels, w in one and 1 − w in the other, and (1 − w)(1 − (1 − w)) of the light \
                                  passes an opaque one: up to a quarter (`level_accumulation`).";
 
-/// Of each list so many fragments, by multiplication.
+/// Settings with a number of fragments per list, accumulated by multiplication.
 macro_rules! multiplied {
     ($layers:literal) => {
         &[("layers", $layers), ("list_accumulation", "multiply"), ("level_accumulation", "multiply")]
     };
 }
 
-/// What the paper says of both tables.
+/// Claims of the paper about both tables.
 const STAGE_CLAIMS: &[Claim] = &[
     claim(
         "ε = 10w makes filtering 1.6 to 2.8 times as fast.",

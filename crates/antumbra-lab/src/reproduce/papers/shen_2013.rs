@@ -1,5 +1,5 @@
-//! Shen, Feng, Yang 2013. Its scenes are not to be had; ours of the same kinds stand in. `essm:paper` has the settings of section 8:
-//! μ = 20, 3 × 3 parts, H = 5, Level0; sums by recursive doubling, the range by a hierarchical map.
+//! Shen, Feng, Yang 2013. Its scenes are not available; similar ones replace them. `essm:paper` has the settings of section 8: μ = 20, 3 ×
+//! 3 parts, H = 5, Level0; sums by recursive doubling, the range by a hierarchical map.
 
 use crate::reproduce::claim::{Rule, claim};
 use crate::reproduce::exhibit::Reported::{Drawn, Number};
@@ -11,19 +11,19 @@ const PLANTS: &str = "builtin:tree";
 const DINOSAURS: &str = "builtin:ten-knots";
 const TRAFFIC: &str = "builtin:street";
 
-/// The traffic's map, figure 7's and table 1's last.
+/// Map of the traffic scene in figure 7 and the last row of table 1.
 const MAP_4096: Settings = &[("map_size", "4096")];
 const MAP_512: Settings = &[("map_size", "512")];
-/// Guennebaud, Barthe, Paulin 2006 and 2007; Schwarz, Stamminger 2007, of one map.
+/// Guennebaud, Barthe, Paulin 2006 and 2007; Schwarz, Stamminger 2007, with one map.
 const TEXELS_2006: Settings = &[("occluders", "patches"), ("squares", "64"), ("rotate", "false")];
 const OUTLINES_2007: Settings = &[("occluders", "outlines"), ("squares", "64")];
 const BITS_2007: Settings = &[("samples", "256"), ("layers", "1"), ("gaps", "all")];
-/// Why images as published err.
+/// Reason of the errors of images as published.
 const R_AND_MU: &str = "R and μ exclude one another. With 20 bits the exponent that keeps every depth is 13.9, \
                         and contacts leak, the more the deeper the scene; tiles with their own range keep both. \
                         docs/papers.md has the algebra.";
 
-/// A row of Table 1: what hosts draw, the paper's three stages, and all of it.
+/// A row of Table 1: the host's G-buffer, the paper's three stages, and the total.
 macro_rules! table1 {
     ($(
         $name:literal, $scene:ident, $settings:expr, $is_dear:literal:
@@ -59,7 +59,7 @@ const fn stage(
     ms(what, scene, "essm", passes, Number(paper_ms)).with(settings).at(1280, 960).dear_where(is_dear).alone()
 }
 
-/// Errors over the exponent c, each with several numbers of bits μ, of the published form alone.
+/// Errors over the exponent c, each with several numbers of bits μ, for the published form only.
 macro_rules! over_exponents {
     ($($c:literal)+) => {
         &[$(
@@ -77,8 +77,8 @@ macro_rules! over_exponents {
     };
 }
 
-/// One size of map: the paper's one table and its tile grids, by its recursive doubling, then by our passes. In our form tile grids are
-/// the tiles that hold at any depth. Milliseconds of table and shadow as published.
+/// Table 2 for one map size: the paper's single table and its tile grids, with its recursive doubling, then with our passes. Our form
+/// replaces tile grids by tiles that are valid at any depth. Milliseconds of table and shadow as published.
 macro_rules! table2 {
     ($( $size:literal: $sat:literal, $sat_shadow:literal, $stg:literal, $stg_shadow:literal; )+) => {
         &[$(
@@ -98,13 +98,13 @@ macro_rules! table2 {
     };
 }
 
-/// Ours in the place of tile grids.
+/// Settings of our form in place of tile grids.
 const OWN_TILES: Settings = &[("table", "tiles"), ("scan", "blocks")];
 
-/// The ground at a shadow's edge: all of the image is penumbra under a light of 0.6 m or more.
+/// Ground at a shadow's edge: the whole image is penumbra under a light of at least 0.6 m.
 const EDGE: &str = "builtin:leaning-plank";
 
-/// The shadow pass under a light of another size. The paper has no numbers for it, only the word.
+/// Shadow pass under a light of another size. The paper has no numbers for it, only a statement.
 const fn over_light(what: &'static str, technique: &'static str, light_scale: f32) -> Row {
     ms(what, EDGE, technique, "resolve", Drawn).seen("all-penumbra").light_scaled(light_scale).at(640, 360)
 }

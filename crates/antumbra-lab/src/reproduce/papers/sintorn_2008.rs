@@ -1,4 +1,4 @@
-//! Sintorn, Eisemann, Assarsson 2008. Frames a second of whole frames at 512 × 512.
+//! Sintorn, Eisemann, Assarsson 2008. Frames per second are of whole frames at 512 × 512.
 
 use super::SKETCHED_PCSS;
 use crate::reproduce::claim::{Rule, claim, not_here};
@@ -9,8 +9,8 @@ use crate::reproduce::figure::Figure::{Ms, Noise, Rmse};
 const SAMPLES_128: Settings = &[("samples", "128")];
 const SAMPLES_256: Settings = &[("samples", "256")];
 
-/// Bitmask soft shadows of a single map, with as many light samples. With 64 squares along the light they take longer for the same error
-/// (at 192 × 192 an rmse of .0137, with 16 of .0138).
+/// Bitmask soft shadows of a single map, with as many light samples. With 64 squares along the light they take longer at equal error (at
+/// 192 × 192 an rmse of .0137, with 16 of .0138).
 const ONE_LAYER: Settings = &[("samples", "256"), ("layers", "1"), ("patches", "16")];
 /// Outlines of a single map's texels.
 const OUTLINES: Settings = &[("occluders", "outlines"), ("squares", "64")];
@@ -19,7 +19,7 @@ const IRRADIANCE_256: Settings = &[("samples", "256"), ("weights", "irradiance")
 /// Section 4.3: a subset of the view-samples, and reconstruction.
 const SUBSET_256: Settings = &[("samples", "256"), ("sub", "true")];
 
-/// Of figure 7: so many frames of other light samples, added up.
+/// Row of figure 7: number of accumulated frames with different light samples.
 const fn jittered(what: &'static str, frames: u32) -> Row {
     error(what, "builtin:columns", "sample_based")
         .with(&[("samples", "128"), ("accumulate", "true")])
@@ -28,7 +28,7 @@ const fn jittered(what: &'static str, frames: u32) -> Row {
         .at(512, 512)
 }
 
-/// Lighting and visibility apart against equation 1, under the plank's square light, 0.6 m wide and 5.4 m away, or a larger one.
+/// Product of lighting and visibility against equation 1, under the plank's square light, 0.6 m wide and 5.4 m away, or a larger one.
 const fn factored(what: &'static str, light_scale: f32) -> Row {
     difference(what, "builtin:leaning-plank", "sample_based", ("sample_based", IRRADIANCE_256))
         .with(SAMPLES_256)
@@ -37,13 +37,13 @@ const fn factored(what: &'static str, light_scale: f32) -> Row {
         .at(512, 512)
 }
 
-/// The atrium from above its floor, along it: the paper's figure 9.
+/// Atrium seen from above its floor, along it: the paper's figure 9.
 const ATRIUM: &str = "sponza-atrium";
 
-/// A light too small for any penumbra: what hard shadows are held against.
+/// Factor of a light too small for any penumbra, the reference of hard shadows.
 const POINT: f32 = 1e-4;
 
-/// Even maps without what this library adds to them, as the paper compares with.
+/// Even maps without this library's additions, as the paper compares with.
 const MAPS_128: Settings = &[("samples", "128"), ("window", "plain"), ("compare", "gather")];
 const MAPS_256: Settings = &[("samples", "256"), ("window", "plain"), ("compare", "gather")];
 const MAPS_512: Settings = &[("samples", "512"), ("window", "plain"), ("compare", "gather")];
@@ -149,7 +149,7 @@ pub const PAPER: Paper = Paper {
             ],
             note: "",
         },
-        // `antumbra render builtin:spheres --coherent` shows it; docs/limits.md has both pictures.
+        // `antumbra render builtin:spheres --coherent` shows it; docs/limits.md has both images.
         drawing("figure8", "Bent normals: `antumbra render SCENE --coherent`"),
         Exhibit {
             id: "figure9",

@@ -1,4 +1,4 @@
-//! Rules over numbers; and for every rule of every paper an image, or a time, that it rejects.
+//! Tests of rules with numbers; every rule of every paper rejects some image or time.
 
 use glam::UVec2;
 
@@ -10,7 +10,7 @@ use super::*;
 use crate::metrics::compare_visibility;
 use crate::picture::Visibility;
 
-/// No claim about time speaks of a row that takes none.
+/// Claims about time refer to timed rows.
 #[test]
 fn claims_about_time_are_of_rows_that_are_timed() {
     let exhibits = || PAPERS.iter().flat_map(|paper| paper.exhibits);
@@ -20,7 +20,7 @@ fn claims_about_time_are_of_rows_that_are_timed() {
         for row in rules.filter(|rule| rule.figure() == Figure::Ms).flat_map(Rule::rows) {
             let measure = exhibit.rows.iter().find(|one| one.what == row).map(|one| one.measure);
             let is_of_time = |measure: Measure| {
-                // Rays are traced on the processor, techniques run on the adapter: neither clock judges the other.
+                // Rays are traced on the CPU and techniques run on the adapter, so their times are not comparable.
                 measure.is_timed() || matches!(measure, Measure::SceneMs { .. })
             };
             assert!(measure.is_some_and(is_of_time), "{}: {row}", exhibit.id);
@@ -61,7 +61,7 @@ fn a_claim_holds_where_all_of_its_rules_do() {
     use Verdict::{Contradicted, Holds};
     let found = verdicts(&[measured(0.1, 1.0), measured(0.25, 11.0)], false);
     assert_eq!(found, [Holds, Holds, Holds]);
-    // One rule of two is not enough; nor is nine times ten.
+    // One rule of two is not enough, and neither is a ratio of nine for a bound of ten.
     let found = verdicts(&[measured(0.13, 1.0), measured(0.9, 9.0)], false);
     assert_eq!(found, [Contradicted, Contradicted, Contradicted]);
     let judged = judged(&EXHIBIT, &[measured(0.15, 1.0), measured(0.2, 9.0)], false);
@@ -74,14 +74,14 @@ fn a_claim_holds_where_all_of_its_rules_do() {
     assert_eq!(judged[0].sizes, "64 × 36");
 }
 
-/// What lies within a figure's range of the bound is neither.
+/// Figures whose range includes the bound decide nothing.
 #[test]
 fn what_is_too_close_is_neither() {
     let found = verdicts(&[measured(0.1, 1.0), measured(0.2, 10.0)], false);
     for verdict in &found {
         assert!(matches!(verdict, Verdict::Undecided(why) if why.contains("too close to tell")), "{verdict:?}");
     }
-    // A reference of 16 points has noise of .016: an rmse of .02 may be one of .012.
+    // A reference of 16 samples has noise of .016, so an rmse of .02 may be one of .012.
     let noisy =
         |rmse: f64| Outcome::Measured(Measured { rmse: Some(rmse), truth_samples: Some(16), ..Measured::default() });
     const AT_LEAST: &[Claim] = &[claim("", &[Rule::AtLeast(Figure::Rmse, "a", 0.018)])];
@@ -97,7 +97,7 @@ fn the_verdict_is_on_what_was_published() {
     let ours = [Some(measured(0.1, 1.0)), None];
     let judged = judge(&EXHIBIT, Outcomes { published: &published, ours: &ours }, false);
     assert_eq!(judged[0].published.verdict, Verdict::Contradicted);
-    // What has no form of ours stands as published.
+    // Rows without our form use the published one.
     assert_eq!(judged[0].ours.as_ref().map(|ours| ours.verdict.clone()), Some(Verdict::Holds));
     assert!(self::judged(&EXHIBIT, &published, false)[0].ours.is_none());
 }
@@ -109,14 +109,14 @@ fn a_software_renderer_decides_no_time_but_of_growth() {
         matches!(&found[..], [Verdict::Holds, Verdict::Undecided(why), Verdict::Holds] if why.contains("GPU")),
         "{found:?}"
     );
-    // Nor of growth by two frames,
+    // Two frames do not decide about growth,
     let of_two = |ms: f64| {
         let count = Some(crate::stopwatch::FrameCount { frames: 2, warm_up: 1 });
         Outcome::Measured(Measured { ms: Some(ms), rmse: Some(0.1), count, ..Measured::default() })
     };
     let found = verdicts(&[of_two(2.0), of_two(30.0)], true);
     assert!(matches!(&found[2], Verdict::Undecided(why) if why.contains("few frames")), "{found:?}");
-    // nor where its clock says nothing.
+    // nor do times too short for the clock.
     let found = verdicts(&[measured(0.1, 0.2), measured(0.25, 30.0)], true);
     assert!(matches!(&found[2], Verdict::Undecided(why) if why.contains("clock")), "{found:?}");
 }
@@ -139,7 +139,7 @@ fn what_was_not_measured_decides_nothing() {
     assert!(
         found[1..].iter().all(|one| matches!(one, Verdict::Undecided(why) if why.contains("‘b’ was timed as nothing")))
     );
-    // But a rule that is not met is enough.
+    // A single rule that is not met is enough.
     const TWO: &[Claim] = &[claim("", &[Rule::AtMost(Figure::Rmse, "b", 0.1), Rule::AtMost(Figure::Rmse, "a", 0.1)])];
     let exhibit = Exhibit { claims: TWO, ..EXHIBIT };
     assert_eq!(judged(&exhibit, &[not_ready, measured(0.2, 1.0)], true)[0].published.verdict, Verdict::Contradicted);
@@ -167,15 +167,15 @@ fn orders_likeness_and_ratios() {
     assert_eq!(of(0.19, 0.1), ["contradicted", "contradicted", "contradicted", "contradicted"]);
 }
 
-/// A step from umbra to light with a penumbra between them.
+/// Returns a step from umbra to light with a penumbra between them.
 fn truth() -> Visibility {
     let size = UVec2::new(48, 32);
     let at = |i: u32| (f32::from((i % size.x) as u16) / 16.0 - 1.0).clamp(0.0, 1.0);
     Visibility::one(size, (0..size.element_product()).map(at).collect())
 }
 
-/// Images that something may take for the truth: itself, blurred and shifted a little, with light in its umbra, with noise, as a
-/// hard shadow; then those that nothing may: dark, lit, and grey all over.
+/// Returns images that a rule may accept as the truth (itself, slightly changed, with light in its umbra, with noise, as a hard shadow),
+/// then images that none may accept: all dark, all lit, all grey.
 fn images() -> [(&'static str, Visibility); 10] {
     let truth = truth();
     let with = |change: &dyn Fn(usize, f32) -> f32| {
@@ -202,7 +202,7 @@ fn images() -> [(&'static str, Visibility); 10] {
 
 const GOOD: usize = 7;
 
-/// The figures of each of the images.
+/// Returns the figures of each image.
 fn figures() -> Vec<(&'static str, Outcome)> {
     let truth = truth();
     let judged = vec![true; truth.size_px.element_product() as usize];
@@ -222,7 +222,7 @@ fn figures() -> Vec<(&'static str, Outcome)> {
     images.iter().map(|(name, image)| (*name, outcome(image))).collect()
 }
 
-/// The same of masks in motion, of which the flat ones never change.
+/// Returns the figures of masks in motion, of which the flat ones never change.
 fn figures_in_motion() -> Vec<(&'static str, Outcome)> {
     const CHANGE: f64 = 0.05;
     let flickers = [0.0, 0.0005, 0.004, 0.012, 0.03, 0.045, 0.02, CHANGE, CHANGE, CHANGE];
@@ -232,13 +232,13 @@ fn figures_in_motion() -> Vec<(&'static str, Outcome)> {
     images().iter().zip(flickers).map(|((name, _), flicker)| (*name, outcome(flicker))).collect()
 }
 
-/// Every way to put one of `count` things into each of `places`.
+/// Returns every assignment of one of `count` items to each of `places`.
 fn assignments(places: usize, count: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..count.pow(places as u32)).map(move |n| (0..places).map(|k| n / count.pow(k as u32) % count).collect())
 }
 
-/// For every rule about images: there are images that meet it; a constant in the place of what it finds good does not; and where
-/// it finds something wanting, the exact image in that one's place does not.
+/// Every rule about images is met by some images, but not if the images of praised rows are constant, nor
+/// if those of criticised rows are exact.
 #[test]
 fn every_rule_about_images_rejects_a_wrong_one() {
     let (of_images, in_motion) = (figures(), figures_in_motion());
@@ -288,7 +288,7 @@ fn every_rule_about_images_rejects_a_wrong_one() {
     assert!(looked_at > 60, "{looked_at}");
 }
 
-/// For every rule about time: times that meet it, and one time for all rows, or times in the reverse order, that do not.
+/// Every rule about time is met by some times, but not by equal times for all rows, or by times in reverse order.
 #[test]
 fn every_rule_about_time_rejects_a_wrong_one() {
     const MS: [f64; 10] = [10.0, 11.2, 12.0, 14.0, 16.0, 21.0, 30.0, 45.0, 105.0, 1150.0];

@@ -1,4 +1,4 @@
-//! Declarations against the shaders that they are for.
+//! Comparison of bind group declarations with their shaders.
 
 use naga::{AddressSpace, ImageClass, ImageDimension, ScalarKind, StorageAccess, TypeInner};
 
@@ -6,8 +6,8 @@ use super::Bindings;
 use crate::gpu::overrides::is_linked_name;
 use crate::gpu::uniforms;
 
-/// Whether group `group` of some shaders, each with its name, is as declared: every binding of theirs is in the
-/// declaration, by the same name and of the same kind, and every one declared is some shader's.
+/// Asserts that group `group` of named shaders is as declared: each shader binding is declared with the same name and
+/// kind, and each declared binding occurs in a shader.
 pub(crate) fn assert_as_declared<G: Bindings>(group: u32, shaders: &[(&str, &str)]) {
     let entries = G::layout_entries();
     let mut missing: Vec<_> = G::names();
@@ -83,7 +83,7 @@ fn is_sampled(declared: wgpu::TextureSampleType, multisampled: bool, class: Imag
             };
             is_kind && multi == multisampled
         }
-        // A depth map's samples are told where its layout is made.
+        // Multisampling of a depth texture is chosen when the layout is created.
         ImageClass::Depth { .. } => declared == wgpu::TextureSampleType::Depth,
         _ => false,
     }

@@ -1,4 +1,4 @@
-//! Caches of a device: objects by their descriptors, and resources that live as long as somebody holds them.
+//! Caches of a device: objects by their descriptors, and resources that are freed with their last holder.
 
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -16,13 +16,13 @@ impl<K, V> Default for DescriptorCache<K, V> {
 }
 
 impl<K: Eq + Hash, V: Clone> DescriptorCache<K, V> {
-    /// The one there is, or a new one. Two threads that miss at once both make one, and the first stays.
+    /// Returns the cached object, or a new one. If two threads miss at once, both create one, and the first is cached.
     pub(super) fn get_or_make(&self, key: K, made: &AtomicU64, make: impl FnOnce() -> V) -> V {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = lock().get(&key) {
             return found.clone();
         }
-        // Not under the lock: a pipeline takes the driver's compiler.
+        // Create outside the lock, because compiling a pipeline takes long.
         made.fetch_add(1, Ordering::Relaxed);
         let value = make();
         lock().entry(key).or_insert(value).clone()
@@ -40,7 +40,7 @@ impl<K, V> Default for SharedPool<K, V> {
 }
 
 impl<K: PartialEq, V> SharedPool<K, V> {
-    /// The one that somebody holds, or a new one.
+    /// Returns the resource that somebody holds, or a new one.
     pub(super) fn get_or_make(&self, key: K, make: impl FnOnce() -> V) -> Arc<V> {
         let mut held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         held.retain(|(_, value)| value.strong_count() > 0);
@@ -52,7 +52,7 @@ impl<K: PartialEq, V> SharedPool<K, V> {
         made
     }
 
-    /// Bytes of all that somebody holds.
+    /// Memory of all held resources, bytes.
     pub(super) fn bytes(&self, of: impl Fn(&V) -> u64) -> u64 {
         let held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         held.iter().filter_map(|(_, value)| value.upgrade()).map(|value| of(&value)).sum()

@@ -1,11 +1,11 @@
-//! Keys of layouts and pipelines: all that one is made of, so that equal ones are made once.
+//! Cache keys of layouts and pipelines: everything that they are created from.
 
 use std::num::NonZeroU32;
 
-/// A layout's entries as declared, and as the device has them.
+/// Entries of a layout, first as declared, then as the device receives them.
 pub(super) type LayoutKey = [Vec<wgpu::BindGroupLayoutEntry>; 2];
 
-/// An entry point with values for its overridable constants.
+/// Entry point, with values for its overridable constants.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct EntryKey {
     module: wgpu::ShaderModule,

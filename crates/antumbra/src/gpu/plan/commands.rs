@@ -1,4 +1,4 @@
-//! Commands of a planned device, which do nothing: encoder, passes and bundles.
+//! Commands of a planned device, which do nothing: encoders, passes and bundles.
 
 use std::ops::Range;
 
@@ -12,15 +12,15 @@ use wgpu::{BufferAddress, DynamicOffset};
 
 use super::objects::Planned;
 
-/// An encoder.
+/// Command encoder or render bundle encoder.
 #[derive(Debug)]
 pub(super) struct PlannedCommands;
 
-/// A pass.
+/// Compute or render pass.
 #[derive(Debug)]
 struct PlannedPass;
 
-/// The interfaces of passes ask for it.
+/// Required by the interfaces of passes.
 impl Drop for PlannedPass {
     fn drop(&mut self) {}
 }

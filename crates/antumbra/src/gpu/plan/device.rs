@@ -17,7 +17,7 @@ use super::commands::PlannedCommands;
 use super::objects::{Planned, PlannedMemory};
 use crate::gpu::device::descriptor_bytes;
 
-/// A device with the features and limits of another one, which enters what is created into a ledger.
+/// Device with the features and limits of another one; it adds what is created to a ledger.
 #[derive(Debug)]
 pub(super) struct PlannedDevice {
     of: wgpu::Device,
@@ -135,7 +135,7 @@ impl DeviceInterface for PlannedDevice {
     fn destroy(&self) {}
 }
 
-/// A queue that drops what it is given.
+/// Queue that discards what it receives.
 #[derive(Debug)]
 pub(super) struct PlannedQueue;
 
@@ -156,7 +156,7 @@ impl QueueInterface for PlannedQueue {
         _: wgpu::Extent3d,
     ) {
     }
-    // wgpu declares it with its feature `web`, which the library asks for on this target.
+    // wgpu declares this function with its feature `web`, which the library enables on this target.
     #[cfg(all(target_arch = "wasm32", not(target_os = "emscripten")))]
     fn copy_external_image_to_texture(
         &self,

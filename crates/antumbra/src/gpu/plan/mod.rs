@@ -1,4 +1,4 @@
-//! Plan of GPU memory: the lights' own `prepare` on a device that keeps descriptors and creates nothing.
+//! Plan of GPU memory: runs the lights' own `prepare` on a device that keeps descriptors and creates nothing.
 //!
 //! ```text
 //!  MemoryPlan::new(gpu) ─► Gpu of a planned device ─► Shadow::prepare ─► create_buffer, create_texture ─► Ledger
@@ -7,8 +7,8 @@
 //!     the map budget
 //! ```
 //!
-//! wgpu takes a device of one's own ([`wgpu::custom`]). So techniques, pool, budget and reports are those of a real frame, and a plan
-//! cannot differ from what the frame then takes, as far as that is known before it is drawn.
+//! wgpu accepts custom devices ([`wgpu::custom`]). So techniques, resource pool, budget and reports are those of a real frame,
+//! and the plan equals what the frame allocates, as far as that is known before drawing.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -24,24 +24,24 @@ mod tests;
 
 use device::{PlannedDevice, PlannedQueue};
 
-/// Plan of GPU memory: lights are prepared on a device that allocates and compiles nothing, and report what they would take.
+/// Plan of GPU memory. Lights are prepared on a device that allocates nothing, and report what they would allocate.
 ///
 /// Use [`gpu`](Self::gpu) in place of the real handle: create techniques with it, set their parameters and
-/// [`prepare`](crate::Shadow::prepare) their frames. [`Shadow::memory_bytes`](crate::Shadow::memory_bytes) then is what the light will
-/// retain, and [`Gpu::memory_bytes`] what all planned lights will share. The numbers are bytes and those that the same calls report
-/// after the same frames on the real device, with two exceptions: lists whose length only the GPU knows may grow in later frames,
-/// which [`Shadow::overflow`](crate::Shadow::overflow) reports, and drivers may align and pad what they allocate.
+/// [`prepare`](crate::Shadow::prepare) their frames. [`Shadow::memory_bytes`](crate::Shadow::memory_bytes) then returns what
+/// the light will retain, and [`Gpu::memory_bytes`] what all planned lights will share. Both equal what the same calls return
+/// after the same frames on the real device, with two exceptions. Lists whose length only the GPU knows may grow in later
+/// frames, which [`Shadow::overflow`](crate::Shadow::overflow) reports. Drivers may align and pad allocations.
 ///
-/// Receivers, masks and casters may be the real ones, or be made with the [`device`](Gpu::device) of the planned handle, which
-/// allocates nothing for them. Nothing planned may be given to a real device. [`Prepared::record`](crate::Prepared::record) of a planned
-/// light records nothing.
+/// Receivers, masks and casters may be real ones, or be created with the [`device`](Gpu::device) of the planned handle, which
+/// allocates nothing for them. Do not pass planned resources to a real device. [`Prepared::record`](crate::Prepared::record) of
+/// a planned light records nothing.
 #[derive(Debug)]
 pub struct MemoryPlan {
     gpu: Gpu,
     ledger: Arc<Ledger>,
 }
 
-/// Planned buffers and textures of one label.
+/// Planned buffers and textures with the same label.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlannedResource {
@@ -49,13 +49,13 @@ pub struct PlannedResource {
     pub label: String,
     /// Number of resources.
     pub count: u64,
-    /// Bytes of all of them together.
+    /// Bytes of all these resources together.
     pub bytes: u64,
 }
 
 impl MemoryPlan {
-    /// A plan for the device of `gpu`, with its limits and features and what is left of its
-    /// [map budget](Gpu::set_map_budget) at present: planned lights come beside those that there are.
+    /// Creates a plan for the device of `gpu`, with its limits and features. Planned lights are added to the existing ones:
+    /// they get the part of the [map budget](Gpu::set_map_budget) that is left.
     pub fn new(gpu: &Gpu) -> Self {
         let ledger = Arc::new(Ledger::default());
         let device = wgpu::Device::from_custom(PlannedDevice::new(gpu.device(), &ledger));
@@ -64,12 +64,12 @@ impl MemoryPlan {
         Self { gpu, ledger }
     }
 
-    /// The handle of the planned device.
+    /// Handle of the planned device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Buffers and textures that planned lights hold at present, small ones included, by label; those that take most come first.
+    /// Buffers and textures that planned lights hold at present, including small ones, by label, largest first.
     pub fn resources(&self) -> Vec<PlannedResource> {
         let held = self.ledger.held();
         let mut resources: Vec<_> = held
@@ -100,7 +100,7 @@ impl Ledger {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Enters a resource, until the entry is dropped.
+    /// Adds a resource until the returned entry is dropped.
     fn enter(self: &Arc<Self>, label: Option<&str>, bytes: u64) -> Entry {
         let label = label.unwrap_or_default().to_owned();
         let mut held = self.held();
@@ -111,7 +111,7 @@ impl Ledger {
     }
 }
 
-/// One resource in a ledger.
+/// Entry of one resource in a ledger.
 #[derive(Debug)]
 struct Entry {
     ledger: Arc<Ledger>,

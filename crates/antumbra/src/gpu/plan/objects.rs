@@ -1,4 +1,4 @@
-//! Objects of a planned device: buffers and textures with their entry in the ledger, and one type for all that takes no memory.
+//! Objects of a planned device: buffers and textures with their ledger entries, and one type for all objects without memory.
 
 use std::future::ready;
 use std::ops::Range;
@@ -14,7 +14,7 @@ use wgpu::custom::{
 
 use super::Entry;
 
-/// A buffer or texture.
+/// Planned buffer or texture.
 #[derive(Debug)]
 pub(super) struct PlannedMemory {
     _entry: Entry,
@@ -47,7 +47,7 @@ impl TextureInterface for PlannedMemory {
     fn destroy(&self) {}
 }
 
-/// An object that takes no memory of a plan.
+/// Planned object without memory.
 #[derive(Debug)]
 pub(super) struct Planned;
 

@@ -1,4 +1,4 @@
-//! The planned device itself; that plans are kept is tested by `antumbra-host-tests`.
+//! Tests of the planned device itself. `antumbra-host-tests` tests that plans match real frames.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,7 +32,7 @@ fn resources_are_counted_while_they_are_held() {
     let plan = MemoryPlan::new(gpu);
     let (first, second, texture) = (buffer(plan.gpu(), 100), buffer(plan.gpu(), 20), texture(plan.gpu()));
     let of = |label: &str, count, bytes| PlannedResource { label: label.into(), count, bytes };
-    // Two levels of three layers.
+    // Two levels with three layers each.
     let of_texture = of("test texture", 1, 16 * 3 * (8 * 4 + 4 * 2));
     assert_eq!(plan.resources(), [of_texture.clone(), of("test buffer", 2, 120)]);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());

@@ -1,11 +1,11 @@
-//! Subpixel precision of the adapter's rasteriser, measured.
+//! Measured subpixel precision of the adapter's rasteriser.
 //!
-//! A rasteriser snaps corners to a grid of subpixels, and depths are those of the triangle so moved: on a slanted surface they are
-//! off by what the surface falls over as much of a texel. WebGPU does not tell how fine the grid is. Graphics chips have 256 steps
-//! a texel; some, and the software that browsers fall back to, have 16, where what is known to a hundredth of a texel is wrong; and
-//! some software takes depths of triangles as they were given, where nothing is to be allowed for. So it is measured, once for a
-//! device: a few slanted triangles are drawn, and the most that a depth is off its plane is left in a buffer, which the
-//! shaders that must know are given. Nothing waits for it.
+//! A rasteriser snaps corners to a subpixel grid and interpolates depth over the moved triangle. On a slanted surface, depth is
+//! off by the surface's slope times that shift. WebGPU does not reveal how fine the grid is. Graphics chips have 256 steps per
+//! texel. Some, and the software that browsers fall back to, have 16, which makes a tolerance of a hundredth of a texel wrong.
+//! Some software interpolates over the unmoved triangle and needs no tolerance. So the library measures once per device: it
+//! draws a few slanted triangles and stores the largest distance of a depth from its plane in a buffer for the shaders. Nothing
+//! waits for it.
 
 use super::{Bindings, DrawPipeline, Gpu, bindings, compute_pipeline, depth_state, texels};
 use crate::shaders;
@@ -18,7 +18,7 @@ bindings! {
 }
 
 crate::gpu::shared_constants! {
-    /// Cells along a side.
+    /// Cells along a side of the target.
     const CELLS: u32 = 16, as in RASTERISER_MEASURE;
     /// Texels along a side of a cell.
     const CELL_TEXELS: u32 = 16, as in RASTERISER_MEASURE;
@@ -27,25 +27,25 @@ crate::gpu::shared_constants! {
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 impl Gpu {
-    /// A uniform, `f32`, with usage `COPY_SRC`: by how many texels the adapter's rasteriser draws planes elsewhere than they lie, as
-    /// measured by the first call for this device. About .003 on graphics cards, 0 on software renderers.
+    /// Uniform buffer, `f32`, with usage `COPY_SRC`: distance by which the adapter's rasteriser displaces planes, texels. The
+    /// first call for this device measures it. About .003 on graphics cards, 0 on software renderers.
     pub fn snapped_texels(&self) -> &wgpu::Buffer {
         self.device.snapped_texels(|| measure(self))
     }
 
-    /// Before it was measured: as if this rasteriser drew planes so many texels elsewhere, beside what it does.
+    /// Adds a displacement, texels, to that of the rasteriser; takes effect only before the first measurement.
     #[cfg(test)]
     pub(crate) fn pretend_snapped(&self, by_texels: f32) {
         self.device.snapped_texels(|| measure_moved(self, by_texels));
     }
 }
 
-/// Draws and measures; a uniform, `f32`: by how many texels planes are drawn elsewhere than they lie, 0 where by none.
+/// Draws and measures. Returns a uniform buffer, `f32`: distance by which planes are displaced, texels; 0 if they are exact.
 fn measure(gpu: &Gpu) -> wgpu::Buffer {
     measure_moved(gpu, 0.0)
 }
 
-/// The same with everything drawn so many texels to the right of where it is taken to be.
+/// Measures with everything drawn `by_texels` texels to the right.
 fn measure_moved(gpu: &Gpu, by_texels: f32) -> wgpu::Buffer {
     let label = Some("antumbra rasteriser");
     let size = CELLS * CELL_TEXELS;
@@ -108,7 +108,7 @@ mod tests {
     use super::measure_moved;
     use crate::testing::{gpu, read_storage};
 
-    /// Corners are snapped to a sixteenth of a texel at the coarsest, half of a step in each direction.
+    /// The coarsest grid has 16 steps per texel, so corners move by at most half a step in each direction.
     #[test]
     fn rasterisers_keep_planes_to_a_part_of_a_texel() {
         let Some(gpu) = gpu() else { return };
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(gpu.snapped_texels(), gpu.clone().snapped_texels(), "measured once");
     }
 
-    /// What is drawn a sixteenth of a texel beside where it lies is found to be, and the margin more.
+    /// A displacement of a sixteenth of a texel is measured, times the safety factor.
     #[test]
     fn what_is_drawn_elsewhere_is_noticed() {
         let Some(gpu) = gpu() else { return };

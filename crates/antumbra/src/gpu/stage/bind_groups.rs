@@ -1,4 +1,4 @@
-//! Bind groups and views of a frame, cached from earlier frames by what they are of.
+//! Bind groups and views of a frame, cached from earlier frames by their descriptors.
 
 use std::hash::{BuildHasher, Hash, Hasher};
 use std::num::NonZeroU64;
@@ -7,7 +7,7 @@ use hashbrown::DefaultHashBuilder;
 
 use super::{Keep, Stage, Used};
 
-/// A bind group and what it was made of. Looked for in every frame, by reference: nothing is cloned for what is found.
+/// Cached bind group with its layout and resources. Every frame looks it up by reference, so that a hit clones no key.
 #[derive(Debug)]
 pub(super) struct KeptGroup {
     hash: u64,
@@ -16,7 +16,7 @@ pub(super) struct KeptGroup {
     pub(super) group: Used<wgpu::BindGroup>,
 }
 
-/// What a bind group holds at a binding.
+/// Resource of a bind group at a binding.
 #[derive(Debug)]
 pub(crate) enum Resource {
     Buffer(wgpu::Buffer, u64, Option<NonZeroU64>),
@@ -24,7 +24,7 @@ pub(crate) enum Resource {
     Sampler(wgpu::Sampler),
 }
 
-/// A view and what it is of.
+/// Cached view, with its texture and the part of it.
 #[derive(Debug)]
 pub(super) struct KeptView {
     texture: wgpu::Texture,
@@ -43,7 +43,7 @@ struct TexturePart {
 }
 
 impl Stage<'_> {
-    /// A bind group of these parts.
+    /// Returns a bind group, cached by layout and resources.
     pub(crate) fn create_bind_group(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> wgpu::BindGroup {
         let Keep { frame, hashes, groups, .. } = &mut *self.keep.borrow_mut();
         let hash = hash_of_group(hashes, descriptor);
@@ -62,7 +62,7 @@ impl Stage<'_> {
         value
     }
 
-    /// A view of a texture.
+    /// Returns a view of a texture, cached by texture and descriptor.
     pub(crate) fn create_view(
         &self,
         texture: &wgpu::Texture,
@@ -102,7 +102,7 @@ impl KeptGroup {
 }
 
 impl Resource {
-    /// What is bound.
+    /// Binding resource for a bind group entry.
     pub(crate) fn binding(&self) -> wgpu::BindingResource<'_> {
         match self {
             Self::Buffer(buffer, offset, size) => {
@@ -134,7 +134,7 @@ impl Resource {
     }
 }
 
-/// Of the layout and what is bound, in order.
+/// Hash of the layout and the bound resources, in order.
 fn hash_of_group(hashes: &DefaultHashBuilder, descriptor: &wgpu::BindGroupDescriptor<'_>) -> u64 {
     let mut hasher = hashes.build_hasher();
     descriptor.layout.hash(&mut hasher);

@@ -1,11 +1,11 @@
-//! Uploads of a frame: bytes that its commands copy to where they belong, and the staging buffers that they pass through.
+//! Uploads of a frame: bytes that its commands copy to their targets, and the staging buffers in between.
 
 use std::sync::Arc;
 
 use super::Keep;
 use crate::gpu::{CommandsEnd, Gpu};
 
-/// Bytes on their way to buffers.
+/// Uploads collected so far.
 #[derive(Debug, Default)]
 pub(super) struct Uploads {
     pub(super) bytes: Vec<u8>,
@@ -20,15 +20,15 @@ pub(super) struct Copy {
     pub(super) bytes: u64,
 }
 
-/// A buffer that uploads pass through. It is free where nobody but the list holds its ticket: a frame holds it until it
-/// is recorded, and its commands until the queue is done with them or they are dropped.
+/// Staging buffer. It is free if nothing else holds its ticket: a frame holds it until it is recorded, and its commands
+/// hold it until the queue has finished or they are dropped.
 #[derive(Debug)]
 pub(super) struct Staging {
     pub(super) buffer: wgpu::Buffer,
     ticket: Arc<()>,
 }
 
-/// A frame's uploads, ready to be recorded before its passes.
+/// Uploads of a frame, to be recorded before its passes.
 #[derive(Debug, Default)]
 pub(crate) struct StagedUploads {
     from: Option<(wgpu::Buffer, Arc<()>)>,
@@ -36,7 +36,7 @@ pub(crate) struct StagedUploads {
 }
 
 impl StagedUploads {
-    /// Copies every upload to where it belongs; `then` learns when the commands are done or dropped.
+    /// Records the copies of all uploads; `then` is notified when the commands are done or dropped.
     pub(crate) fn record(self, encoder: &mut wgpu::CommandEncoder, then: CommandsEnd) {
         let ticket = self.from.map(|(buffer, ticket)| {
             for Copy { to, to_offset, from, bytes } in &self.copies {
@@ -51,11 +51,11 @@ impl StagedUploads {
     }
 }
 
-/// The least size of a staging buffer: most frames' uploads.
+/// Minimum size of a staging buffer, bytes: enough for most frames.
 const LEAST_STAGING_BYTES: u64 = 16 << 10;
 
 impl Uploads {
-    /// Takes over another's.
+    /// Moves the uploads of another collection into this one.
     pub(super) fn append(&mut self, other: &mut Self) {
         let first = self.bytes.len() as u64;
         self.bytes.append(&mut other.bytes);
@@ -70,7 +70,7 @@ impl Keep {
             return StagedUploads::default();
         }
         let is_free = |staging: &Staging| Arc::strong_count(&staging.ticket) == 1;
-        // What has become too small is made anew, not kept beside it.
+        // Replaces a free buffer that is too small, rather than keeping both.
         self.staging.retain(|staging| !is_free(staging) || staging.buffer.size() >= bytes);
         let place = self.staging.iter().position(is_free).unwrap_or_else(|| {
             let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {

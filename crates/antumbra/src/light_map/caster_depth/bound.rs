@@ -1,6 +1,6 @@
 //! Buffers and pipeline that a pass has bound for its draws.
 
-/// What a pass has bound for its draws: what the next draw has too is not bound again.
+/// State bound in a render pass; binds of unchanged state are skipped.
 #[derive(Default)]
 pub(crate) struct Bound<'a> {
     pipeline: Option<&'a wgpu::RenderPipeline>,
@@ -21,7 +21,7 @@ impl<'a> Bound<'a> {
         }
     }
 
-    /// Of 32 bits each.
+    /// Binds an index buffer of 32-bit indices.
     pub(crate) fn indices(&mut self, pass: &mut wgpu::RenderPass<'_>, buffer: &'a wgpu::Buffer) {
         if self.indices.replace(buffer) != Some(buffer) {
             pass.set_index_buffer(buffer.slice(..), wgpu::IndexFormat::Uint32);

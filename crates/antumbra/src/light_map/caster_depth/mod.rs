@@ -18,18 +18,18 @@ use program::{Kind, program};
 pub(crate) use view_sides::ViewSides;
 
 gpu_structs! {
-    /// The view that a pass renders.
+    /// Light view that a pass renders.
     pub(crate) struct CasterView {
         clip_from_world: Mat4,
         anchor_in_world: Vec3,
-        /// Of the light point that the view is from, counted from 1; 0: of the light as a whole.
+        /// Light point of the view, counted from 1; 0 for a view of the whole light.
         light_point: u32,
-        /// What stopped light is weighed by.
+        /// Weights of the colours of stopped light: luminance, or one colour.
         color_weights: Vec3,
         padding: u32,
     }
 
-    /// A surface that is not opaque: [`SurfaceValues`].
+    /// Values of a surface that is not opaque: [`SurfaceValues`].
     pub(crate) struct Cutout {
         factor: Vec4,
         cutoff: f32,
@@ -51,31 +51,31 @@ bindings! {
     }
 }
 
-/// Dynamic uniform offsets are multiples of WebGPU's default alignment.
+/// Stride of views in the uniform buffer, bytes: WebGPU's default alignment of dynamic offsets.
 const UNIFORM_STRIDE: u64 = 256;
 
-/// A view to draw casters in.
+/// View in which casters are drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DrawnView {
     pub(crate) clip_from_world: Mat4,
-    /// The light point that it is from, where it is one of many: translucent casters are there for as many of them as
-    /// they stop light. In a view of the light as a whole they are there where they stop half of it or more.
+    /// Light point of the view, if it is one of many: translucent casters block for a share of the points equal to the
+    /// light that they stop. In a view of the whole light (`None`) they block where they stop at least half of it.
     pub(crate) light_point: Option<u32>,
-    /// What light of each colour counts.
+    /// Weights of the colours of stopped light.
     pub(crate) color_weights: Vec3,
 }
 
 impl DrawnView {
-    /// Of white light's luminance, by Rec. 709.
+    /// Colour weights of luminance, by Rec. 709.
     pub(crate) const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-    /// A view of the light as a whole.
+    /// View of the whole light.
     pub(crate) fn whole(clip_from_world: Mat4) -> Self {
         Self { clip_from_world, light_point: None, color_weights: Self::LUMINANCE }
     }
 }
 
-/// Whether the device has square maps of `size` texels a side.
+/// Checks that the device supports square maps of `size` texels a side.
 pub(crate) fn check_map_size(gpu: &Gpu, technique: &'static str, size: u32, remedy: &'static str) -> Result<(), Error> {
     let limit = gpu.device.limits().max_texture_dimension_2d;
     if size <= limit {
@@ -98,9 +98,9 @@ pub(crate) struct CasterDepth {
     white: wgpu::TextureView,
     sampler: wgpu::Sampler,
     views: Option<(wgpu::Buffer, wgpu::BindGroup)>,
-    /// One a caster; `None` where it is opaque.
+    /// Surfaces' bind groups, one per caster; `None` for opaque ones.
     cutouts: Vec<Option<wgpu::BindGroup>>,
-    /// Casters that a view may see.
+    /// Whether any view may see the caster, one per caster.
     is_in_views: Vec<bool>,
     /// Zero texture coordinates for translucent casters without a texture.
     no_uvs: Option<wgpu::Buffer>,
@@ -110,14 +110,14 @@ impl CasterDepth {
     /// The maps' format: 32-bit float, reversed.
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-    /// What a map is cleared to: the far plane.
+    /// Clear value of maps: the far plane.
     pub(crate) const CLEAR_DEPTH: f32 = 0.0;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self::multisampled(gpu, 1)
     }
 
-    /// For maps with `sample_count` samples a texel.
+    /// Creates the rasteriser of maps with `sample_count` samples per texel.
     pub(crate) fn multisampled(gpu: &Gpu, sample_count: u32) -> Self {
         let (view_layout, cutout_layout) = (OneOfViews::layout(gpu), Holes::layout(gpu));
         let depth_alone = program(
@@ -152,18 +152,18 @@ impl CasterDepth {
         }
     }
 
-    /// Another program for the same casters.
+    /// Creates another program for the same casters.
     pub(crate) fn program(&self, gpu: &Gpu, descriptor: &CasterProgramDescriptor<'_>) -> CasterProgram {
         program(gpu, &self.view_layout, &self.cutout_layout, descriptor)
     }
 
-    /// Uploads the views of the light as a whole that the frame's passes will render, and the casters' surfaces.
+    /// Uploads the views of the whole light that the frame's passes will render, and the casters' surfaces.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, clip_from_world: &[Mat4], casters: &[MeshCaster<'_>]) {
         let views: Vec<_> = clip_from_world.iter().copied().map(DrawnView::whole).collect();
         self.prepare_views(stage, &views, casters);
     }
 
-    /// The same of any views.
+    /// [`prepare`](Self::prepare) for any views.
     pub(crate) fn prepare_views(&mut self, stage: &Stage<'_>, views: &[DrawnView], casters: &[MeshCaster<'_>]) {
         let needed = views.len() as u64 * UNIFORM_STRIDE;
         if self.views.as_ref().is_none_or(|(buffer, _)| buffer.size() < needed) {
@@ -214,7 +214,7 @@ impl CasterDepth {
         Some(holes.group(stage, &self.cutout_layout))
     }
 
-    /// Of group 0, which [`bind_view`](Self::bind_view) binds.
+    /// Layout of group 0, which [`bind_view`](Self::bind_view) binds.
     pub(crate) fn view_layout(&self) -> &wgpu::BindGroupLayout {
         &self.view_layout
     }
@@ -272,11 +272,11 @@ impl CasterDepth {
     }
 }
 
-/// As many views are asked which casters they see; more see most of them, each others.
+/// Largest number of views for which casters are culled; more views together see most casters.
 const MOST_VIEWS_ASKED: usize = 8;
 
-/// Stand-in texture coordinates for translucent casters without a texture, as many as the largest has vertices: their shader
-/// reads some.
+/// Creates stand-in texture coordinates for translucent casters without a texture, since their shader reads some; as many as
+/// the largest caster has vertices.
 pub(crate) fn make_no_uvs(stage: &Stage<'_>, no_uvs: &mut Option<wgpu::Buffer>, casters: &[MeshCaster<'_>]) {
     let most_vertices = casters
         .iter()

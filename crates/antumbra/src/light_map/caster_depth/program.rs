@@ -3,38 +3,38 @@
 use super::CasterDepth;
 use crate::gpu::{DrawPipeline, Gpu, depth_state};
 
-/// What to do with the casters' fragments: a pipeline for opaque casters and one for those with holes.
+/// Pipelines that draw casters: one for opaque casters and one for those with holes.
 #[derive(Debug)]
 pub(crate) struct CasterProgram {
     pub(super) opaque: wgpu::RenderPipeline,
-    /// For closed meshes, where their back faces are left out.
+    /// Pipeline for closed opaque meshes that culls back faces; `None` if all faces are drawn.
     pub(super) opaque_closed: Option<wgpu::RenderPipeline>,
     pub(super) cutout: wgpu::RenderPipeline,
 }
 
-/// The makings of a [`CasterProgram`]. Both shaders have the entry point `vertex` of this block's own ones.
+/// Descriptor of a [`CasterProgram`]. Both shaders have the vertex entry point `vertex`, as this module's own shaders.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CasterProgramDescriptor<'a> {
     pub(crate) label: &'a str,
     pub(crate) opaque_wgsl: &'static str,
     pub(crate) cutout_wgsl: &'static str,
-    /// The fragment entry point; opaque casters have none where it is `None`.
+    /// Fragment entry point for opaque casters; `None` for no fragment stage.
     pub(crate) opaque_fragment: Option<&'a str>,
     pub(crate) cutout_fragment: &'a str,
-    /// The fragment entry points' overridable constants.
+    /// Overridable constants of the fragment entry points.
     pub(crate) constants: &'a [(&'a str, f64)],
-    /// Group 2, which is the program's own.
+    /// Layout of group 2, which is specific to the program.
     pub(crate) layout: Option<&'a wgpu::BindGroupLayout>,
     pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
     pub(crate) depth_compare: wgpu::CompareFunction,
     pub(crate) depth_write: bool,
-    /// Leaves out the back faces of closed, opaque meshes.
+    /// Whether the back faces of closed, opaque meshes are culled.
     pub(crate) front_faces_of_solids: bool,
-    /// Samples a texel of the attachments.
+    /// Samples per texel of the attachments.
     pub(crate) sample_count: u32,
 }
 
-/// Which pipeline draws a caster.
+/// Kind of caster, which selects its pipeline.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Opaque,
@@ -87,28 +87,28 @@ fn pipeline(
     .create(gpu)
 }
 
-/// Casters' positions.
+/// Vertex buffer of casters' positions.
 pub(crate) const POSITIONS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: 12,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![0 => Float32x3],
 };
 
-/// Casters' matrices, column by column.
+/// Instance buffer of casters' matrices, column by column.
 pub(crate) const INSTANCES: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: 64,
     step_mode: wgpu::VertexStepMode::Instance,
     attributes: &wgpu::vertex_attr_array![1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4],
 };
 
-/// Casters' texture coordinates.
+/// Vertex buffer of casters' texture coordinates.
 pub(crate) const UVS: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: 8,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![5 => Float32x2],
 };
 
-/// How casters' triangles are drawn: those nearer than the near plane, where the light's plane cuts them, are kept at it.
+/// Primitive state of casters. Triangles nearer than the near plane, where the light's plane cuts them, are drawn at it, not clipped.
 pub(crate) fn caster_primitives(gpu: &Gpu, cull_mode: Option<wgpu::Face>) -> wgpu::PrimitiveState {
     wgpu::PrimitiveState {
         cull_mode,

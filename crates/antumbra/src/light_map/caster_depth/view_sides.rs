@@ -1,13 +1,13 @@
-//! Sides of a view, and which boxes lie beyond one of them.
+//! Culling of bounding boxes against the sides of a light view.
 
 use antumbra_light::Aabb;
 use glam::{Mat4, Vec3, Vec4};
 
-/// The sides of what a view of a matrix has texels for, to ask which boxes lie beyond one of them.
+/// Sides of a view's frustum, against which bounding boxes are culled.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ViewSides {
     clip_from_world: Mat4,
-    /// Each component negative inside: of a clip position, and of half a box along the world's axes at the most.
+    /// Clip-space plane of each side, negative inside, and its largest change per half extent of a box along the world's axes.
     sides: [(Vec4, Vec3); 6],
 }
 
@@ -27,7 +27,7 @@ impl ViewSides {
         Self { clip_from_world: *clip_from_world, sides }
     }
 
-    /// Whether any of a box can be where the view has texels. Nothing of a box is drawn that lies beyond one side, since sides are
+    /// Whether any part of a box may be where the view has texels. A box wholly beyond one side draws nothing, since sides are
     /// planes in homogeneous coordinates.
     pub(crate) fn may_hold(&self, bounds: &Aabb) -> bool {
         let (middle, half) = (0.5 * bounds.min + 0.5 * bounds.max, 0.5 * bounds.max - 0.5 * bounds.min);
@@ -46,7 +46,7 @@ mod tests {
 
     use super::*;
 
-    /// A box of which any place is in a view is never left out; most others are, whose corners lie beyond one side.
+    /// A box partly inside a view is never culled; most boxes whose corners all lie beyond one side are.
     #[test]
     fn views_leave_out_boxes_beside_them_alone() {
         let unit = |i: u32| unit_f32(hash_u32(i)) * 2.0 - 1.0;
@@ -63,7 +63,7 @@ mod tests {
             let (middle, half) = (8.0 * place(first + 2), place(first + 3).abs() * 1.5);
             let bounds = Aabb { min: middle - half, max: middle + half };
             let may_hold = ViewSides::of(&clip_from_world).may_hold(&bounds);
-            // The near plane clips nothing: what is nearer is drawn at it.
+            // The near plane clips nothing: nearer geometry is drawn at it.
             let is_inside = |x: Vec3| {
                 let clip = clip_from_world * x.extend(1.0);
                 clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z >= 0.0

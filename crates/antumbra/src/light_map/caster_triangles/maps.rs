@@ -1,5 +1,5 @@
-//! Depth maps whose texels also say which triangle they show. Triangles narrower than a texel are drawn a texel
-//! wide: maps name what may be there, and the triangles themselves say what is.
+//! Depth maps that also store the id of each texel's triangle. Triangles narrower than a texel are drawn a texel
+//! wide: maps give candidates, and exact tests against the triangles decide.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::light_map::caster_depth::{CasterDepth, caster_primitives};
 use crate::shaders;
 
 gpu_structs! {
-    /// What all maps share.
+    /// Parameters that all maps share.
     pub(crate) struct TriangleMap {
         size_texels: f32,
         padding_0: f32,
@@ -48,7 +48,7 @@ pub(crate) struct TriangleMaps {
 struct Maps {
     size: u32,
     views: u32,
-    /// Of both textures, which are the light's as long as it has it.
+    /// Lease of both textures, which belong to the light while it holds the lease.
     lease: Lease,
     _textures: [Arc<wgpu::Texture>; 2],
     depth_array: wgpu::TextureView,
@@ -58,10 +58,10 @@ struct Maps {
 }
 
 impl TriangleMaps {
-    /// The ids' format.
+    /// Format of triangle ids.
     const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
-    /// Depth and id.
+    /// Bytes per texel: depth and id.
     pub(crate) const TEXEL_BYTES: u64 = 8;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
@@ -78,7 +78,7 @@ impl TriangleMaps {
         }
     }
 
-    /// Allocates `views` maps of `size` texels a side, which take turns where `clip_from_world` has more.
+    /// Allocates `views` maps of `size` texels a side; if `clip_from_world` has more views, they are drawn in turn.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -94,7 +94,7 @@ impl TriangleMaps {
         let drawn = Drawn { triangle_map: &self.uniform, triangles: self.triangles.buffer() };
         self.group = Some(drawn.group(stage, &self.layout));
         if self.maps.as_ref().is_none_or(|maps| (maps.size, maps.views) != (size, views)) {
-            // What there is goes back to the budget before more is taken.
+            // The old maps return their bytes to the budget before the new ones take theirs.
             self.maps = None;
             self.maps = Some(Maps::new(stage, size, views));
         }
@@ -105,12 +105,12 @@ impl TriangleMaps {
         self.maps.as_ref().expect("prepare comes before use")
     }
 
-    /// `texture_depth_2d_array`, a slice a view.
+    /// `texture_depth_2d_array`, one slice per view.
     pub(crate) fn depth_array(&self) -> &wgpu::TextureView {
         &self.maps().depth_array
     }
 
-    /// Each map's depths alone.
+    /// Views of single depth maps.
     pub(crate) fn depth_slices(&self) -> &[wgpu::TextureView] {
         &self.maps().depth_slices
     }
@@ -125,12 +125,12 @@ impl TriangleMaps {
         self.maps.as_ref().is_some_and(|maps| maps.lease.is_own())
     }
 
-    /// The triangles that ids are of.
+    /// Triangles to which the ids refer.
     pub(crate) fn triangles(&self) -> &CasterTriangles {
         &self.triangles
     }
 
-    /// Draws some of the views, the first into the first map.
+    /// Draws a range of views, the first into the first map.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str, views: Range<u32>) {
         let maps = self.maps();
         let count = views.len();

@@ -1,10 +1,10 @@
-//! All the casters' triangles in the world, in one array, each with its neighbours across its edges; and maps whose texels
-//! say which triangle they show ([`maps`]). What a texel shows can then be tested as it is, and the surface that it belongs
-//! to be walked over (`walk.wesl`), where a depth alone is a guess about what lies between texels.
+//! World-space array of all casters' triangles, each with its neighbours across its edges; and maps whose texels store the
+//! id of the triangle that they show ([`maps`]). Segments can then be tested exactly against that triangle and its
+//! neighbours (`walk.wesl`), whereas depth alone allows only a guess about what lies between texels.
 //!
-//! Triangles are neighbours where an edge's ends agree to the bit, whatever meshes they are of: edges are put into a table
-//! by a hash of their ends, and the entries of a slot are compared. 48 bytes a triangle, and 24 to 36 for its edges. Casters
-//! count as opaque: what holes a surface has its triangles do not tell.
+//! Triangles are neighbours if an edge's ends agree to the bit, even across meshes: edges are stored in a hash table by
+//! their ends, and the entries of a slot are compared. A triangle takes 48 bytes, and its edges 24 to 36. Casters count as
+//! opaque, since triangles do not describe a surface's holes.
 
 use crate::contract::{Error, MeshCaster};
 use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, sized_buffer};
@@ -25,10 +25,10 @@ bindings! {
 
 use runs::{MOST_RUNS, RunBindings, TriangleRun, anchor_uniform, upload_runs};
 
-/// A triangle's corners and neighbours.
+/// Bytes of a triangle: corners and neighbours.
 const TRIANGLE_BYTES: u64 = 48;
 
-/// The casters' triangles.
+/// World-space triangles of the casters.
 #[derive(Debug)]
 pub(crate) struct CasterTriangles {
     layout: wgpu::BindGroupLayout,
@@ -38,7 +38,7 @@ pub(crate) struct CasterTriangles {
     buffers: Buffers,
     group: Option<wgpu::BindGroup>,
     runs: Vec<Run>,
-    /// Triangles that the buffers have room for.
+    /// Capacity of the buffers, triangles.
     room: u64,
 }
 
@@ -49,14 +49,14 @@ struct Buffers {
     links: Option<wgpu::Buffer>,
 }
 
-/// The triangles of some casters that lie in the same buffers.
+/// Triangles of casters that share their buffers.
 #[derive(Debug)]
 struct Run {
     count: u32,
     group: wgpu::BindGroup,
 }
 
-/// There is room for so many triangles at least.
+/// Smallest capacity, triangles.
 const LEAST_ROOM: u64 = 2048;
 
 impl CasterTriangles {
@@ -75,7 +75,7 @@ impl CasterTriangles {
         }
     }
 
-    /// Allocates what the casters' triangles need; their buffers are [readable](crate::light_map::readable_meshes).
+    /// Allocates buffers for the casters' triangles. The casters' own must be [readable](crate::light_map::readable_meshes).
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -103,7 +103,7 @@ impl CasterTriangles {
             first += run.count;
             self.runs.push(run);
         }
-        // Casters that come into the light's reach and leave it make nothing anew; and no binding is empty.
+        // Spare room, so that casters that enter and leave the light's reach allocate nothing; and no binding may be empty.
         if count > self.room || 4 * count.max(LEAST_ROOM) < self.room {
             self.room = (count + count / 2).next_power_of_two().max(LEAST_ROOM);
         }
@@ -141,7 +141,7 @@ impl CasterTriangles {
         Run { count, group: bindings.group(stage, &self.run_layout) }
     }
 
-    /// How many there are.
+    /// Number of triangles.
     pub(crate) fn count(&self) -> u32 {
         self.runs.iter().map(|run| run.count).sum()
     }
@@ -173,7 +173,7 @@ impl CasterTriangles {
     }
 }
 
-/// Positions, indices, instances.
+/// Buffers of positions, indices and instances.
 fn buffers_of<'a>(mesh: &MeshCaster<'a>) -> [&'a wgpu::Buffer; 3] {
     [mesh.positions, mesh.indices, mesh.instances]
 }

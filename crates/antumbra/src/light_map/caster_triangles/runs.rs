@@ -1,9 +1,9 @@
-//! Runs of casters' triangles, a thread of a dispatch for each; the shader side is `runs.wesl`.
+//! Runs of casters' triangles, one thread of a dispatch per triangle; the shader side is `runs.wesl`.
 
 use crate::gpu::{Stage, bindings, gpu_structs};
 
 gpu_structs! {
-    /// The triangles of a mesh's instances.
+    /// Run of a mesh's triangles, for each of some instances; `runs.wesl` documents the fields.
     pub(crate) struct TriangleRun {
         first_thread: u32,
         thread_count: u32,
@@ -11,14 +11,14 @@ gpu_structs! {
         triangle_count: u32,
         first_instance: u32,
         first_place: u32,
-        /// The user's own.
+        /// Flags of the technique.
         flags: u32,
         has_uvs: u32,
     }
 }
 
 bindings! {
-    /// What the runs of a dispatch have in common.
+    /// Bindings shared by the runs of a dispatch.
     pub(crate) struct RunBindings = "triangle runs", COMPUTE,
         group 1 of [CASTER_TRIANGLES_GATHER, CASTER_TRIANGLES_JOIN]
     {
@@ -30,15 +30,15 @@ bindings! {
     }
 }
 
-/// Where the frame counts places from, for the runs.
+/// Uniform with the frame's anchor, for the runs.
 pub(crate) fn anchor_uniform(stage: &Stage<'_>) -> wgpu::Buffer {
     stage.uniform("antumbra anchor", &stage.anchor().extend(0.0))
 }
 
-/// Runs of a dispatch: `MOST_RUNS` of `runs.wesl`.
+/// Largest number of runs per dispatch: `MOST_RUNS` of `runs.wesl`.
 pub(crate) const MOST_RUNS: usize = 512;
 
-/// Uploads as many runs, each with its triangles, and counts the triangles of all.
+/// Uploads at most [`MOST_RUNS`] runs, each with its triangle count; also returns the total count.
 pub(crate) fn upload_runs(
     stage: &Stage<'_>,
     runs: impl IntoIterator<Item = (TriangleRun, u32)>,

@@ -1,4 +1,4 @@
-//! Neighbours against what a mesh's making says of them.
+//! Neighbours against those known from a mesh's construction.
 
 use glam::{Vec2, Vec3};
 
@@ -30,7 +30,7 @@ fn gathered(gpu: &Gpu, casters: &[MeshCaster<'_>]) -> Gathered {
     }
 }
 
-/// Whether each neighbour shares the edge that it is said to lie across, and knows of it.
+/// Asserts that each neighbour shares the edge across which it is stored, and has this triangle as its own neighbour.
 fn assert_mutual(all: &Gathered) {
     for (i, (corners, neighbours)) in all.corners.iter().zip(&all.neighbours).enumerate() {
         for (k, neighbour) in neighbours.iter().enumerate().filter(|(_, n)| **n != NO_NEIGHBOUR) {
@@ -46,7 +46,7 @@ fn assert_mutual(all: &Gathered) {
 #[test]
 fn a_grid_is_one_surface_with_an_edge() {
     let Some(gpu) = gpu() else { return };
-    // 40 × 30 cells, each corner of each triangle a vertex of its own: edges are found by where they lie.
+    // 40 × 30 cells without shared vertices: edges are matched by position.
     let (across, along) = (40u32, 30u32);
     let mut positions = Vec::new();
     for (x, z) in (0..across).flat_map(|x| (0..along).map(move |z| (x, z))) {
@@ -75,7 +75,7 @@ fn a_surface_does_not_go_on_in_its_own_back() {
     let sheet = Mesh::new(gpu, &positions, &[0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0]);
     let all = gathered(gpu, &[sheet.caster()]);
     assert_mutual(&all);
-    // Across the diagonal each goes on in the other of its own side.
+    // Across the diagonal, each neighbour is the other triangle of the same side.
     for (triangle, other) in [(0, 1), (1, 0), (2, 3), (3, 2)] {
         let known: Vec<u32> = all.neighbours[triangle].iter().copied().filter(|n| *n != NO_NEIGHBOUR).collect();
         assert_eq!(known, [other], "triangle {triangle}");

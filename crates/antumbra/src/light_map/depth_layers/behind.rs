@@ -1,4 +1,4 @@
-//! The layers behind a depth map that another pass draws: depths alone.
+//! Layers behind a depth map that another pass draws: depth only.
 
 use super::NearerLayer;
 use crate::contract::MeshCaster;
@@ -8,7 +8,7 @@ use crate::gpu::{Bindings, Gpu, Lease, Recorder, Scratch, Span, Stage, array_vie
 use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
 use crate::shaders;
 
-/// The nearest layers behind a depth map.
+/// Nearest layers behind a depth map.
 #[derive(Debug)]
 pub(crate) struct LayersBehind {
     program: CasterProgram,
@@ -21,12 +21,12 @@ struct Maps {
     size: u32,
     array: (Arc<wgpu::Texture>, wgpu::TextureView),
     slices: Vec<wgpu::TextureView>,
-    /// For each slice that is drawn, the layer before it.
+    /// Bind groups of the layer before each drawn slice.
     nearer: Vec<wgpu::BindGroup>,
 }
 
 impl LayersBehind {
-    /// For maps that `casters` draws.
+    /// Creates the pipelines, for maps that `casters` draws.
     pub(crate) fn new(gpu: &Gpu, casters: &CasterDepth) -> Self {
         let nearer_layout = NearerLayer::layout(gpu);
         let program = casters.program(
@@ -49,9 +49,9 @@ impl LayersBehind {
         Self { program, nearer_layout, maps: None }
     }
 
-    /// Allocates `layers` maps of `size`² texels; without any, one that is never drawn nor read.
+    /// Allocates `layers` maps of `size`² texels; for 0 layers, a dummy that is never drawn or read.
     ///
-    /// Keeps them while their number and size stay: whoever gives another `nearest` [releases](Self::release) them first.
+    /// Reuses them while their number and size are unchanged: callers with another `nearest` must [release](Self::release) them first.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -74,7 +74,7 @@ impl LayersBehind {
         self.maps = Some(Maps { size, array: (Arc::clone(&texture), array_view(stage, &texture)), slices, nearer });
     }
 
-    /// Lets go of what it has, for maps of another kind.
+    /// Releases the maps, before maps of another kind.
     pub(crate) fn release(&mut self) {
         self.maps = None;
     }
@@ -84,12 +84,12 @@ impl LayersBehind {
         u64::from(size).pow(2) * u64::from(layers) * 4
     }
 
-    /// `texture_depth_2d_array`, a slice a layer.
+    /// `texture_depth_2d_array`, one slice per layer.
     pub(crate) fn array(&self) -> &wgpu::TextureView {
         &self.maps.as_ref().expect("prepare comes before use").array.1
     }
 
-    /// Draws every layer, as the first of `casters`' views sees them.
+    /// Draws every layer in the first of `casters`' views.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, casters: &CasterDepth, meshes: &[MeshCaster<'_>]) {
         let Some(maps) = &self.maps else { return };
         for (i, (slice, nearer)) in maps.slices.iter().zip(&maps.nearer).enumerate() {
@@ -101,7 +101,7 @@ impl LayersBehind {
         }
     }
 
-    /// Each layer that is drawn.
+    /// Views of the drawn layers.
     pub(crate) fn drawn(&self) -> Vec<wgpu::TextureView> {
         self.maps.as_ref().map(|maps| maps.slices[..maps.nearer.len()].to_vec()).unwrap_or_default()
     }

@@ -1,9 +1,9 @@
-//! The nearest layers of the casters from one view or several: depth, and the depth's gradient along the surface.
+//! Nearest depth layers of the casters from one view or several: depth, and the gradient of depth along the surface.
 //!
-//! Layer 0 is the depth map; each further layer is the nearest of what lies behind the one before (depth peeling,
-//! Everitt 2001), one geometry pass a layer. Back faces of closed meshes are left out behind the first, so that a layer is
-//! an object and not its far side: what a solid's back would block, its front blocks. Slices of both arrays run view by
-//! view, layer by layer.
+//! Layer 0 is the depth map. Each further layer holds the nearest surfaces behind the one before (depth peeling, Everitt
+//! 2001), with one geometry pass per layer. Layers behind the first omit back faces of closed meshes, so that a layer is
+//! another object and not a far side: a solid's front blocks all that its back would. Slices of both arrays are ordered by
+//! view, then by layer.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -20,37 +20,37 @@ pub(crate) mod behind;
 mod tests;
 
 bindings! {
-    /// What draws a layer: the layer before it.
+    /// Input of a layer's pass: the layer before it.
     struct NearerLayer = "nearer layer", FRAGMENT, group 2 of [DEPTH_LAYERS_OPAQUE, DEPTH_LAYERS_CUTOUT] {
         0 nearer_layer: Texture(texels::DEPTH),
     }
 }
 
-/// The nearest layers of the casters.
+/// Nearest depth layers of the casters.
 #[derive(Debug)]
 pub(crate) struct DepthLayers {
     casters: CasterDepth,
-    /// For maps with gradients; made when such are first asked for.
+    /// Programs for maps with gradients, created on first use.
     programs: Option<Programs>,
     maps: Option<Maps>,
 }
 
-/// What [`DepthLayers`] holds.
+/// Dimensions of [`DepthLayers`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LayersSize {
     /// Texels along a side.
     pub(crate) size: u32,
-    /// Views at one time.
+    /// Number of views at a time.
     pub(crate) views: u32,
     pub(crate) layers: u32,
-    /// Without gradients there is one layer, drawn without a fragment stage.
+    /// Whether gradients are stored. Without them there is one layer, drawn without a fragment stage.
     pub(crate) with_gradients: bool,
 }
 
 #[derive(Debug)]
 struct Programs {
     nearest: CasterProgram,
-    /// A layer behind another.
+    /// Program of a layer behind another one.
     next: CasterProgram,
     nearer_layout: wgpu::BindGroupLayout,
 }
@@ -58,7 +58,7 @@ struct Programs {
 #[derive(Debug)]
 struct Maps {
     of: LayersSize,
-    /// Of both textures.
+    /// Lease of both textures.
     lease: Lease,
     /// Depths and gradients.
     #[cfg_attr(not(test), expect(dead_code, reason = "held, so that lights that share them find them"))]
@@ -67,24 +67,24 @@ struct Maps {
     depth_slices: Vec<wgpu::TextureView>,
     gradient_array: wgpu::TextureView,
     gradient_slices: Vec<wgpu::TextureView>,
-    /// For each slice, the layer before it.
+    /// Bind groups of the layer before each slice; `None` for nearest layers.
     nearer: Vec<Option<wgpu::BindGroup>>,
 }
 
 impl DepthLayers {
-    /// The gradients' format, in units of `layer.wesl`: 11 bits of a gradient are a small part of the bias.
+    /// Format of gradients, in units of `layer.wesl`: the rounding to 11 bits is small compared with the bias.
     pub(crate) const GRADIENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg16Float;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
         Self { casters: CasterDepth::new(gpu), programs: None, maps: None }
     }
 
-    /// The pipelines that share the casters' bindings.
+    /// Rasteriser whose bindings the layers' pipelines share.
     pub(crate) fn casters(&self) -> &CasterDepth {
         &self.casters
     }
 
-    /// Allocates maps, and uploads the views of the light as a whole: as many as the maps are for, or more that take turns.
+    /// Allocates maps, and uploads the views of the whole light: as many as the maps hold, or more that are drawn in turn.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -96,7 +96,7 @@ impl DepthLayers {
         self.prepare_views(stage, &views, casters, of);
     }
 
-    /// The same of any views.
+    /// [`prepare`](Self::prepare) for any views.
     pub(crate) fn prepare_views(
         &mut self,
         stage: &Stage<'_>,
@@ -109,7 +109,7 @@ impl DepthLayers {
             self.programs = Some(Programs::new(stage, &self.casters));
         }
         if self.maps.as_ref().is_none_or(|maps| maps.of != of) {
-            // What there is goes back to the budget before more is taken.
+            // The old maps return their bytes to the budget before the new ones take theirs.
             self.maps = None;
             self.maps = Some(Maps::new(stage, of, self.programs.as_ref()));
         }
@@ -119,7 +119,7 @@ impl DepthLayers {
         self.maps.as_ref().expect("prepare comes before use")
     }
 
-    /// `texture_depth_2d_array`, one slice a layer of a view.
+    /// `texture_depth_2d_array`, one slice per layer of a view.
     pub(crate) fn depth_array(&self) -> &wgpu::TextureView {
         &self.maps().depth_array
     }
@@ -129,7 +129,7 @@ impl DepthLayers {
         &self.maps().gradient_array
     }
 
-    /// Each slice alone, to attach.
+    /// Views of single slices, for attachments.
     pub(crate) fn depth_slices(&self) -> &[wgpu::TextureView] {
         &self.maps().depth_slices
     }
@@ -139,12 +139,12 @@ impl DepthLayers {
         self.maps.as_ref().is_some_and(|maps| maps.lease.is_own())
     }
 
-    /// What is held.
+    /// Current dimensions.
     pub(crate) fn size(&self) -> LayersSize {
         self.maps().of
     }
 
-    /// Draws every layer of some of the views, the first into the first map.
+    /// Draws every layer of a range of views, the first view into the first map.
     pub(crate) fn record(
         &self,
         recorder: &mut Recorder<'_>,
@@ -185,7 +185,7 @@ impl DepthLayers {
         }
     }
 
-    /// Bytes of the maps where they are the light's own.
+    /// Bytes of the maps; 0 if lights share them.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.maps.as_ref().map_or(0, |maps| maps.lease.own_bytes())
     }
@@ -227,7 +227,7 @@ impl Programs {
             )
         };
         Self {
-            // Of all faces: from inside a solid its back is nearest.
+            // With back faces: from inside a solid, its back is nearest.
             nearest: program("nearest", None, false),
             next: program("next", Some(&nearer_layout), true),
             nearer_layout,

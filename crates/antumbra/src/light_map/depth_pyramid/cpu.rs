@@ -1,10 +1,10 @@
-//! CPU reference.
+//! CPU reference of the depth pyramid.
 
 use glam::UVec2;
 
 use super::level_sizes;
 
-/// Every level's (min, max), row by row.
+/// Returns every level's (min, max), row by row.
 pub(crate) fn build(map: &[f32], map_size: UVec2) -> Vec<Vec<[f32; 2]>> {
     let mut previous: Vec<[f32; 2]> = map.iter().map(|d| [*d, *d]).collect();
     let mut previous_size = map_size;

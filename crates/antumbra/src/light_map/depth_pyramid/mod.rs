@@ -1,13 +1,13 @@
-//! The least and greatest depth of ever larger squares of a depth map.
+//! Depth pyramid: the smallest and largest depth of ever larger squares of a depth map.
 //!
-//! Level `i` has `⌈n / 2^(i+1)⌉` texels a side, each the (min, max) of the `2^(i+1)` square of map texels that it
-//! covers, up to one texel for all. Depth is taken as it is stored, but without the warp of a warped window, so that one
-//! scale of depth holds for the whole map; readers know which end is nearer.
+//! Level `i` has `⌈n / 2^(i+1)⌉` texels per side, each the (min, max) of the `2^(i+1)` square of map texels that it
+//! covers, down to one texel for all. Depths are the stored ones without the warp of a warped window, so that one depth
+//! scale holds for the whole map; readers know which end is nearer.
 //!
-//! The last level, of one texel, leaves out what is so near the light that it hides hardly anything of it: `last.wesl`.
+//! The last level, one texel, ignores casters so near the light that they hide hardly any of it: `last.wesl`.
 //!
-//! A dispatch makes four levels, as many as WebGPU's default limits let it write: three dispatches serve maps of 512 to 4096
-//! texels.
+//! A dispatch makes four levels, the most that WebGPU's default limits let it write: three dispatches serve maps of 512 to
+//! 4096 texels.
 
 use std::sync::Arc;
 
@@ -25,15 +25,15 @@ mod cpu;
 #[cfg(test)]
 mod tests;
 
-/// Levels that a dispatch makes.
+/// Number of levels per dispatch.
 const AT_ONCE: usize = 4;
 
-/// Texels along a side of what a workgroup makes of the first of its levels.
+/// Texels along a side of a workgroup's tile of the first of its levels.
 const TILE: u32 = 16;
 
 bindings! {
     struct Halving = "depth pyramid", COMPUTE, group 0 of [DEPTH_PYRAMID_LEVELS] {
-        /// The map, or the level before.
+        /// Map, or previous level.
         0 source: Texture(texels::FLOAT),
         1 view: Uniform,
         2 first_level: WrittenTexture(DepthPyramid::FORMAT),
@@ -45,14 +45,14 @@ bindings! {
 
 bindings! {
     struct Last = "depth pyramid's last levels", COMPUTE, group 0 of [DEPTH_PYRAMID_LAST], with halving: Halving {
-        /// The level that is summed over.
+        /// Level that is summed over.
         6 nodes: Texture(texels::FLOAT),
         7 light: Uniform,
     }
 }
 
 gpu_structs! {
-    /// The light, as the last level asks of it; `last.wesl` says what each is.
+    /// Light parameters of the last level; `last.wesl` documents the fields.
     pub(crate) struct NearLight {
         half_extent: Vec2,
         node_texels: f32,
@@ -60,7 +60,7 @@ gpu_structs! {
     }
 }
 
-/// Builds pyramids.
+/// Builder of depth pyramids, with the levels of one map.
 #[derive(Debug)]
 pub(crate) struct DepthPyramid {
     layout: wgpu::BindGroupLayout,
@@ -72,32 +72,32 @@ pub(crate) struct DepthPyramid {
     levels: Option<Levels>,
 }
 
-/// The levels of one map.
+/// Levels of one map.
 #[derive(Debug)]
 struct Levels {
     map_size: UVec2,
     all: wgpu::TextureView,
     texture: Arc<wgpu::Texture>,
-    /// What they are bound to: the map, and its view.
+    /// Map and view to which the levels are bound.
     of: (wgpu::TextureView, wgpu::Buffer),
-    /// From the map on; the last levels follow.
+    /// Dispatches from the map on; `last` follows them.
     steps: Vec<Step>,
     last: wgpu::BindGroup,
 }
 
-/// What makes four levels from the one before, or from the map.
+/// Dispatch that makes four levels from the one before, or from the map.
 #[derive(Debug)]
 struct Step {
     bind_group: wgpu::BindGroup,
-    /// Of the first of them.
+    /// Size of the first of the four levels.
     size: UVec2,
 }
 
 impl DepthPyramid {
-    /// Min in x, max in y.
+    /// Format of levels: min in x, max in y.
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 
-    /// Texels along a side of the level that the last one sums over.
+    /// Largest side of the level that is summed over, texels.
     const NODES: u32 = 128;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
@@ -119,8 +119,8 @@ impl DepthPyramid {
     }
 
     /// Allocates the levels of a map of `map_size` texels and binds them to it, and to its view: a
-    /// [`LightViewGpu`](crate::light_map::light_view::LightViewGpu). `light_half_extent_m` is the light's on its plane; zero
-    /// for suns and lists of points, where everything in the map matters.
+    /// [`LightViewGpu`](crate::light_map::light_view::LightViewGpu). `light_half_extent_m` is the light's half extent on its
+    /// plane; zero for suns and lists of points, for which everything in the map matters.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -176,12 +176,12 @@ impl DepthPyramid {
         });
     }
 
-    /// All levels, for shaders; after [`Self::prepare`].
+    /// View of all levels, for shaders; `None` before [`Self::prepare`].
     pub(crate) fn view(&self) -> Option<&wgpu::TextureView> {
         self.levels.as_ref().map(|levels| &levels.all)
     }
 
-    /// Each level alone, for whoever wants to look at it.
+    /// Views of single levels, for inspection.
     pub(crate) fn drawn(&self) -> Vec<MapLevel> {
         let Some(levels) = &self.levels else { return Vec::new() };
         let level = |base_mip_level: u32| MapLevel {
@@ -197,7 +197,7 @@ impl DepthPyramid {
         (0..levels.texture.mip_level_count()).map(level).collect()
     }
 
-    /// Reads the map, writes every level.
+    /// Records the dispatches that write every level from the map.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let Some(levels) = &self.levels else { return };
         recorder.compute("depth pyramid", Span::Only, |pass| {
@@ -212,7 +212,7 @@ impl DepthPyramid {
         });
     }
 
-    /// Lets go of what it has, for a map of another kind.
+    /// Releases the levels, before a map of another kind.
     pub(crate) fn release(&mut self) {
         self.levels = None;
     }
@@ -239,9 +239,9 @@ fn descriptor(sizes: &[UVec2]) -> wgpu::TextureDescriptor<'static> {
     }
 }
 
-/// The levels' sizes, from half the map's to 1 × 1. A texture's mip chain halves rounding down, so level 0 is rounded
-/// up to a power of two: what it has beyond the map repeats the map's edge. Of small maps, too, there are more levels than
-/// a dispatch makes, so that the last are made of one before them.
+/// Returns the levels' sizes, from half the map's to 1 × 1. A texture's mip chain halves rounding down, so level 0 is
+/// rounded up to a power of two: its texels beyond the map repeat the map's edge. Small maps, too, have more levels than
+/// a dispatch makes, so that the last ones are made from a level before them.
 fn level_sizes(map_size: UVec2) -> Vec<UVec2> {
     let mut size = map_size.map(|texels| texels.next_power_of_two().max(2 << AT_ONCE));
     let mut sizes = Vec::new();
@@ -254,7 +254,7 @@ fn level_sizes(map_size: UVec2) -> Vec<UVec2> {
     }
 }
 
-/// The finest level that is small enough to be summed over.
+/// Returns the finest level that is small enough to be summed over.
 fn nodes_level(sizes: &[UVec2]) -> usize {
     sizes.iter().position(|size| size.max_element() <= DepthPyramid::NODES).expect("the last is one texel")
 }

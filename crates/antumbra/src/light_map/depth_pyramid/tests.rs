@@ -38,7 +38,7 @@ fn built(gpu: &Gpu, map: &[f32], size: UVec2, view: &wgpu::Buffer, light_half_ex
     pyramid
 }
 
-/// The last level's nearest depth in metres, of a 256² map that shows a wall at 10 m and a square of `speck` texels at 5 cm.
+/// Nearest depth of the last level, metres, for a 256² map that shows a wall at 10 m and a square of `speck` texels at 5 cm.
 fn nearest_that_matters_m(gpu: &Gpu, speck: u32, light_half_extent_m: Vec2) -> f32 {
     const SIZE: u32 = 256;
     let frame = Light::new(LightShape::Disk { radius_m: 1.0 }, Vec3::ZERO, -Vec3::Y).frame();
@@ -65,14 +65,14 @@ fn nearest_that_matters_m(gpu: &Gpu, speck: u32, light_half_extent_m: Vec2) -> f
 #[test]
 fn what_hides_next_to_nothing_of_the_light_does_not_matter() {
     let Some(gpu) = gpu() else { return };
-    // A texel 5 cm before the light is 0.4 mm wide, and so many of 2 m do not count; the wall does, up to its bin's eighth of an
-    // octave.
+    // A texel 5 cm in front of the light is 0.4 mm wide, too little of 2 m to count. The wall counts, up to its bin's eighth of
+    // an octave.
     let alone = nearest_that_matters_m(gpu, 1, Vec2::ONE);
     assert!((9.0..=10.0).contains(&alone), "{alone} m");
-    // All of the map at 5 cm is a 400th of the light's area, which counts.
+    // The whole map at 5 cm is a 400th of the light's area, which counts.
     let all = nearest_that_matters_m(gpu, 256, Vec2::ONE);
     assert!((all - 0.05).abs() < 1e-3, "{all} m");
-    // Of a light a centimetre wide the texel hides a six-hundredth, which counts; before points and suns everything does.
+    // Of a light a centimetre wide the texel hides a six-hundredth, which counts. For points and suns everything counts.
     for half_extent in [Vec2::splat(0.005), Vec2::ZERO] {
         let near = nearest_that_matters_m(gpu, 1, half_extent);
         assert!((near - 0.05).abs() < 1e-3, "{half_extent}: {near} m");
@@ -96,7 +96,7 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
             let got = read_texture(gpu, &levels.texture, i, level_size);
             assert_eq!(bytemuck::cast_slice::<u8, [f32; 2]>(&got), want, "{size}, level {i}");
         }
-        // Four levels a dispatch, the last four included.
+        // Four levels per dispatch, including the last four.
         let dispatches = levels.steps.len() + 1;
         assert!(dispatches <= level_sizes(size).len().div_ceil(4), "{size}: {dispatches} dispatches");
     }

@@ -1,4 +1,4 @@
-//! The window in which the texels that fall on what is seen are smallest.
+//! Search for the window in which texels on seen receivers are smallest.
 
 use antumbra_light::LightFrame;
 use glam::Vec2;
@@ -6,44 +6,44 @@ use glam::Vec2;
 use super::{LightView, ViewFit, Window, WindowShape};
 use crate::contract::SeenPoint;
 
-/// The widest texels of a warped window are at most so many octaves wider than the narrowest, across the warp; along it
+/// Largest ratio of the widest to the narrowest texel of a warped window, in octaves across the warp; along the warp it is
 /// twice as many.
 const WARP_OCTAVES: u32 = 5;
 
-/// A warp is taken where texels become smaller by this factor: texels of one size are worth something too.
+/// Factor by which a warp must lower the cost to be used, since texels of equal size are an advantage, too.
 const WARP_MUST_GAIN: f32 = 0.95;
 
-/// Points summed side by side.
+/// Number of points summed in parallel.
 const LANES: usize = 8;
 
-/// What is seen, as it lies in the light plane of views that share their frame: see [`ViewFit::in_plane`].
+/// Seen points in the light plane of views with the same frame; see [`ViewFit::in_plane`].
 #[derive(Clone, Debug)]
 pub(crate) struct SeenInPlane {
     x: Vec<[f32; LANES]>,
     y: Vec<[f32; LANES]>,
-    /// Times the square of what a plane coordinate of 1 is there in metres; 0 where there is no point.
+    /// Weight of the point, times the square of the metres per unit of plane coordinate there; 0 in unused lanes.
     weight: Vec<[f32; LANES]>,
 }
 
 impl LightView {
-    /// The roll that gives a rectangular window the shortest sides, by `fit`, which fits a window of a shape.
+    /// Returns the roll that gives a rectangular window the shortest sides. `fit` fits a window of a given shape.
     pub(crate) fn best_roll(fit: impl Fn(WindowShape) -> Self) -> WindowShape {
-        /// The last texels that a finer search finds are not worth its time.
+        /// Number of rolls tried; a finer search gains too little for its time.
         const ROLLS: u32 = 32;
         (0..ROLLS)
             .map(|i| WindowShape::Rolled(Vec2::from_angle(i as f32 * std::f32::consts::FRAC_PI_2 / ROLLS as f32)))
             .min_by(|a, b| {
-                // The wider side of a texel blurs as much as the narrower helps: the sum, not the area.
+                // The sum, not the area: the wider side of a texel blurs as much as the narrower side sharpens.
                 let sides = |shape: &WindowShape| fit(*shape).window.half_size.element_sum();
                 sides(a).total_cmp(&sides(b))
             })
             .unwrap_or(WindowShape::Square)
     }
 
-    /// The window, rolled or warped, in which the texels that fall on `seen` are smallest in the world, by `fit`, which
-    /// fits a window of a shape. What is least is the mean square of their widths over pixels: an edge is blurred over a
-    /// band as wide as a texel, and the more where it is narrower than that. (On `checker-far`, 320 × 180, 64 views, the
-    /// mean width gave rmse .038, its square .028, no warp .073.)
+    /// Returns the window, rolled or warped, in which texels on `seen` are smallest in the world. `fit` fits a window of a
+    /// given shape. The cost is the mean square of texel widths over pixels: an edge is blurred over a band as wide as a
+    /// texel, and the more if it is narrower than that. (On `checker-far`, 320 × 180, 64 views, minimising the mean width
+    /// gives rmse .038, the mean square .028, no warp .073.)
     pub(crate) fn best_window(seen: &SeenInPlane, fit: impl Fn(WindowShape) -> Self) -> WindowShape {
         let rolled = Self::best_roll(&fit);
         if seen.x.is_empty() {
@@ -60,7 +60,7 @@ impl LightView {
                 .min_by(|a, b| a.0.total_cmp(&b.0))
                 .unwrap_or((f32::INFINITY, 0.0, 0.0))
         };
-        // From coarse to fine: a turn all round, then the neighbourhood of the best, twice.
+        // From coarse to fine: a full turn, then the neighbourhood of the best, three times.
         const TURNS: u32 = 16;
         let turn_step = std::f32::consts::TAU / TURNS as f32;
         let mut found =
@@ -76,8 +76,7 @@ impl LightView {
         if found.0 < WARP_MUST_GAIN * width(rolled) { warped(found.1, found.2) } else { rolled }
     }
 
-    /// The squared widths of the texels that fall on what is seen, both sides together, summed by weight: for a map of
-    /// one texel, m².
+    /// Weighted sum over `seen` of the squared widths of texels, both sides added, for a map of one texel; m².
     pub(crate) fn square_texels_m2(&self, seen: &SeenInPlane) -> f32 {
         let Window { center, roll, half_size, warp, .. } = self.window;
         // With plane coordinates p about the centre and w = 1 + warp · p, a step s in the window's own coordinates is
@@ -100,7 +99,7 @@ impl LightView {
 }
 
 impl ViewFit {
-    /// What is seen in the plane of the fit's views.
+    /// Projects seen points into the light plane of the fit's views.
     pub(crate) fn in_plane(&self, seen: &[SeenPoint]) -> SeenInPlane {
         let LightFrame { center, right, up, axis } = self.frame;
         let mut in_plane = SeenInPlane { x: Vec::new(), y: Vec::new(), weight: Vec::new() };

@@ -1,4 +1,4 @@
-//! The view that holds what matters of casters and receivers.
+//! Fitting of light views to the casters and receivers that matter.
 
 use antumbra_light::{Aabb, LightFrame};
 use glam::{Vec2, Vec3};
@@ -8,47 +8,46 @@ use super::window::PlaneWindow;
 use super::{LightView, WindowShape};
 use crate::light_map::occluding_bounds::Between;
 
-/// What one view holds off its axis where receivers lie all around it (70 degrees): the texels that the last 20 degrees
-/// take are missed everywhere else (under a lamp in Sponza, `multi_view`'s rmse was .194 with all of 80 degrees in one view
-/// and .175 of 70). What lies beyond has views of its own: `light_partition`.
+/// Tangent of the largest angle off its axis that one view holds if receivers lie all around it (70 degrees): the texels of
+/// the last 20 degrees would be missing everywhere else. (Under a lamp in Sponza, `multi_view` has rmse .194 with 80 degrees
+/// in one view and .175 with 70.) What lies beyond has views of its own: `light_partition`.
 pub(crate) const MIDDLE_TANGENT: f32 = 2.75;
 
-/// A view is cut so far off its axis (89 degrees): no planar map can hold a half-space. Receivers beyond are lit.
+/// Tangent of the angle off its axis at which a view ends (89 degrees): no planar map holds a half-space. Receivers beyond are lit.
 pub(crate) const HORIZON_TANGENT: f32 = 64.0;
 
-/// A window is widened by this factor at the most for the sake of segments that leave it, of receivers farthest off its axis:
-/// its texels are missed in its middle. What shades those from so near to the light that it lies beyond, the map's edge stands
-/// for.
+/// Largest factor by which a window is widened to hold the segments that leave it, from receivers farthest off its axis: a wider
+/// window would lack texels in its middle. The map's edge represents blockers beyond it, which are close to the light.
 const MOST_WIDENED: f32 = 1.15;
 
-/// The nearest depth a perspective view resolves, as a fraction of its farthest. With reversed 32-bit depth the
+/// Nearest depth of a perspective view, as a fraction of its farthest. With reversed 32-bit depth the
 /// precision does not depend on it; it keeps the margin finite for lights that casters cross.
 const MIN_NEAR_FRACTION: f32 = 1e-3;
 
-/// But a view resolves depths from here on, metres, however far it reaches.
+/// Upper limit of that nearest depth, metres, however far the view reaches.
 const MOST_LEAST_NEAR_M: f32 = 0.05;
 
-/// What of receivers' segments to the light a technique follows in the map.
+/// Receiver-to-light segments that a technique follows in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Followed {
-    /// Those to all of it: they leave the window of the receivers farthest off its axis.
+    /// Segments to the whole light; those of receivers farthest off the axis leave the receivers' window.
     All,
-    /// Those to its middle, and what a kernel of fixed width takes for others.
+    /// Segments to the light's centre; a kernel of fixed width stands for the others.
     Middle,
 }
 
-/// What a view is fitted to.
+/// Geometry and window shape to which a view is fitted.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FitTo<'a> {
-    /// World-space boxes of what casts.
+    /// World-space bounding boxes of the casters.
     pub(crate) casters: &'a [Aabb],
-    /// World-space points whose convex hull holds what receives; none where that is unknown.
+    /// World-space points whose convex hull contains the receivers; empty if unknown.
     pub(crate) receivers: &'a [Vec3],
-    /// What the window may be.
+    /// Shape of the window.
     pub(crate) window: WindowShape,
 }
 
-/// What a view is fitted to, as it lies in the light plane: the same for every window that may be tried.
+/// Fit target of a view, in the light plane; the same for every window shape that is tried.
 #[derive(Clone, Debug)]
 pub(crate) struct ViewFit {
     pub(super) frame: LightFrame,
@@ -56,27 +55,27 @@ pub(crate) struct ViewFit {
     pub(super) near_m: f32,
     far_m: f32,
     held_from_m: f32,
-    /// Points whose convex hull is that of what casts: of all its boxes' corners, or the hull's own corners.
+    /// Light-plane points with the convex hull of the casters: the corners of all boxes, or of the hull.
     casters: Vec<Vec2>,
-    /// The same of what receives; `None` where that is unknown.
+    /// Light-plane points with the convex hull of the receivers; `None` if unknown.
     receivers: Option<Vec<Vec2>>,
-    /// How far segments to the light leave the receivers' window.
+    /// Distance by which segments to the light leave the receivers' window, in light-plane coordinates.
     margin: f32,
-    /// The light's own frustum, where it has one: receivers outside it are not asked for.
+    /// Tangent of the light's own frustum, if it has one; receivers outside it do not count.
     reach_tangent: Option<f32>,
 }
 
 impl ViewFit {
-    /// For a perspective view from `frame.center` that holds what matters of casters and receivers.
+    /// Fits a perspective view from `frame.center` to the casters and receivers that matter.
     ///
-    /// Outside the casters' window nothing is occluded, and outside the receivers' nothing is asked; the window is
-    /// where both meet, and the receivers' is widened by `margin_m`, the farthest that a light point lies from the
-    /// origin, since the segments to it leave the receivers' window by as much as `margin_m · (1/near − 1/far)`.
+    /// Outside the casters' window nothing is occluded, and outside the receivers' nothing is shaded; the view's window is
+    /// their intersection. First the receivers' window is widened for `margin_m`, the largest distance of a light point from
+    /// the origin: segments to that point leave the receivers' window by up to `margin_m · (1/near − 1/far)`.
     ///
-    /// `depth_m` is the farthest that one lies before or behind the light's plane. From the side such points lie farther out, so
-    /// that what the margin holds for flat lights it holds for these from farther away alone.
+    /// `depth_m` is the largest distance of a light point from the light's plane. Seen from the side, such points lie farther
+    /// out, so for these lights the margin holds segments only from a larger depth on than for flat lights.
     ///
-    /// `reach_tangent` is the light's own frustum, where it has one: receivers outside it are not asked for either.
+    /// `reach_tangent` is the tangent of the light's own frustum, if it has one: receivers outside it do not count.
     pub(crate) fn perspective(
         frame: LightFrame,
         followed: Followed,
@@ -103,8 +102,7 @@ impl ViewFit {
         let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MOST_LEAST_NEAR_M), far * 0.99);
         let mut of_receivers = Vec::new();
         add_tangents(&mut of_receivers, &receivers, near, HORIZON_TANGENT);
-        // Casters farther off than all receivers and what their segments leave the window by shade them only where they are
-        // close to the light.
+        // Casters outside the receivers' window and its margin shade receivers only if they are close to the light.
         let held_from_m = margin_depth(near, far, margin_m);
         let asked = of_receivers.iter().fold(0.0f32, |farthest, p| farthest.max(p.abs().max_element()));
         let needed = asked + margin_m * (1.0 / held_from_m - 1.0 / far);
@@ -118,8 +116,8 @@ impl ViewFit {
         };
         let margin = margin_m * (1.0 / held_from_m - 1.0 / far);
         let held_from_m = if held_from_m > near {
-            // A point `depth_m` behind the plane is seen on it farther out by depth_m · tan θ; of an ellipsoid none is both so deep
-            // and at its rim.
+            // A point `depth_m` behind the plane appears on it farther out by depth_m · tan θ; no point of an ellipsoid is both
+            // that deep and at its rim.
             let seen_m = margin_m.hypot(depth_m * asked);
             1.0 / (margin / seen_m + 1.0 / far)
         } else {
@@ -144,16 +142,16 @@ impl ViewFit {
         }
     }
 
-    /// For an orthographic view along the axis that holds what matters of casters and receivers. `margin` is the largest
-    /// tangent between the axis and a direction of the light.
+    /// Fits an orthographic view along the axis to the casters and receivers that matter. `margin` is the tangent of the
+    /// largest angle between the axis and a direction of the light.
     ///
-    /// Where casters may be anywhere, depth ends with what receives. Reversed, it is the finest there, however far before it casters
-    /// begin: it takes the bits of a float from the far plane.
+    /// If casters may be anywhere, the far plane is at the farthest receiver. Reversed float depth is finest there, however far in front
+    /// of it casters begin, since floats are densest near 0.
     pub(crate) fn orthographic(frame: LightFrame, margin: f32, casters: &Between, receivers: &[Vec3]) -> Self {
         let seen = Aabb::of(receivers.iter().copied());
         let is_by_receivers = casters.unknown.is_some() && !receivers.is_empty();
         let asked = if is_by_receivers { seen } else { casters.all().fold(seen, Aabb::union) };
-        // The origin is their centre, whatever the light's: small coordinates keep their bits.
+        // The origin is the centre of that box, not the light's: small coordinates keep their bits.
         let origin = if asked.is_empty() { frame.center } else { asked.center() };
         let frame = LightFrame { center: origin, ..frame };
         let depth = |x: &Vec3| (*x - origin).dot(frame.axis);
@@ -172,7 +170,7 @@ impl ViewFit {
         let in_plane = |p: &Vec3| Vec2::new((p - origin).dot(frame.right), (p - origin).dot(frame.up));
         let of_casters = casters.all().flat_map(|bounds| bounds.corners().map(|corner| in_plane(&corner)));
         let asked = PlaneWindow::of(receivers.iter().map(in_plane), Vec2::X);
-        // Shadows of what is so far off that they blur over more than all that is asked for may be cut.
+        // Shadows of casters so far off that they blur over more than the receivers' window may be cut.
         let most = if receivers.is_empty() { f32::INFINITY } else { 0.5 * (asked.max - asked.min).max_element() };
         Self {
             frame,
@@ -183,23 +181,23 @@ impl ViewFit {
             casters: of_casters.filter(|p| p.is_finite()).collect(),
             receivers: (!receivers.is_empty())
                 .then(|| receivers.iter().map(in_plane).filter(|p| p.is_finite()).collect()),
-            // Unknown casters may stand anywhere; no window can hold all that they blur.
+            // Unknown casters may be anywhere; no window can hold all that they blur.
             margin: (margin * (far - near_of_known)).min(most),
             reach_tangent: None,
         }
     }
 
-    /// The same from a depth on.
+    /// Moves the near plane to at least `near_m`.
     pub(crate) fn beginning_at(self, near_m: f32) -> Self {
         Self { near_m: self.near_m.max(near_m), ..self }
     }
 
-    /// The same, with less to look at in every window: worth its time where many are tried.
+    /// Reduces all points to their convex hulls, which pays off if many windows are tried.
     pub(crate) fn for_many_windows(self) -> Self {
         Self { casters: convex_hull(self.casters), receivers: self.receivers.map(convex_hull), ..self }
     }
 
-    /// The view in a window of this shape.
+    /// Returns the view with a window of this shape.
     pub(crate) fn view(&self, window: WindowShape) -> LightView {
         let roll = window.roll();
         let casters = PlaneWindow::of(self.casters.iter().copied(), roll);
@@ -221,18 +219,18 @@ impl ViewFit {
     }
 }
 
-/// From which depth on casters are taken to leave the receivers' window. Where a caster's box holds the light, as a room's
-/// does, nothing is known of how near its triangles are; a window that held all segments to the light's rim up to the near
-/// plane would be hundreds of times as wide as what is asked for. What is nearer than the light is large is left to those
-/// receivers before whose window it stands.
+/// Smallest caster depth for which the margin widens the receivers' window, metres. If a caster's box contains the light, as a
+/// room's does, its triangles may be at any depth; a window that held all segments to the light's rim up to the near plane
+/// would be hundreds of times as wide as the receivers' window. Casters nearer than the light's radius shade only receivers in
+/// whose window they lie.
 fn margin_depth(near: f32, far: f32, light_radius_m: f32) -> f32 {
-    /// Of lights as large as the way to their receivers.
+    /// Upper limit as a fraction of `far`, for lights as large as the distance to their receivers.
     const MOST_OF_FAR: f32 = 1.0 / 8.0;
     near.max(light_radius_m.min(MOST_OF_FAR * far))
 }
 
-/// Adds the tangents that span what lies beyond depth `near` of the convex hull of some points in light space: those of the
-/// points there, and of the places where the segments between them cross `near`. None is larger than `most`.
+/// Adds the tangents that span the part beyond depth `near` of the convex hull of light-space points: those of the points
+/// there, and those where segments between the points cross `near`. Tangents are clamped to ±`most`.
 fn add_tangents(tangents: &mut Vec<Vec2>, points: &[Vec3], near: f32, most: f32) {
     let tangent = |p: Vec3| (p.truncate() / p.z).clamp(Vec2::splat(-most), Vec2::splat(most));
     for p in points {

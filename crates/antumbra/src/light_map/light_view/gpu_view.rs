@@ -1,4 +1,4 @@
-//! A view as shaders take it: of a map that is drawn here, or by the matrix of a host's.
+//! Light view in the shaders' form, for maps rendered here and for a host's map, given its matrix.
 
 use antumbra_light::LightFrame;
 use glam::{Mat2, Mat4, Vec2, Vec3};
@@ -7,7 +7,7 @@ use crate::contract::{DepthConvention, DrawnMap};
 use crate::gpu::gpu_structs;
 
 /// Derives the shaders' view from the matrix of a map that the host has rendered; see
-/// [`DepthMapCaster`](crate::contract::DepthMapCaster) for what it may be. `None` where it is not such a matrix.
+/// [`DepthMapCaster`](crate::contract::DepthMapCaster) for valid matrices. Returns `None` for others.
 pub(crate) fn light_view_of_matrix(
     frame: LightFrame,
     perspective: bool,
@@ -15,7 +15,7 @@ pub(crate) fn light_view_of_matrix(
     convention: DepthConvention,
     map_size: Vec2,
 ) -> Option<LightViewGpu> {
-    // An orthographic map has no origin of its own: take the light's.
+    // An orthographic map has no origin of its own: use the light's.
     let m = clip_from_world.as_dmat4();
     let o = frame.center.as_dvec3();
     let at = |right: f64, up: f64, depth: f64| {
@@ -42,7 +42,7 @@ pub(crate) fn light_view_of_matrix(
     if !(on_axis && w_fits && sane) {
         return None;
     }
-    // Depths at which the map's depth is 1 and 0; an infinite far plane gives an infinity, which is what it is.
+    // Distances at which the map's depth is 0 and 1; an infinite far plane gives infinity.
     let depth_at = |d: f64| if perspective { scale / (d - offset) } else { (d - offset) / scale };
     let (a, b) = (depth_at(0.0), depth_at(1.0));
     let (near, far) = if convention == DepthConvention::Reversed { (b, a) } else { (a, b) };
@@ -60,7 +60,7 @@ pub(crate) fn light_view_of_matrix(
 }
 
 gpu_structs! {
-    /// A light map's place in the world, for the shaders; see the module's formulas.
+    /// Light view for the shaders; see the module's formulas.
     pub(crate) struct LightViewGpu {
         origin_in_world: Vec3,
         perspective: u32,
@@ -69,7 +69,7 @@ gpu_structs! {
         up_in_world: Vec3,
         depth_offset: f32,
         axis_in_world: Vec3,
-        /// +1 where nearer is larger, −1 where nearer is smaller.
+        /// +1 if nearer depths are larger, −1 if they are smaller.
         depth_sign: f32,
         /// Columns: light-plane right, up.
         uv_from_plane: [f32; 4],
@@ -78,19 +78,19 @@ gpu_structs! {
         map_size: Vec2,
         near_m: f32,
         far_m: f32,
-        /// The wider side of a texel in light-plane coordinates; of a warped window where its divisor is 1.
+        /// Wider side of a texel in light-plane coordinates; in a warped window, where the divisor is 1.
         texel_in_plane: f32,
-        /// [`LightView::held_from_m`]; 0 where the window holds all.
+        /// [`LightView::held_from_m`]; 0 if the window holds all.
         held_from_m: f32,
-        /// Of a warped window: see the module. Zero for all others.
+        /// Warp of the window, see the module; zero if it is not warped.
         warp: Vec2,
-        /// Where a warped window's coordinates start; zero for all others.
+        /// Light-plane origin of a warped window's coordinates; zero if it is not warped.
         plane_center: Vec2,
     }
 }
 
 impl LightViewGpu {
-    /// A map of this view, for whoever wants to look at it.
+    /// Describes a map of this view, for inspection.
     pub(crate) fn drawn_map(&self, depth: &wgpu::TextureView, sample_count: u32, empty_depth: f32) -> DrawnMap {
         DrawnMap {
             depth: depth.clone(),
@@ -108,7 +108,7 @@ impl LightViewGpu {
         }
     }
 
-    /// 1 / w of the module's formula over a warped window, affine in uv.
+    /// Coefficients (constant, by u, by v) of the module's 1 / w, which is affine in uv.
     pub(super) fn depth_warp(&self) -> [f32; 3] {
         let [a, b, c, d] = self.plane_from_uv;
         let by_uv = -Vec2::new(self.warp.dot(Vec2::new(a, b)), self.warp.dot(Vec2::new(c, d)));

@@ -2,10 +2,10 @@
 
 use glam::Vec2;
 
-/// Leaves out what lies inside the polygon of the points that are farthest along eight directions (Akl and Toussaint, "A
-/// fast convex hull algorithm", 1978): most of many points, which then need no sorting.
+/// Removes points inside the polygon of the points farthest along eight directions (Akl and Toussaint, "A fast convex hull
+/// algorithm", 1978). Most of many points are removed and need no sorting.
 fn leave_out_inner(points: &mut Vec<Vec2>) {
-    /// Fewer are sorted as fast.
+    /// Minimum number of points for which this pays off.
     const WORTH_IT: usize = 64;
     if points.len() < WORTH_IT {
         return;
@@ -21,7 +21,7 @@ fn leave_out_inner(points: &mut Vec<Vec2>) {
         }
     }
     let corners = farthest.map(|(_, place)| place);
-    // Strictly inside every side, by more than rounding; sides of no length leave nothing out.
+    // Removed points lie strictly inside every side, by more than rounding. Sides of zero length do not count.
     let size = (farthest[0].0 + farthest[4].0).max(farthest[2].0 + farthest[6].0);
     let sides: Vec<(Vec2, Vec2)> = (0..8)
         .map(|i| (corners[i], corners[(i + 1) % 8] - corners[i]))
@@ -30,8 +30,8 @@ fn leave_out_inner(points: &mut Vec<Vec2>) {
     points.retain(|p| !sides.iter().all(|(corner, side)| side.perp_dot(*p - *corner) > 1e-5 * size * side.length()));
 }
 
-/// The corners of the convex hull of some points, all round (Andrew's monotone chain, 1979); windows about the points are
-/// those about the hull. Points that are no numbers are left out.
+/// Returns the corners of the points' convex hull in order (Andrew's monotone chain, 1979). Windows around the hull equal those
+/// around the points. Non-finite points are removed.
 pub(super) fn convex_hull(mut points: Vec<Vec2>) -> Vec<Vec2> {
     points.retain(|p| p.is_finite());
     leave_out_inner(&mut points);

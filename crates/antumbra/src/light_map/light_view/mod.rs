@@ -1,4 +1,4 @@
-//! A view from the light: where a light map's texels lie in the world, and the frustum that fits what matters.
+//! View from the light: the mapping from the world to a light map's texels, and the fitted frustum.
 //!
 //! Light space is the light's (right, up, axis) about the view's origin: a point `x` has `P = (X, Y, Z)` with
 //! `Z` the depth along the axis. The *light plane* coordinates of `P` are its tangents `(X/Z, Y/Z)` for a perspective
@@ -10,11 +10,11 @@
 //! depth = depth_scale · Z + depth_offset      (orthographic)
 //! ```
 //!
-//! so that a plane in the world is a plane in (uv, depth), which is what the receiver-plane comparison rests on.
+//! so that a plane in the world is a plane in (uv, depth). The receiver-plane comparison depends on this.
 //!
 //! # Warped windows
-//! A map that is only compared with may spend its texels where the camera looks. Its plane coordinates are divided
-//! about the window's centre `c`, and depth with them:
+//! A map used only in depth comparisons may spend its texels where the camera looks. Its plane coordinates about the
+//! window's centre `c` are divided, and depth with them:
 //!
 //! ```text
 //! w = 1 + warp · (plane − c),   q = (plane − c) / w,   uv = uv_origin + uv_from_plane · q,   depth / w
@@ -22,8 +22,8 @@
 //!
 //! Since `1/w = 1 − warp · q`, depth / w is affine in q, and everything above holds in q: the rasteriser's `w` is the
 //! one of the view times this one, and triangles stay triangles. Texels are smallest where w is. This is the trapezoid
-//! of Martin and Tan, "Anti-aliasing and Continuity with Trapezoidal Shadow Maps", EGSR 2004, about each light point;
-//! with its direction and strength found by the receivers' texels rather than by a rule.
+//! of Martin and Tan, "Anti-aliasing and Continuity with Trapezoidal Shadow Maps", EGSR 2004, for each light point;
+//! its direction and strength minimise the receivers' texels instead of following a rule.
 
 use antumbra_light::LightFrame;
 use glam::{DMat4, DVec2, DVec4, Mat2, Mat4, UVec2, Vec2};
@@ -42,26 +42,26 @@ pub(crate) use fit::{FitTo, Followed, HORIZON_TANGENT, MIDDLE_TANGENT, ViewFit};
 pub(crate) use gpu_view::{LightViewGpu, light_view_of_matrix};
 pub(crate) use window::{Window, WindowShape};
 
-/// A view from the light.
+/// View from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightView {
-    /// Axes and origin.
+    /// Axes and origin of light space.
     pub(crate) frame: LightFrame,
-    /// Perspective, or orthographic along the axis.
+    /// Whether the view is perspective; otherwise it is orthographic along the axis.
     pub(crate) perspective: bool,
-    /// Where the window lies in the light plane.
+    /// Window in the light plane.
     pub(crate) window: Window,
     /// Depth of the near plane, metres along the axis.
     pub(crate) near_m: f32,
-    /// Depth of the far plane.
+    /// Depth of the far plane, metres along the axis.
     pub(crate) far_m: f32,
-    /// Depth from which on the window holds the segments from its receivers to all of the light; casters nearer than that may
-    /// lie outside it. 0 where the window holds them all.
+    /// Depth beyond which the window contains the segments from its receivers to the whole light, metres; nearer casters may lie
+    /// outside the window. 0 if the window contains all segments.
     pub(crate) held_from_m: f32,
 }
 
 impl LightView {
-    /// The view with its texels moved by a part of one, for a map of `map_size`; still holds what it held.
+    /// Returns the view with its texels shifted by a fraction of a texel, for a map of `map_size`; it contains the old window.
     pub(crate) fn shifted(self, texels: Vec2, map_size: u32) -> Self {
         let Window { roll, half_size, .. } = self.window;
         let step = 2.0 * half_size / map_size as f32 * texels;
@@ -75,8 +75,8 @@ impl LightView {
         Self { window: moved, ..self }
     }
 
-    /// `depth_scale` and `depth_offset` of the module's formula: reversed, 1 at the near plane, 0 at the far; of a warped
-    /// window 1 at the near plane's largest.
+    /// `depth_scale` and `depth_offset` of the module's formula: reversed, 1 at the near plane, 0 at the far plane. In a warped
+    /// window, 1 is the largest depth on the near plane.
     fn depth_coefficients(&self) -> (f32, f32) {
         let (scale, offset) = self.depth_coefficients_f64();
         (scale as f32, offset as f32)
@@ -90,14 +90,14 @@ impl LightView {
         (scale * least, offset * least)
     }
 
-    /// The wider side of a texel in light-plane coordinates, for a map of `map_size` texels.
+    /// Wider side of a texel in light-plane coordinates, for a map of `map_size` texels.
     pub(crate) fn texel_in_plane(&self, map_size: u32) -> f32 {
         debug_assert_eq!(self.window.warp, Vec2::ZERO, "texels of a warped window differ");
         2.0 * self.window.half_size.max_element() / map_size as f32
     }
 
-    /// How much depth changes over a texel of a surface that falls `slope` metres a metre across the light, as (a, b)
-    /// of `a · depth + b`: |ds/dZ| · slope · texel width, where depth = s/Z + c and the width is t Z, or depth = s Z + c
+    /// Depth change per texel on a surface that falls `slope` metres per metre across the light, as (a, b) of
+    /// `a · depth + b`: |d depth/dZ| · slope · texel width, where depth = s/Z + c and the width is t Z, or depth = s Z + c
     /// and the width is t.
     pub(crate) fn depth_per_texel(&self, map_size: u32, slope: f32) -> (f32, f32) {
         let (scale, offset) = self.depth_coefficients();
@@ -105,8 +105,8 @@ impl LightView {
         if self.perspective { (step, -offset * step) } else { (0.0, scale.abs() * step) }
     }
 
-    /// The matrix on (x, y, depth, 1) that moves depth away from the light: Z by the factor `1 + bias` where rays
-    /// spread, by `bias` metres where they are parallel.
+    /// Matrix on (x, y, depth, 1) that moves depth away from the light: Z by the factor `1 + bias` in perspective views, by
+    /// `bias` metres in orthographic ones.
     pub(crate) fn depth_moved_away(&self, bias: f32) -> DMat4 {
         let (scale, offset) = self.depth_coefficients();
         let (scale, offset, bias) = (f64::from(scale), f64::from(offset), f64::from(bias));
@@ -119,7 +119,7 @@ impl LightView {
         DMat4::from_cols(DVec4::X, DVec4::Y, DVec4::Z * of_depth, DVec4::new(0.0, 0.0, constant, 1.0))
     }
 
-    /// The projection for the rasteriser, with reversed depth.
+    /// Projection for the rasteriser, with reversed depth.
     pub(crate) fn clip_from_world(&self) -> Mat4 {
         self.clip_from_world_f64().as_mat4()
     }
@@ -139,7 +139,7 @@ impl LightView {
         let Window { center, roll, half_size, warp, center_in_warp } = self.window;
         let (c, q, k) = (center.as_dvec2(), center_in_warp.as_dvec2(), warp.as_dvec2());
         let (roll, half) = (roll.as_dvec2(), half_size.as_dvec2());
-        // Rows of the window's own axes over its half sides: what is 1 at its edge.
+        // Rows of the window's own axes over its half sides, so that its edge is at 1.
         let (across, along) = (roll / half.x, roll.perp() / half.y);
         let (scale, offset) = self.depth_coefficients_f64();
         let of_h = 1.0 - k.dot(c);
@@ -159,12 +159,12 @@ impl LightView {
         clip_from_light * light_from_world
     }
 
-    /// What the shaders need, for a square map of `map_size` texels.
+    /// Shaders' form of the view, for a square map of `map_size`² texels.
     pub(crate) fn to_gpu(self, map_size: u32) -> LightViewGpu {
         self.to_gpu_of(UVec2::splat(map_size))
     }
 
-    /// What the shaders need, for a map of `map_size` texels.
+    /// Shaders' form of the view, for a map of `map_size` texels.
     pub(crate) fn to_gpu_of(self, map_size: UVec2) -> LightViewGpu {
         let (depth_scale, depth_offset) = self.depth_coefficients();
         let Window { center, roll, half_size, warp, center_in_warp } = self.window;

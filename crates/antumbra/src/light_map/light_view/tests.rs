@@ -78,14 +78,14 @@ fn square<'a>(casters: &'a [Aabb], receivers: &'a [Vec3]) -> FitTo<'a> {
     FitTo { casters, receivers, window: WindowShape::Square }
 }
 
-/// Perspective and orthographic, square, rolled, warped, and warped with texels moved.
+/// Views: perspective and orthographic; square, rolled, warped, and warped with shifted texels.
 fn views() -> Vec<LightView> {
     let warped = warped_views();
     let shifted = warped.iter().map(|view| view.shifted(Vec2::new(0.4, -0.5), MAP_SIZE));
     plain_views().into_iter().chain(warped.clone()).chain(shifted).collect()
 }
 
-/// Of two strengths; receivers' corners are those of the casters.
+/// Warped views of three strengths; the receivers' corners are those of the casters.
 fn warped_views() -> Vec<LightView> {
     let (light, casters) = scene();
     let receivers: Vec<Vec3> = casters.iter().flat_map(Aabb::corners).collect();
@@ -173,7 +173,7 @@ fn receivers_narrow_the_window_and_keep_the_light_s_margin() {
     }
 }
 
-/// Where a room stands about a light before its plane, receivers at the edge of the middle's part have occluders beyond it.
+/// In a room around a light that shines from a plane, receivers at the edge of the window have occluders beyond it.
 #[test]
 fn windows_hold_what_shades_receivers_at_their_edge() {
     let (light, _) = scene();
@@ -184,7 +184,7 @@ fn windows_hold_what_shades_receivers_at_their_edge() {
         for tangent in [1.0, 2.0, MIDDLE_TANGENT, 4.0 * MIDDLE_TANGENT] {
             let sides = [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y].map(|side| tangent * side);
             let receivers: Vec<Vec3> = sides.iter().flat_map(|side| [at(*side, 0.5), at(*side, 2.0)]).collect();
-            // Of a disc, then of a sphere, whose rim lies behind its middle as the receiver sees it.
+            // A disc, then a sphere, whose rim as seen by the receiver lies behind its centre.
             for depth_m in [0.0, radius_m] {
                 let view = fit_of_depth(frame, radius_m, depth_m, None, &square(&[room], &receivers));
                 let gpu = view.to_gpu(MAP_SIZE);
@@ -270,7 +270,7 @@ fn texels_are_as_wide_as_the_projection_says() {
     }
 }
 
-/// What a window costs is the sum over what is seen of texels' squared sides.
+/// The cost of a window is the weighted sum of squared texel sides over the seen points.
 #[test]
 fn windows_are_judged_by_their_texels() {
     let (light, casters) = scene();
@@ -299,7 +299,7 @@ fn windows_are_judged_by_their_texels() {
     }
 }
 
-/// A hull holds every point, has corners of its points alone, and windows about it are those about them.
+/// The corners of a hull are input points, and windows around the hull equal windows around all points.
 #[test]
 fn hulls_have_the_windows_of_their_points() {
     let points: Vec<Vec2> = (0..200)

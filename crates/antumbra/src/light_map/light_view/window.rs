@@ -1,44 +1,44 @@
-//! A view's window in the light plane, and what it may be.
+//! Window of a view in the light plane, and its shapes.
 
 use glam::Vec2;
 
-/// A rectangular window is no longer than so many times its width.
+/// Largest ratio of a rectangular window's sides.
 const MAX_ASPECT: f32 = 16.0;
 
-/// A view's window in the light plane.
+/// Window of a view in the light plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
-    /// Its centre in light-plane coordinates; of a warped window, where the warp leaves coordinates as they are.
+    /// Centre in light-plane coordinates; of a warped window, the point where the divisor is 1.
     pub(crate) center: Vec2,
-    /// The direction of its first side in light-plane coordinates, unit.
+    /// Unit direction of the first side in light-plane coordinates.
     pub(crate) roll: Vec2,
-    /// Half its sides, after the warp.
+    /// Half the sides, after the warp.
     pub(crate) half_size: Vec2,
-    /// What divides coordinates about `center` grows by this; along `roll`, and zero for windows without a warp.
+    /// Gradient of the divisor of coordinates about `center`; along `roll`, and zero for windows without a warp.
     pub(crate) warp: Vec2,
-    /// Its centre after the warp, relative to `center`.
+    /// Centre after the warp, relative to `center`.
     pub(crate) center_in_warp: Vec2,
 }
 
-/// What a window may be.
+/// Shape of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum WindowShape {
-    /// A square along the light's right and up, for kernels that lie along them.
+    /// Square along the light's right and up axes, for kernels that lie along them.
     Square,
-    /// A rectangle whose first side lies along this unit vector, for maps that are only compared with.
+    /// Rectangle whose first side lies along this unit vector, for maps used only in depth comparisons.
     Rolled(Vec2),
-    /// A trapezoid whose texels widen along this unit vector, by the factor `(1 + strength) / (1 − strength)` across
-    /// it and by the square of that along it, for maps that are only compared with. Strengths are below 1.
+    /// Trapezoid whose texels widen along `along`, by the factor `(1 + strength) / (1 − strength)` across it and by the
+    /// square of that along it, for maps used only in depth comparisons.
     Warped {
-        /// The direction.
+        /// Unit direction in which texels widen.
         along: Vec2,
-        /// How much.
+        /// Strength of the warp, below 1.
         strength: f32,
     },
 }
 
 impl Window {
-    /// A square about the axis, along the light's right and up.
+    /// Square about the axis, along the light's right and up axes.
     pub(crate) fn square(half_size: f32) -> Self {
         Self {
             center: Vec2::ZERO,
@@ -49,7 +49,7 @@ impl Window {
         }
     }
 
-    /// The least divisor in the window: what warped depths are largest by.
+    /// Smallest divisor in the window, where warped depths are largest.
     pub(super) fn least_divisor(&self) -> f64 {
         let farthest = self.warp.dot(self.center_in_warp) - (self.half_size * self.warp.dot(self.roll)).x.abs();
         1.0 / (1.0 - f64::from(farthest))
@@ -57,7 +57,7 @@ impl Window {
 }
 
 impl WindowShape {
-    /// The direction of its first side.
+    /// Unit direction of the first side.
     pub(super) fn roll(self) -> Vec2 {
         match self {
             Self::Square => Vec2::X,
@@ -67,7 +67,7 @@ impl WindowShape {
     }
 }
 
-/// A rectangle in the light plane, its coordinates along `roll` and across; empty where `min > max`.
+/// Rectangle in the light plane, in coordinates along and across `roll`; empty if `min > max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlaneWindow {
     pub(super) min: Vec2,
@@ -78,7 +78,7 @@ pub(super) struct PlaneWindow {
 impl PlaneWindow {
     const EMPTY: Self = Self { min: Vec2::INFINITY, max: Vec2::NEG_INFINITY, roll: Vec2::X };
 
-    /// The smallest around some points in light-plane coordinates.
+    /// Smallest rectangle around points in light-plane coordinates.
     pub(super) fn of(points: impl IntoIterator<Item = Vec2>, roll: Vec2) -> Self {
         points.into_iter().fold(Self { roll, ..Self::EMPTY }, |window, p| {
             let along = Vec2::new(p.dot(roll), p.dot(roll.perp()));
@@ -94,8 +94,8 @@ impl PlaneWindow {
         Self { min: self.min - margin, max: self.max + margin, ..self }
     }
 
-    /// A window of a shape that holds this one, a little more than it so that edges have texels on both sides; something
-    /// harmless where this one is empty. Where `hull` holds points, what lies outside their convex hull is not needed.
+    /// Returns a window of a shape that contains this rectangle, slightly enlarged so that edges have texels on both sides. An
+    /// empty rectangle gives an arbitrary valid window. If `hull` has points, only their convex hull must be contained.
     pub(super) fn place(self, shape: WindowShape, hull: &[Vec2]) -> Window {
         let roll = shape.roll();
         let still = Window { roll, ..Window::square(1.0) };
@@ -105,7 +105,7 @@ impl PlaneWindow {
         let half = 0.5 * (self.max - self.min);
         let middle = 0.5 * (self.min + self.max);
         let center = middle.x * roll + middle.y * roll.perp();
-        // A sliver would waste the map's other side, and texels have bounds to their precision.
+        // A sliver would waste the map's other side, and the precision of texels is limited.
         let roomy = |half: Vec2| {
             let no_sliver = half.max(Vec2::splat(half.max_element() / MAX_ASPECT));
             (1.005 * no_sliver).max(Vec2::splat(1e-6))
@@ -115,7 +115,7 @@ impl PlaneWindow {
             WindowShape::Rolled(_) => Window { center, half_size: roomy(half), ..still },
             WindowShape::Warped { strength, .. } => {
                 let warp = strength / half.x.max(1e-6);
-                // About the centre, along the roll and across: warped, and what it was divided by.
+                // Coordinates about the centre, along the roll and across: warped, and their divisor.
                 let warped = |p: Vec2| {
                     let w = 1.0 + warp * p.x;
                     (p / w, w)

@@ -1,4 +1,4 @@
-//! CPU reference: a rasteriser as WebGPU's, exact in its fixed point, and lists sorted as the GPU's.
+//! CPU reference: a rasteriser with WebGPU's rules, exact in fixed point, and lists sorted as on the GPU.
 
 use glam::{DVec3, UVec2, Vec3};
 
@@ -9,35 +9,35 @@ use crate::light_map::light_view::LightView;
 pub(crate) struct TwinMesh<'a> {
     pub(crate) positions: &'a [Vec3],
     pub(crate) indices: &'a [u32],
-    /// Counter-clockwise from outside: front faces are left out.
+    /// Whether the mesh is closed, counter-clockwise from outside: front faces are then culled.
     pub(crate) closed: bool,
     pub(crate) opacity: f32,
 }
 
-/// A fragment of one channel.
+/// Fragment with one channel of opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TwinFragment {
     pub(crate) z_m: f32,
     pub(crate) opacity: f32,
-    /// As in `fragments.wesl`.
+    /// Overlap, as in `fragments.wesl`.
     pub(crate) overlap: f32,
 }
 
 /// Subpixels along a side of a texel, to which rasterisers snap vertices.
 const SUBPIXELS: f64 = 256.0;
 
-/// Where in a texel its samples lie, in subpixels: the middle, or the four places that WebGPU fixes.
+/// Sample positions in a texel, in subpixels: the centre, or the four positions that WebGPU fixes.
 const ONE_SAMPLE: [(f64, f64); 1] = [(128.0, 128.0)];
 const FOUR_SAMPLES: [(f64, f64); 4] = [(96.0, 32.0), (224.0, 96.0), (32.0, 160.0), (160.0, 224.0)];
 
-/// A fragment as it is gathered: which samples it covers, one bit each.
+/// Gathered fragment with the samples that it covers, one bit each.
 #[derive(Clone, Copy, Debug)]
 struct Gathered {
     fragment: TwinFragment,
     samples: u32,
 }
 
-/// Every texel's list, row by row, sorted by depth and then by opacity.
+/// Returns every texel's list, row by row, sorted by depth and then by opacity.
 pub(crate) fn lists(view: &LightView, map_size: UVec2, meshes: &[TwinMesh<'_>]) -> Vec<Vec<TwinFragment>> {
     gathered(view, map_size, &ONE_SAMPLE, meshes)
         .into_iter()
@@ -45,7 +45,7 @@ pub(crate) fn lists(view: &LightView, map_size: UVec2, meshes: &[TwinMesh<'_>]) 
         .collect()
 }
 
-/// The same of four samples a texel: opacities are by coverage, and what lies within `adjoin` in depth is one.
+/// [`lists`] with four samples per texel: opacities are scaled by coverage, and fragments within `adjoin` in depth are merged.
 pub(crate) fn covered_lists(
     view: &LightView,
     map_size: UVec2,
@@ -55,7 +55,7 @@ pub(crate) fn covered_lists(
     gathered(view, map_size, &FOUR_SAMPLES, meshes).iter().map(|list| covered(list, adjoin)).collect()
 }
 
-/// Each sample stops what its nearest fragment stops.
+/// Merges fragments that are near in depth: each sample takes the opacity of its nearest fragment.
 fn covered(mut list: &[Gathered], adjoin: DepthTolerance) -> Vec<TwinFragment> {
     let mut covered: Vec<TwinFragment> = Vec::new();
     let mut samples_covered = 0;
@@ -110,8 +110,8 @@ fn gathered(view: &LightView, map_size: UVec2, samples: &[(f64, f64)], meshes: &
     lists
 }
 
-/// Calls `put` with each texel that the triangle covers a sample of, the depth along the axis of the triangle's plane at
-/// the texel's centre, within the triangle's own depths, and which samples it covers. The triangle lies beyond the near plane.
+/// Calls `put` for each texel of which the triangle covers a sample, with the axis depth of the triangle's plane at the texel's
+/// centre, clamped to the triangle's own depths, and the covered samples. The triangle must lie beyond the near plane.
 fn rasterise(
     view: &LightView,
     map_size: UVec2,
@@ -122,7 +122,7 @@ fn rasterise(
 ) {
     let clip_from_world = view.clip_from_world();
     let half = 0.5 * map_size.as_dvec2();
-    // (x, y) snapped, and what interpolates linearly in the picture: 1/z or z.
+    // Snapped (x, y), and the quantity that is linear in the image: 1/z or z.
     let points = corners.map(|corner| {
         let clip = (clip_from_world * corner.extend(1.0)).as_dvec4();
         let z = f64::from((corner - view.frame.center).dot(view.frame.axis));

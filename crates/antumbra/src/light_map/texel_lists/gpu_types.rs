@@ -1,11 +1,11 @@
-//! What Rust and the shaders of lists share: uniforms and bind groups.
+//! Uniforms and bind groups that Rust and the shaders of lists share.
 
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::gpu::{bindings, gpu_structs, samples, texels};
 
 gpu_structs! {
-    /// The view of `raster.wesl`.
+    /// View parameters of `raster.wesl`.
     pub(crate) struct ListView {
         clip_from_world: Mat4,
         origin_in_world: Vec3,
@@ -23,9 +23,9 @@ gpu_structs! {
         padding_2: u32,
     }
 
-    /// A surface that lets some light through.
+    /// Parameters of a surface that lets some light through.
     pub(crate) struct ListSurface {
-        /// This, `cutoff` and `coverage`: [`SurfaceValues`].
+        /// Factor of the surface; this, `cutoff` and `coverage` are [`SurfaceValues`].
         factor: Vec4,
         size_texels: Vec2,
         cutoff: f32,
@@ -52,7 +52,7 @@ bindings! {
     pub(super) struct Gathered = "list raster", FRAGMENT, group 0 of [TEXEL_LISTS_RASTER] {
         0 list_view: Uniform in VERTEX_FRAGMENT,
         1 cursors: ReadWrite,
-        /// Those that are to be linked have their own.
+        /// Fragments of arrays; linked lists have a buffer of their own.
         2 fragments: ReadWrite,
         3 counters: ReadWrite,
         4 links: ReadWrite,
@@ -63,7 +63,7 @@ bindings! {
         1 caster_indices: Storage,
     }
 
-    /// Levels that a texture lacks are its first.
+    /// Surface of a caster. In place of mip levels that a texture lacks, its first one is bound.
     pub(super) struct Surface = "list surface", FRAGMENT, group 2 of [TEXEL_LISTS_RASTER] {
         0 surface: Uniform,
         1 surface_sampler: Sampler(samples::FILTERS),

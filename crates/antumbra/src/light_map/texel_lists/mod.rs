@@ -1,20 +1,19 @@
-//! Every fragment of casters from a light's view, in lists: one a texel, sorted by depth, tightly packed.
+//! Texel lists: all fragments of casters from a light's view, one list per texel, sorted by depth and tightly packed.
 //!
-//! Two ways to gather, as Selgrad, Dachsbacher, Meyer and Stamminger 2014 (section 7) measure them: *arrays* count each
-//! texel's fragments in one pass over the geometry, turn counts into places by a prefix sum, and collect in a second
-//! pass; *linked* lists (Yang et al. 2010) take one pass over the geometry and are packed after. Both end in the same
-//! arrays, which can be searched by halving.
+//! There are two ways to gather, as Selgrad, Dachsbacher, Meyer and Stamminger 2014 (section 7) measure them. *Arrays* count
+//! each texel's fragments in one pass over the geometry, turn counts into positions by a prefix sum, and collect in a
+//! second pass. *Linked* lists (Yang et al. 2010) take one pass over the geometry and are packed afterwards. Both give the
+//! same arrays, which allow binary search.
 //!
 //! A fragment is 8 bytes (`fragments.wesl`): depth along the axis in metres, and opacity, of one channel or of three.
-//! A list's entry is 8 bytes: first fragment, count. Closed opaque meshes leave their back faces alone, which for what
-//! lies outside of them stop the same light; other surfaces leave every face.
+//! A list's entry is 8 bytes: first fragment, count. Closed opaque meshes contribute only their back faces, which stop the
+//! same light for receivers outside of them; other surfaces contribute all faces.
 //!
-//! With four samples a texel, a fragment's opacity counts the share of the texel that its surface covers. The parts of a
-//! surface that meet in a texel become one fragment again, and so do the two sides of a thin thing: of what lies near
-//! in depth, each sample stops what its nearest stops.
+//! With four samples per texel, a fragment's opacity includes the share of the texel that its surface covers. Parts of a
+//! surface that meet in a texel are merged into one fragment, and so are the two sides of a thin object: among fragments
+//! near in depth, each sample takes the opacity of its nearest.
 //!
-//! Where `capacity` is too small, the fragments that come last are left out, and [`TexelLists::counters`] say how many
-//! there were.
+//! If `capacity` is too small, the last fragments are dropped; [`PreparedLists::counters`] has the total number.
 
 use std::sync::Arc;
 
@@ -40,7 +39,7 @@ pub(crate) mod tests;
 /// Bytes of a fragment, and of a list's entry.
 pub(crate) const FRAGMENT_BYTES: u64 = 8;
 
-/// Makes lists.
+/// Builder of texel lists.
 #[derive(Debug)]
 pub(crate) struct TexelLists {
     raster: ListRaster,
@@ -49,16 +48,16 @@ pub(crate) struct TexelLists {
     storage: Option<Storage>,
 }
 
-/// The lists of one frame, and the passes that fill them.
+/// Lists of one frame, and the passes that fill them.
 #[derive(Debug)]
 pub(crate) struct PreparedLists {
-    /// (first, count) of each texel's list, row by row, then the owner's.
+    /// (first, count) of each texel's list, row by row, then entries of the owner.
     pub(crate) lists: Arc<wgpu::Buffer>,
-    /// The fragments: `array<vec2u>`.
+    /// Fragments: `array<vec2u>`.
     pub(crate) fragments: Arc<wgpu::Buffer>,
-    /// `ListCounters`: how many fragments the casters have, and where the room behind the stored ones begins.
+    /// `ListCounters`: the number of the casters' fragments, and the end of the stored ones.
     pub(crate) counters: Arc<wgpu::Buffer>,
-    /// The right to the buffers, which those that the owner makes of them share.
+    /// Lease of the buffers, shared by those that the owner derives from them.
     pub(crate) lease: Arc<Lease>,
     raster_group: wgpu::BindGroup,
     sort: PreparedSort,
@@ -69,7 +68,7 @@ impl TexelLists {
         Self { raster: ListRaster::new(gpu), scan: PrefixScan::new(gpu), sorter: ListSorter::new(gpu), storage: None }
     }
 
-    /// Allocates and uploads. The buffers stay where neither the map's size nor the room needed grows.
+    /// Allocates buffers and uploads parameters. Buffers are reused while they fit the options.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -78,7 +77,7 @@ impl TexelLists {
         options: &ListOptions,
     ) -> PreparedLists {
         if self.storage.as_ref().is_none_or(|storage| !storage.fits(options)) {
-            // What it has goes back before more is taken.
+            // The old buffers return their bytes to the budget before the new ones take theirs.
             self.storage = None;
             self.storage = Some(Storage::new(stage, options));
         }
@@ -101,7 +100,7 @@ impl TexelLists {
         self.record_passes(recorder, [casters, casters], prepared);
     }
 
-    /// The same, by the casters that are counted and those that are collected or linked.
+    /// [`record`](Self::record), given the casters that are counted and those that are collected or linked.
     fn record_passes(
         &self,
         recorder: &mut Recorder<'_>,
@@ -126,7 +125,7 @@ impl TexelLists {
         prepared.sort.record(recorder);
     }
 
-    /// Bytes of all buffers that are the light's own.
+    /// Bytes of all buffers that belong to the light alone.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.storage.as_ref().map_or(0, |storage| storage.lease.own_bytes() + self.scan.memory_bytes())
     }

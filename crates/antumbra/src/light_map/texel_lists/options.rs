@@ -1,33 +1,33 @@
-//! What lists to make.
+//! Options of texel lists.
 
 use glam::UVec2;
 
-/// Samples of a texel where coverage counts: as many as every device has.
+/// Samples per texel if coverage counts; every device supports as many.
 pub(crate) const COVERAGE_SAMPLES: u32 = 4;
 
-/// How opacities at one place come together; the numbers of `fragments.wesl`.
+/// Mode that combines opacities at one place; numbered as in `fragments.wesl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Accumulation {
-    /// Their sum: they do not overlap.
+    /// Sum: surfaces do not overlap.
     Add = 0,
-    /// The product of transmittances: they overlap at random.
+    /// Product of transmittances: surfaces overlap at random.
     Multiply = 1,
-    /// The largest: they cover one another.
+    /// Maximum: surfaces cover one another.
     Max = 2,
-    /// By how much the farther one was found to lie behind the nearer.
+    /// Measured overlap of the farther surface with the nearer one.
     Overlap = 3,
 }
 
-/// A distance in depth: `slope · z + m`, metres.
+/// Distance in depth: `slope · z + m`, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct DepthTolerance {
-    /// For perspective views.
+    /// Metres per metre of depth, for perspective views.
     pub(crate) slope: f32,
-    /// For orthographic views.
+    /// Metres, for orthographic views.
     pub(crate) m: f32,
 }
 
-/// How the fragments come into their lists.
+/// Method that gathers fragments into lists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Gather {
     /// Count, scan, collect.
@@ -36,37 +36,37 @@ pub(crate) enum Gather {
     Linked,
 }
 
-/// What lists to make.
+/// Options of texel lists.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ListOptions {
     /// Texels along each side.
     pub(crate) map_size: UVec2,
-    /// Texels that a map has at most, whatever its sides: there is room for as many.
+    /// Largest number of texels of a map, for which buffers have room.
     pub(crate) most_texels: u32,
-    /// Fragments to have room for.
+    /// Largest number of fragments.
     pub(crate) capacity: u32,
-    /// Entries of [`TexelLists::lists`]: one a texel, and what the owner adds behind them.
+    /// Entries of [`PreparedLists::lists`](super::PreparedLists::lists): one per texel, then those of the owner.
     pub(crate) list_count: u32,
-    /// Bytes of what the owner makes of the lists: they are the light's own where those are.
+    /// Bytes of what the owner derives from the lists; they share the lists' lease.
     pub(crate) owners_bytes: u64,
-    /// Three channels of opacity.
+    /// Whether opacity has three channels.
     pub(crate) colored: bool,
-    /// Fragments to keep of each list, from the nearest; 0 keeps all.
+    /// Number of layers to keep of each list, from the nearest; 0 keeps all.
     pub(crate) layers: u32,
-    /// Joins neighbours in a list that are at least this near, at their mean depth.
+    /// Distance up to which neighbours in a list are joined, at their mean depth; `None` joins nothing.
     pub(crate) join: Option<DepthTolerance>,
-    /// Closed opaque meshes leave every face, too.
+    /// Whether closed opaque meshes contribute all faces, too.
     pub(crate) all_faces: bool,
-    /// How much farther than they are to store the fragments of surfaces that leave both faces, so that they do not
-    /// shade themselves.
+    /// Depth offset away from the light for fragments of surfaces that contribute both faces, so that they do not shade
+    /// themselves.
     pub(crate) open_offset: DepthTolerance,
-    /// How joined opacities come together.
+    /// Mode that combines joined opacities.
     pub(crate) accumulation: Accumulation,
-    /// How to gather.
+    /// Method that gathers fragments.
     pub(crate) gather: Gather,
-    /// Samples of a texel, 1 or [`COVERAGE_SAMPLES`]: with those a fragment's opacity counts the share of the texel that
-    /// it covers, where the caster is opaque and its buffers have the usage `STORAGE`.
+    /// Samples per texel, 1 or [`COVERAGE_SAMPLES`]. With the latter, opacity includes the share of the texel that a fragment
+    /// covers, if its caster is opaque and has buffers with the usage `STORAGE`.
     pub(crate) samples: u32,
-    /// How near to one another fragments that cover different samples must be to count as one surface.
+    /// Distance up to which fragments that cover different samples count as one surface.
     pub(crate) adjoin: DepthTolerance,
 }

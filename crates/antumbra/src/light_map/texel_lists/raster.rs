@@ -1,4 +1,4 @@
-//! The passes that draw casters into lists.
+//! Passes that draw casters into lists.
 
 use glam::{UVec2, Vec2, Vec3};
 
@@ -17,18 +17,18 @@ use crate::shaders;
 /// Mip levels of a mask that the fragment stage can reach.
 const MIP_LEVELS: u32 = 7;
 
-/// How a caster is drawn.
+/// Kind of draw of a caster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Draw {
-    /// Opaque, a sample a texel.
+    /// Opaque, one sample per texel.
     Opaque = 0,
-    /// With its texture or colour, a sample a texel.
+    /// With its texture or colour, one sample per texel.
     Surface = 1,
     /// Opaque, with coverage.
     Covered = 2,
 }
 
-/// What a geometry pass does with a fragment.
+/// Operation of a geometry pass on its fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
     Count = 0,
@@ -36,21 +36,21 @@ pub(super) enum Pass {
     Link = 2,
 }
 
-/// Draws casters into lists.
+/// Pipelines that draw casters into lists.
 #[derive(Debug)]
 pub(super) struct ListRaster {
     layout: wgpu::BindGroupLayout,
     surface_layout: wgpu::BindGroupLayout,
     triangles_layout: wgpu::BindGroupLayout,
-    /// By [`Pass`], how the caster is drawn, closed or not.
+    /// Pipelines by [`Pass`], by [`Draw`], and by whether the mesh is closed.
     pipelines: [[[wgpu::RenderPipeline; 2]; 3]; 3],
     view_uniform: wgpu::Buffer,
     white: wgpu::TextureView,
     sampler: wgpu::Sampler,
     no_uvs: Option<wgpu::Buffer>,
-    /// One a caster: its surface, or its triangles where they are drawn with coverage.
+    /// Kind of draw and bind group, one per caster: its surface, or its triangles if they are drawn with coverage.
     caster_groups: Vec<(Draw, Option<wgpu::BindGroup>)>,
-    /// One a caster.
+    /// Whether the view may see the caster, one per caster.
     is_in_view: Vec<bool>,
 }
 
@@ -77,7 +77,7 @@ impl ListRaster {
         }
     }
 
-    /// The bind group of a frame's passes.
+    /// Uploads a frame's parameters and returns the bind group of its passes.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -97,7 +97,7 @@ impl ListRaster {
         gathered.group(stage, &self.layout)
     }
 
-    /// How each caster is drawn, and what that needs.
+    /// Returns the kind of draw and the bind group of each caster.
     fn caster_groups(
         &self,
         stage: &Stage<'_>,
@@ -119,8 +119,8 @@ impl ListRaster {
             .collect()
     }
 
-    /// How a caster is drawn, and what that needs. Coverage needs triangles that shaders can read; `known` is the group of
-    /// this caster's.
+    /// Returns the kind of draw and the bind group of a caster. Coverage needs triangles that shaders can read; `known` is an
+    /// existing group of this caster's triangles.
     fn caster_group(
         &self,
         stage: &Stage<'_>,
@@ -165,7 +165,7 @@ impl ListRaster {
         Some(surface.group(stage, &self.surface_layout))
     }
 
-    /// Records a pass over all casters. Those with coverage have their own, of more samples.
+    /// Records a pass over all casters. Casters with coverage have a pass of their own, with more samples.
     pub(super) fn record(
         &self,
         recorder: &mut Recorder<'_>,
@@ -232,8 +232,8 @@ impl ListRaster {
     }
 }
 
-/// The texture's mip levels from 1, a view each. Only where the host's view is of the whole plain texture: there the
-/// levels are the view's.
+/// Returns a view of each of the texture's mip levels from 1; none unless the texture is 2D with one layer, so that its
+/// levels are those of the host's view.
 fn mip_views(stage: &Stage<'_>, texture: &SurfaceTexture<'_>) -> Vec<wgpu::TextureView> {
     let whole = texture.view.texture();
     if whole.dimension() != wgpu::TextureDimension::D2 || whole.depth_or_array_layers() != 1 {
@@ -270,7 +270,7 @@ fn list_view(view: &LightView, options: &ListOptions, anchor_in_world: Vec3) -> 
     }
 }
 
-/// `layouts` are of groups 0, 1 and 2.
+/// Creates a pipeline; `layouts` are those of groups 0, 1 and 2.
 fn raster_pipeline(
     gpu: &Gpu,
     layouts: [&wgpu::BindGroupLayout; 3],
@@ -309,7 +309,7 @@ fn raster_pipeline(
         vertex,
         vertex_buffers,
         fragment: Some(fragment),
-        // Counter-clockwise from outside: what is left is what faces away from the light.
+        // Counter-clockwise from outside: the remaining faces are those that face away from the light.
         primitive: caster_primitives(gpu, closed.then_some(wgpu::Face::Front)),
         depth: Some(NoDepth::state()),
         sample_count: if draw == Draw::Covered { COVERAGE_SAMPLES } else { 1 },

@@ -11,7 +11,7 @@ use crate::shaders;
 /// Threads along each side of a workgroup.
 const TILE: u32 = 8;
 
-/// What lists are sorted by: what is not asked for is no code at all.
+/// Pipeline key of the sort pass: unused features are compiled out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct SortDesign {
     gather: Gather,
@@ -40,7 +40,7 @@ impl SortDesign {
     }
 }
 
-/// Sorts lists.
+/// Pipelines that sort lists.
 #[derive(Debug)]
 pub(super) struct ListSorter {
     layout: wgpu::BindGroupLayout,
@@ -48,7 +48,7 @@ pub(super) struct ListSorter {
     uniform: wgpu::Buffer,
 }
 
-/// The pass of one frame.
+/// Sort pass of one frame.
 #[derive(Debug)]
 pub(super) struct PreparedSort {
     pipeline: wgpu::ComputePipeline,

@@ -1,4 +1,4 @@
-//! Buffers of lists, for the sizes that they have room for.
+//! Buffers of texel lists.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::FRAGMENT_BYTES;
 use super::options::{Gather, ListOptions};
 use crate::gpu::{Gpu, Lease, NoDepth, Recorder, Scratch};
 
-/// The buffers, for their sizes.
+/// Buffers of lists, with the current options.
 #[derive(Debug)]
 pub(super) struct Storage {
     pub(super) options: ListOptions,
@@ -17,11 +17,11 @@ pub(super) struct Storage {
     pub(super) fragments: Arc<wgpu::Buffer>,
     pub(super) lists: Arc<wgpu::Buffer>,
     pub(super) counters: Arc<wgpu::Buffer>,
-    /// Linked fragments; of the least size for arrays.
+    /// Linked fragments; of minimal size for arrays.
     pub(super) nodes: Arc<wgpu::Buffer>,
-    /// Their links; of arrays where each texel's list begins.
+    /// Links of linked fragments; for arrays, the beginning of each texel's list.
     pub(super) links: Arc<wgpu::Buffer>,
-    /// Of one sample, and of four.
+    /// Unused depth attachments of one sample, and of four.
     pub(super) no_depth: NoDepth,
     pub(super) no_covered_depth: Option<NoDepth>,
 }
@@ -35,14 +35,14 @@ impl Storage {
         let bytes = [
             texels * 4,
             u64::from(options.capacity) * FRAGMENT_BYTES,
-            // Levels have a few more or fewer lists as the map's sides change.
+            // The number of the levels' lists changes a little with the map's sides.
             (u64::from(options.list_count) * FRAGMENT_BYTES * 5 / 4).next_multiple_of(FRAGMENT_BYTES).min(most_bytes),
             8,
             node_count * FRAGMENT_BYTES,
             if options.gather == Gather::Linked { node_count * 4 } else { texels * 4 },
         ];
         let lease = Arc::new(Lease::new(&gpu.device, bytes.iter().sum::<u64>() + options.owners_bytes));
-        // Lights share buffers of a few sizes.
+        // Rounded sizes, so that lights share buffers.
         let rounded = |bytes: u64| if lease.is_own() { bytes } else { bytes.next_power_of_two().min(most_bytes) };
         let buffer = |scratch, label, bytes: u64| {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
@@ -70,13 +70,13 @@ impl Storage {
         }
     }
 
-    /// Records that lists begin where the scan of their counts says, before cursors move on from there.
+    /// Records a copy of the scanned counts, where the lists begin, before the cursors move on.
     pub(super) fn record_begins(&self, recorder: &mut Recorder<'_>) {
         let UVec2 { x, y } = self.options.map_size;
         recorder.encoder().copy_buffer_to_buffer(&self.cursors, 0, &self.links, 0, u64::from(x * y) * 4);
     }
 
-    /// Whether other options can use these buffers.
+    /// Whether the buffers suit other options.
     pub(super) fn fits(&self, options: &ListOptions) -> bool {
         self.options.most_texels == options.most_texels
             && self.options.gather == options.gather
@@ -86,7 +86,7 @@ impl Storage {
             && self.lists.size() >= u64::from(options.list_count) * FRAGMENT_BYTES
     }
 
-    /// Makes attachments wide and high enough for the options' map.
+    /// Enlarges the attachments to the size of the options' map.
     pub(super) fn widen(&mut self, gpu: &Gpu) {
         for no_depth in std::iter::once(&mut self.no_depth).chain(&mut self.no_covered_depth) {
             let needed = no_depth.size().max(self.options.map_size);

@@ -1,4 +1,4 @@
-//! The CPU reference against what can be said by hand, then the GPU against the CPU reference, fragment for fragment.
+//! The CPU reference against results known by hand, then the GPU against the CPU reference, fragment for fragment.
 
 use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
 use glam::{UVec2, Vec2, Vec3};
@@ -14,15 +14,15 @@ use crate::testing::{Mesh, gpu, read_storage};
 
 const MAP_SIZE: UVec2 = UVec2::new(96, 72);
 
-/// The middle texel's place among the lists.
+/// Index of the middle texel's list.
 const MIDDLE: usize = ((MAP_SIZE.y / 2) * MAP_SIZE.x + MAP_SIZE.x / 2) as usize;
 
-/// Geometry of one surface, on both sides.
+/// Geometry of one surface, for CPU reference and GPU.
 pub(crate) struct TestMesh {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) indices: Vec<u32>,
     pub(crate) closed: bool,
-    /// How much of the surface is there; blue light passes all the same, so that lists are in colour.
+    /// Coverage of the surface; blue light passes in any case, so that lists are coloured.
     pub(crate) opacity: f32,
 }
 
@@ -65,7 +65,7 @@ impl TestMesh {
         Self { positions: positions.collect(), indices: indices.collect(), closed: false, opacity: 1.0 }
     }
 
-    /// Triangles anywhere in a box of air.
+    /// Random triangles in a box.
     fn soup(count: u32) -> Self {
         let unit = |i| unit_f32(hash_u32(i));
         let at =
@@ -79,8 +79,8 @@ impl TestMesh {
     }
 }
 
-/// Three scenes: boxes and a half-transparent one in a perspective view, triangles anywhere, and towers of 16 and of 300
-/// sheets in an orthographic one.
+/// Three scenes: boxes and a half-transparent one in a perspective view, random triangles, and towers of 16 and of 300
+/// sheets in an orthographic view.
 pub(crate) fn scenes() -> Vec<(&'static str, Light, Vec<TestMesh>)> {
     let lamp = Light::new(
         LightShape::Rectangle { size_m: glam::Vec2::splat(0.5) },
@@ -109,7 +109,7 @@ pub(crate) fn view_of(light: &Light, meshes: &[TestMesh]) -> LightView {
     fit_light_view(light, &bounds, &[])
 }
 
-/// Lists read back from the GPU: of one channel, or of three equal ones.
+/// Unpacks a list read back from the GPU, of one channel or of three equal ones.
 pub(crate) fn unpack(fragments: &[[u32; 2]], list: [u32; 2], colored: bool) -> Vec<TwinFragment> {
     let fragments = &fragments[list[0] as usize..(list[0] + list[1]) as usize];
     let of = |[z_m, bits]: &[u32; 2]| {
@@ -128,7 +128,7 @@ fn rgb8e4(bits: u32) -> [f32; 3] {
     [0, 8, 16].map(|at| (bits >> at & 255) as f32 * ((bits >> 24 & 15) as f32 - 22.0).exp2())
 }
 
-/// Whether two lists hold the same fragments, to rounding; overlaps have four bits, and change the less the less the opacity.
+/// Whether two lists hold the same fragments, up to rounding; overlaps have four bits, and matter less for small opacities.
 pub(crate) fn agree(a: &[TwinFragment], b: &[TwinFragment], tolerance: f32) -> bool {
     let behind = |fragment: &TwinFragment| fragment.overlap / (1.0 + fragment.overlap);
     a.len() == b.len()
@@ -202,16 +202,16 @@ fn gpu_equals_twin_fragment_for_fragment() {
         let want = lists(&view, MAP_SIZE, &twin);
         for (gather, colored) in [(Gather::Arrays, false), (Gather::Arrays, true), (Gather::Linked, false)] {
             let Some(got) = gpu_lists(&light, &meshes, &options(gather, colored)) else { return };
-            // Rasterisers interpolate depth along steep triangles as well as they snap vertices, to 1/256 texel.
+            // On steep triangles, depth is as exact as the snapping of vertices, 1/256 texel.
             let differing = want.iter().zip(&got).filter(|(want, got)| !agree(want, got, 2e-3)).count();
             println!("{name}, {gather:?}, colored {colored}: {differing} of {} lists differ", want.len());
-            // Vertices are snapped after a transform whose last bits differ.
+            // Vertices are snapped after transforms whose last bits differ.
             assert!(differing * 500 <= want.len(), "{name}, {gather:?}: {differing} lists differ");
         }
     }
 }
 
-/// Where the two passes over the geometry see other fragments, as compilers may make them, each list keeps to its own place.
+/// If the two passes over the geometry see different fragments, as compilers may cause, each list stays within its own range.
 #[test]
 fn what_was_not_counted_is_in_no_list() {
     let Some(gpu) = gpu() else { return };
@@ -229,7 +229,7 @@ fn what_was_not_counted_is_in_no_list() {
         let lists: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists);
         lists.iter().map(|list| unpack(&fragments, *list, false)).collect::<Vec<_>>()
     };
-    // The ground comes first, so that it is what there is room for.
+    // The ground comes first, so that its fragments take the counted room.
     let ground = lists_of(&casters[..1], &casters[..1]);
     assert!(ground.iter().filter(|list| !list.is_empty()).count() > 1000);
     for (counted, collected) in [(1, 3), (3, 1)] {
@@ -255,12 +255,12 @@ fn twin_s_coverage_is_the_area_s() {
     }
 }
 
-/// Thin and steep things, and two faces of a solid in one texel.
+/// Thin and steep surfaces, and two faces of a solid in one texel.
 #[test]
 fn coverage_equals_the_twin_s() {
     for (name, light, meshes) in scenes() {
         let view = view_of(&light, &meshes);
-        // The wider side's.
+        // The wider side of a texel.
         let texel = view.texel_in_plane(MAP_SIZE.y);
         let adjoin = if light.is_distant() {
             DepthTolerance { slope: 0.0, m: texel }
@@ -282,8 +282,8 @@ fn coverage_equals_the_twin_s() {
     }
 }
 
-/// Two sheets that meet along a row of samples, one over the other: each sample is one sheet's, so that both together cover texels
-/// whole.
+/// Two sheets at different heights that meet along a row of samples: each sample belongs to one sheet, so that together they cover
+/// whole texels.
 #[test]
 fn samples_on_a_shared_edge_are_one_sheet_s() {
     let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.05 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
@@ -314,8 +314,8 @@ fn samples_on_a_shared_edge_are_one_sheet_s() {
     }
 }
 
-/// A side that the light sees at a grazing angle has a plane that leaves the scene, and passes the light, within the
-/// texels at its edge.
+/// The plane of a side at a grazing angle to the light leaves the scene, and passes the light, within the texels at the
+/// side's edge.
 #[test]
 fn what_is_seen_from_the_side_stays_at_its_depths() {
     let (_, light, _) = scenes().swap_remove(0);
@@ -337,8 +337,8 @@ fn what_is_seen_from_the_side_stays_at_its_depths() {
     }
 }
 
-/// Panes whose texture is far finer than the map stop what their mip levels say, the same everywhere: masked and
-/// translucent ones.
+/// Masked and translucent panes with a texture far finer than the map stop the mean of their mip levels, the same
+/// everywhere.
 #[test]
 fn minified_textures_stop_their_mean() {
     let Some(gpu) = gpu() else { return };
@@ -389,7 +389,7 @@ fn minified_textures_stop_their_mean() {
     }
 }
 
-/// White and clear texels in turn; its mip levels are their mean.
+/// Checkerboard of white and clear texels; mip levels hold their mean.
 fn checkered_texture(gpu: &Gpu, size: u32) -> wgpu::Texture {
     let levels = size.ilog2() + 1;
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -1,12 +1,12 @@
-//! The mean of a mask over the frames in which nothing moved.
+//! Mean of a mask over the frames in which nothing moved.
 //!
-//! For any technique whose frames differ by random numbers alone: it writes the mask as ever, and this block replaces each pixel
-//! by the mean of all its frames since something last changed. Sintorn, Eisemann, Assarsson 2008 (section 4.2, figure 7)
-//! accumulate so "if the scene is static and the camera does not move".
+//! This block serves any technique whose frames differ by random numbers alone. The technique writes its mask, and this block
+//! replaces each pixel by the mean of all its frames since the last change. Sintorn, Eisemann, Assarsson 2008 (section 4.2,
+//! figure 7) accumulate this way "if the scene is static and the camera does not move".
 //!
-//! What counts as a change: the light, the camera, the mask's size, the technique's settings and which meshes cast, which
-//! the processor compares; what is *in* the casters' buffers, which a set of casters tells by its version, and of which the GPU
-//! keeps a fingerprint where there is no set; and a pixel's own depth, which begins that pixel alone anew. The first frame after a change is the technique's own, bit for bit.
+//! Changes are: the light, the camera, the mask's size, the technique's settings and the list of meshes, which the CPU compares; the
+//! *content* of the casters' buffers, known by a caster set's version or, without a set, by a fingerprint computed on the GPU; and a
+//! pixel's own depth, which restarts that pixel alone. The first frame after a change is the technique's own, bit for bit.
 //!
 //! ```text
 //! casters ──► fingerprint ─┐
@@ -34,9 +34,9 @@ mod cpu;
 mod tests;
 
 gpu_structs! {
-    /// What has to be known of a frame.
+    /// Data of one frame.
     pub(crate) struct AccumulationFrame {
-        /// Another number after each change that the processor saw; never 0.
+        /// Generation counter: differs after each change that the CPU saw; never 0.
         generation: u32,
         padding_0: u32,
         padding_1: u32,
@@ -58,12 +58,12 @@ bindings! {
     }
 }
 
-/// Workgroups that read a buffer between them, at most.
+/// Largest number of workgroups that read a buffer.
 const FINGERPRINT_GROUPS: u32 = 64;
-/// Words that a workgroup reads in one turn.
+/// Number of words that a workgroup reads per iteration.
 const FINGERPRINT_THREADS: u32 = 256;
 
-/// Accumulates.
+/// Accumulation pass of one mask.
 #[derive(Debug)]
 pub(crate) struct Accumulation {
     fingerprint_layout: wgpu::BindGroupLayout,
@@ -72,21 +72,21 @@ pub(crate) struct Accumulation {
     accumulate: wgpu::ComputePipeline,
     remember: wgpu::ComputePipeline,
     uniform: wgpu::Buffer,
-    /// Fingerprint in the making, the last frame's, the last frame's generation.
+    /// Fingerprint being computed, last frame's fingerprint, last frame's generation.
     state: wgpu::Buffer,
-    /// Layer after layer, a mean for each pixel.
+    /// Mean of each pixel, layer after layer.
     means: Option<wgpu::Buffer>,
-    /// For each pixel its depth's bits and how many frames its mean is of.
+    /// Key of each pixel's position, and number of frames in its mean.
     seen: Option<wgpu::Buffer>,
     content: Content<Seen>,
     generation: u32,
 }
 
-/// What the processor compares from frame to frame.
+/// Frame state that the CPU compares from frame to frame.
 #[derive(Debug, PartialEq)]
 struct Seen {
     light: Light,
-    /// `None` of points.
+    /// Camera; `None` if receivers are points.
     camera: Option<Camera>,
     size_px: UVec2,
     mask_layers: u32,
@@ -94,19 +94,19 @@ struct Seen {
     settings: u64,
 }
 
-/// Which casters there are, and what the processor knows of them.
+/// Identity of the casters, as far as the CPU knows them.
 #[derive(Debug, PartialEq)]
 enum SeenCasters {
-    /// Everything: a set says when it changes.
+    /// Key of a caster set, which changes with anything in it.
     Set(CastersKey),
-    /// A hash of everything but what is in their buffers.
+    /// Hash of everything except the content of the casters' buffers.
     Hashed(u64),
 }
 
 /// Bind groups of one frame.
 #[derive(Debug)]
 pub(crate) struct PreparedAccumulation {
-    /// One for each of the casters' buffers, with its workgroups.
+    /// Bind group of each of the casters' buffers, with its number of workgroups.
     fingerprints: Vec<(wgpu::BindGroup, u32)>,
     accumulate: wgpu::BindGroup,
 }
@@ -143,8 +143,8 @@ impl Accumulation {
         }
     }
 
-    /// Compares a frame with the one before; to be called once a frame, first of all. `settings` is a hash of whatever
-    /// else must not change, `set` what the casters are of. Gives the number of the frame since the processor last saw a change, from 0.
+    /// Compares a frame with the previous one; must be called first, once per frame. `settings` is a hash of whatever else must not
+    /// change, `set` the key of the caster set. Returns the number of frames since the CPU last saw a change, from 0.
     pub(crate) fn begin(&mut self, frame: &PreparedFrame<'_>, set: Option<CastersKey>, settings: u64) -> u32 {
         let receivers = &frame.receivers;
         let now = Seen {
@@ -161,10 +161,10 @@ impl Accumulation {
         self.content.repeats()
     }
 
-    /// Makes ready for the frame that [`Self::begin`] saw.
+    /// Prepares the frame that [`Self::begin`] saw.
     ///
     /// # Errors
-    /// Where the means of all pixels are more than a binding holds.
+    /// If the means of all pixels exceed the limit of a buffer binding.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -193,7 +193,7 @@ impl Accumulation {
         let seen = sized_buffer(stage, &mut self.seen, "antumbra means' frames", pixels * 8, storage);
         let accumulate = Accumulated { accumulation: &self.uniform, state: &self.state, means, seen };
         let accumulate = accumulate.group(stage, &self.accumulate_layout);
-        // What a set's buffers hold, its version tells.
+        // The version of a caster set covers the content of its buffers.
         let unknown = if stage.casters().is_some() { Vec::new() } else { buffers_of(&frame.casters) };
         let fingerprints = unknown
             .into_iter()
@@ -223,13 +223,13 @@ impl Accumulation {
         });
     }
 
-    /// Bytes of the means.
+    /// Size of the means and state, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.state.size() + [&self.means, &self.seen].into_iter().flatten().map(wgpu::Buffer::size).sum::<u64>()
     }
 }
 
-/// The buffers whose contents say where the casters are, each once.
+/// Returns the buffers whose content defines the casters' geometry, each once.
 fn buffers_of<'a>(casters: &PreparedCasters<'a>) -> Vec<&'a wgpu::Buffer> {
     let PreparedCasters::Draws(meshes) = casters else { return Vec::new() };
     let mut buffers: Vec<_> = meshes.iter().flat_map(|mesh| [mesh.positions, mesh.indices, mesh.instances]).collect();
@@ -238,7 +238,7 @@ fn buffers_of<'a>(casters: &PreparedCasters<'a>) -> Vec<&'a wgpu::Buffer> {
     buffers
 }
 
-/// Which casters there are: everything about them but what is in their buffers.
+/// Returns a hash of everything about the casters except the content of their buffers.
 fn hash_of_casters(casters: &PreparedCasters<'_>) -> u64 {
     let mut hasher = DefaultHasher::new();
     match casters {

@@ -1,4 +1,4 @@
-//! The CPU reference's properties, then the GPU against the CPU reference. Means are tested through `sample_based`.
+//! Tests of the CPU reference's properties, then of the GPU against it. The means are tested through `sample_based`.
 
 use antumbra_light::hash_u32;
 

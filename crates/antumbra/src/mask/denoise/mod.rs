@@ -1,32 +1,32 @@
-//! A noisy mask made smooth, over frames and over neighbouring pixels, for whatever technique wrote it.
+//! Denoising of any technique's mask, over frames and over neighbouring pixels.
 //!
 //! ```text
 //! technique ──► noisy mask ──► over time ──► means ──► over pixels ──► the host's mask
 //!                 means and depth of the frame before ──┘
 //! ```
 //!
-//! **Over time** (`over_time.wesl`): each point is looked up where the camera of the frame before had it (Nehab et al. 2007,
-//! "Accelerating real-time shading with reverse reprojection caching"; Scherzer, Jeschke, Wimmer 2007, "Pixel-correct shadow
-//! maps with temporal reprojection and shadow test confidence"), dropped where that frame saw another surface, and its mean
-//! goes on by the newest value. An earlier mean is held within what its neighbours have in the new frame (as in temporal
-//! antialiasing: Salvi 2016, "An excursion in temporal supersampling") and counts for as many frames as it can be right for:
-//! where light or casters move it forgets as fast as they are seen to.
+//! **Over time** (`over_time.wesl`): each point is reprojected into the previous frame (Nehab et al. 2007, "Accelerating
+//! real-time shading with reverse reprojection caching"; Scherzer, Jeschke, Wimmer 2007, "Pixel-correct shadow maps with
+//! temporal reprojection and shadow test confidence"). Its history is dropped if that frame saw another surface; otherwise
+//! the newest value is added to its mean. The earlier mean is clamped to the range of the pixel's neighbours in the new
+//! frame (as in temporal antialiasing: Salvi 2016, "An excursion in temporal supersampling"). It counts for as many frames
+//! as it can be right for: where light or casters move, the history shortens accordingly.
 //!
-//! **Over pixels** (`over_pixels.wesl`): a plane fitted to the means on the same surface, by Gaussian weights no wider than an
-//! eighth of the penumbra, which is known from the slope of visibility itself, and narrower the more frames the means are of.
-//! What is filtered is shown, not kept, so that nothing is filtered twice.
+//! **Over pixels** (`over_pixels.wesl`): a plane is fitted to the means on the same surface. The Gaussian weights are no wider
+//! than an eighth of the penumbra, which is known from the slope of visibility itself, and become narrower with the number of
+//! frames. The filtered mask is shown and not fed back, so that nothing is filtered twice.
 //!
-//! Per pixel and channel, over time: reads 4 bytes of the noisy mask, 12 of what is kept, four times, and 4 of depth; writes 12.
-//! Over pixels: reads 8 and 4 of depth, writes 4. Workgroups fetch once what is about their pixels: 2.3 times as much over time, 3.1
-//! times over pixels. Neither looks about where a pixel is lit or dark and was so. Memory: 24 bytes a pixel, 8 a pixel and channel
-//! more where there are three.
+//! Cost per pixel and channel. Over time: reads 4 bytes of the noisy mask, 12 of the history, four times, and 4 of depth; writes 12.
+//! Over pixels: reads 8 and 4 of depth, writes 4. Workgroups load the neighbourhood of their pixels once: 2.3 times as much over
+//! time, 3.1 times over pixels. Neither searches the neighbourhood of a pixel that is and was fully lit or dark. Memory: 24 bytes
+//! per pixel, 8 more per pixel and channel for masks of three channels.
 //!
 //! # Limits
-//! Bias is no noise: a blocker search of few taps misses faint blockers in most frames, so that the outer penumbra stays too
-//! bright (half-plane, 8 + 8 taps, 16 frames: rmse .020; 64 + 8: .006). Mirrors and glass are not receivers here. What moves of itself and has no motion vectors is known by its depth alone: a
-//! point of a surface that slides along itself keeps the shadow of the place. Slow changes of a faint penumbra stay within
-//! chance for some frames, and lag by them. Under a moving camera means are mixed from four pixels anew each frame, which
-//! softens edges finer than a pixel.
+//! Bias is not noise: a blocker search of few taps misses faint blockers in most frames, so that the outer penumbra stays too bright
+//! (half-plane, 8 + 8 taps, 16 frames: rmse .020; 64 + 8: .006). Mirrors and glass are not receivers here. Moving surfaces without motion
+//! vectors are recognised by depth alone: a point of a surface that slides along itself keeps the shadow of the place. Slow changes of a
+//! faint penumbra are indistinguishable from noise for some frames, and lag by them. Under a moving camera means are interpolated from four
+//! pixels each frame, which softens edges finer than a pixel.
 
 use std::sync::Arc;
 
@@ -44,15 +44,15 @@ use crate::shaders;
 #[cfg(test)]
 mod tests;
 
-/// A mean, that of the square, and how many frames they are of: 11 bits tell a 2048th, an eighth of what one sample in eight
-/// changes a mean of 32 frames by.
+/// Format of the history: mean, mean of squares, number of frames. A half float's 11 bits resolve 1/2048, an eighth of what
+/// one sample in eight changes a mean of 32 frames by.
 const MEANS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// Numbers of frames are counted up to this: multiples of the golden ratio keep three digits of their fraction.
+/// Period of the noise frame index. Up to this number, multiples of the golden ratio keep three digits of their fraction.
 const NOISE_FRAMES: u32 = 1024;
 
 gpu_structs! {
-    /// The frame before, in this frame's coordinates.
+    /// Camera of the previous frame in this frame's coordinates, and settings.
     pub(crate) struct DenoiseFrame {
         clip_from_world_before: Mat4,
         world_from_clip_before: Mat4,
@@ -79,7 +79,7 @@ bindings! {
     }
 }
 
-/// Makes one light's mask smooth, seen by one camera.
+/// Denoiser of one light's mask, seen by one camera.
 #[derive(Debug)]
 pub(crate) struct Denoiser {
     inputs: FrameInputs,
@@ -89,35 +89,35 @@ pub(crate) struct Denoiser {
     over_pixels: wgpu::ComputePipeline,
     uniform: wgpu::Buffer,
     noisy: Option<NoisyMask>,
-    /// Of the frame before and of this one, in turns.
+    /// History of the previous frame and of this one, in alternation.
     kept: Option<[Kept; 2]>,
     before: Option<Camera>,
-    /// Frames since the first.
+    /// Number of frames since the first.
     frames: u32,
-    /// Of these the last in which nothing changed.
+    /// Number of frames since the last change.
     still_frames: u32,
 }
 
-/// Passes of one frame.
+/// Denoising passes of one frame.
 #[derive(Debug)]
 pub(crate) struct PreparedDenoise {
-    /// The mask that the technique is to write.
+    /// Mask that the technique writes.
     pub(crate) noisy: Mask,
     inputs: PreparedInputs,
-    /// Over time, over pixels.
+    /// Passes over time and over pixels: label, pipeline and bind group.
     passes: [(&'static str, wgpu::ComputePipeline, wgpu::BindGroup); 2],
     channels: u32,
 }
 
-/// What the technique writes.
+/// Mask that the technique writes.
 #[derive(Debug)]
 struct NoisyMask {
-    /// Each light's commands fill it and read it before another's do, so lights share it.
+    /// Shared texture: each light's commands fill and read it before another light's do.
     scratch: Arc<wgpu::Texture>,
     mask: Mask,
 }
 
-/// What is kept of a frame.
+/// History of one frame.
 #[derive(Debug)]
 struct Kept {
     size_px: UVec2,
@@ -149,7 +149,7 @@ impl Denoiser {
         }
     }
 
-    /// Random number index of the next frame.
+    /// Returns the random number index of the next frame.
     pub(crate) fn noise_frame(&self) -> u32 {
         self.frames % NOISE_FRAMES
     }
@@ -159,7 +159,7 @@ impl Denoiser {
         self.still_frames >= settings.most_frames
     }
 
-    /// The mask that the technique is to write, for one of the host's.
+    /// Returns the noisy mask, in the size and channels of the host's `mask`.
     fn noisy_mask(&mut self, gpu: &Gpu, mask: &Mask) -> Mask {
         let descriptor = wgpu::TextureDescriptor {
             label: Some("antumbra noisy mask"),
@@ -180,8 +180,8 @@ impl Denoiser {
         self.noisy.insert(noisy).mask.clone()
     }
 
-    /// Makes ready for a frame. `frame` is counted from the stage's anchor and has the mask to smooth into; `host` is the
-    /// same in the host's world. `is_same`: nothing has changed since the frame before.
+    /// Prepares a frame. `frame` is relative to the stage's anchor and has the output mask; `host` is the same frame in
+    /// the host's world. `is_same` says whether nothing has changed since the previous frame.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -226,7 +226,7 @@ impl Denoiser {
         PreparedDenoise { noisy, inputs, passes, channels }
     }
 
-    /// The frame before's camera, for places counted from an anchor.
+    /// Returns the previous frame's camera, relative to `anchor`.
     fn seen_before(&self, anchor: Vec3) -> DenoiseFrame {
         let Some(before) = self.before else { return DenoiseFrame::default() };
         let from_anchor = glam::DMat4::from_translation(anchor.as_dvec3());
@@ -240,7 +240,7 @@ impl Denoiser {
         }
     }
 
-    /// Bytes of what is kept from frame to frame.
+    /// Size of the history, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let of = |kept: &Kept| u64::from(kept.size_px.element_product() * (8 * kept.channels + 4));
         self.kept.iter().flatten().map(of).sum()
@@ -248,7 +248,7 @@ impl Denoiser {
 }
 
 impl PreparedDenoise {
-    /// Smooths what the technique has written into the host's mask.
+    /// Denoises what the technique has written into the host's mask.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         for (label, pipeline, group) in &self.passes {
             recorder.compute(label, Span::Only, |pass| {

@@ -1,4 +1,4 @@
-//! Through a noisy technique, against closed forms.
+//! Tests through a noisy technique, against closed forms.
 
 use antumbra_light::{Light, LightShape};
 use glam::{Vec2, Vec3};
@@ -14,7 +14,7 @@ use crate::testing::{
     view_of,
 };
 
-/// Eight taps to search and eight to filter with.
+/// Returns a noisy technique: 8 taps in the blocker search, 8 in the filter.
 fn noisy(gpu: &Gpu, denoise: Option<Denoise>) -> AnyShadow {
     with_taps(gpu, "8", denoise)
 }
@@ -28,7 +28,7 @@ fn with_taps(gpu: &Gpu, taps: &str, denoise: Option<Denoise>) -> AnyShadow {
     shadow
 }
 
-/// The mask after so many frames of a case.
+/// Returns the mask after a number of frames of a case.
 fn after(gpu: &Gpu, shadow: &mut AnyShadow, case: &Case, frames: u32) -> Vec<f32> {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let draw = |shadow: &mut AnyShadow| {
@@ -41,19 +41,19 @@ fn error_of(case: &Case, mask: &[f32]) -> f32 {
     rmse(&case.ground_pixels(test_ground), mask, |p| half_plane_visibility(p.x, 1.0))
 }
 
-/// The half-plane, seen from so far to the right.
+/// Returns the half-plane case with the camera moved to the right by `away_m`, metres.
 fn seen_from(gpu: &Gpu, away_m: f32) -> Case {
     let case = Case::half_plane(gpu, RECTANGLE);
     let view = View::new(Vec3::new(2.0 + away_m, 1.2, 5.0), Vec3::new(0.6, 0.0, 0.0));
     Case::new(gpu, case.light, view, case.meshes)
 }
 
-/// Still, eight taps of the filter and 16 frames are as good as 64 taps, and a frame that is alone is better than it was.
+/// In still frames, 8 filter taps over 16 frames are as good as 64 taps; a single frame improves, too.
 #[test]
 fn means_of_still_frames_are_as_good_as_many_taps() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
-    // A search of few taps misses what it misses, frame for frame.
+    // A search of few taps has a bias that frames do not average out.
     let well_searched = |denoise| {
         let mut shadow = noisy(gpu, denoise);
         shadow.set("search_samples", "64").expect("in range");
@@ -68,7 +68,7 @@ fn means_of_still_frames_are_as_good_as_many_taps() {
     assert!(first < 0.7 * alone && still < many, "{first} {still}");
 }
 
-/// What has no noise stays as it is, edges a pixel wide included.
+/// A mask without noise is unchanged, including edges one pixel wide.
 #[test]
 fn a_mask_without_noise_is_left_alone() {
     let Some(gpu) = gpu() else { return };
@@ -80,7 +80,7 @@ fn a_mask_without_noise_is_left_alone() {
     assert!(after(gpu, &mut shadow, &case, 8) == plain);
 }
 
-/// While the camera moves a pixel or so a frame, means go with the surface.
+/// Means follow the surface while the camera moves by about a pixel per frame.
 #[test]
 fn means_follow_a_moving_camera() {
     let Some(gpu) = gpu() else { return };
@@ -95,7 +95,7 @@ fn means_follow_a_moving_camera() {
     assert!(errors[0] < 0.62 * errors[1], "{errors:?}");
 }
 
-/// A light that jumps takes its shadow along: after eight frames nearly nothing is where it was.
+/// A light that jumps takes its shadow along: after eight frames almost no ghost remains.
 #[test]
 fn a_jump_leaves_no_ghost() {
     let Some(gpu) = gpu() else { return };
@@ -115,7 +115,7 @@ fn a_jump_leaves_no_ghost() {
     assert!(distance(&before) > 0.2 && first < 0.1 && eighth < 0.02);
 }
 
-/// Motion vectors of a camera's motion give what the camera gives; of a point that was elsewhere, its mean there.
+/// Motion vectors of a camera's motion match reprojection; those of another motion fetch the mean from elsewhere.
 #[test]
 fn motion_vectors_say_where_a_surface_was() {
     let Some(gpu) = gpu() else { return };
@@ -146,7 +146,7 @@ fn motion_vectors_say_where_a_surface_was() {
     assert!((by_camera - by_vectors).abs() < 0.002 && by_none > 1.2 * by_camera);
 }
 
-/// Three channels are each their own: with casters that tint nothing, all are one channel's mask; narrow masks are as wide ones.
+/// Channels are independent: with casters that tint nothing, all equal the mask of one channel. Narrow masks equal wide ones.
 #[test]
 fn masks_of_any_kind_are_smoothed() {
     let Some(gpu) = gpu() else { return };
@@ -174,14 +174,14 @@ fn masks_of_any_kind_are_smoothed() {
                 bytes.iter().map(|byte| f32::from(*byte) / 255.0).collect()
             };
             let most = got.iter().zip(&one).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-            // Vulkan and Direct3D let what is stored be off by .6 of a step.
+            // Vulkan and Direct3D allow stored values an error of .6 of a step.
             let room = if format == Mask::FORMAT { 0.0 } else { 0.6 / 255.0 + 1e-6 };
             assert!(most <= room, "{format:?}, layer {layer}: {most}");
         }
     }
 }
 
-/// Where nothing changes, the mask is drawn anew until its means are of all frames, and then stands.
+/// A still mask is redrawn until its means cover all frames, and is cached from then on.
 #[test]
 fn a_still_mask_settles() {
     let Some(gpu) = gpu() else { return };
@@ -204,7 +204,7 @@ fn a_still_mask_settles() {
     assert!(counts[..5].iter().all(|count| *count > 2) && counts[5..].iter().all(|count| *count == 0), "{counts:?}");
 }
 
-/// Numbers of frames that mean nothing are refused.
+/// Numbers of frames out of range are rejected.
 #[test]
 fn frames_are_from_1_to_64() {
     let Some(gpu) = gpu() else { return };
@@ -217,11 +217,11 @@ fn frames_are_from_1_to_64() {
     }
 }
 
-/// Frames that only move make no object, once each of the turns of what is kept has had its groups.
+/// Frames that only move create no wgpu resource once both halves of the history have their bind groups.
 #[test]
 fn frames_that_only_move_make_no_objects() {
     let Some(shared) = gpu() else { return };
-    // Counters of its own.
+    // A device of its own, because its counters are compared.
     let gpu = &Gpu::new(shared.device(), shared.queue());
     let case = Case::half_plane(gpu, RECTANGLE);
     let mut shadow = noisy(gpu, Some(Denoise::default()));
@@ -234,7 +234,7 @@ fn frames_that_only_move_make_no_objects() {
             work.record(&mut Recorder::new(&mut encoder, None));
             gpu.queue.submit([encoder.finish()]);
         });
-        // Staging buffers are free again once the device is done with them.
+        // Polling returns the staging buffers for reuse.
         gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
     };
     (0..4).for_each(&mut move_on);

@@ -1,7 +1,7 @@
-//! Fade of shadows that end at a distance from the camera: the last pass over the receivers, of frames with
-//! [such a distance](crate::Receivers::shadow_distance).
+//! Fade of shadows that end at a distance from the camera. It is the last pass over the receivers, in frames with a
+//! [shadow distance](crate::Receivers::shadow_distance).
 //!
-//! What lies beyond the end is in no part of the light, so that no technique runs for it and the mask is dark there; here it becomes lit.
+//! Receivers beyond the end are in no part of the light: no technique runs for them, and the mask is dark. This pass lights them.
 //!
 //! Per pixel: the depth buffer and, where shadows fade, the mask are read and written once.
 
@@ -19,18 +19,18 @@ bindings! {
 }
 
 gpu_structs! {
-    /// Where shadows fade.
+    /// Range of distances over which shadows fade.
     pub(crate) struct FadeGpu {
-        /// From here on, metres from the eye.
+        /// Begin of the fade, metres from the eye.
         begin_m: f32,
-        /// Over so many metres.
+        /// Length of the fade, metres.
         length_m: f32,
         padding_0: f32,
         padding_1: f32,
     }
 }
 
-/// The pass.
+/// Fade pass.
 #[derive(Debug)]
 pub(crate) struct Fade {
     inputs: FrameInputs,
@@ -38,7 +38,7 @@ pub(crate) struct Fade {
     pipeline: wgpu::ComputePipeline,
 }
 
-/// The pass of one frame.
+/// Fade pass of one frame.
 #[derive(Debug)]
 pub(crate) struct PreparedFade {
     inputs: PreparedInputs,
@@ -54,7 +54,7 @@ impl Fade {
         Self { inputs, layout, pipeline }
     }
 
-    /// Makes ready for a frame whose mask is of 32 bits.
+    /// Prepares a frame whose mask has 32 bits.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -63,7 +63,7 @@ impl Fade {
     ) -> PreparedFade {
         let [begin_m, length_m] = distance.fade_span_m();
         let fade = FadeGpu { begin_m, length_m, padding_0: 0.0, padding_1: 0.0 };
-        // No uniform, since drivers may compile for its values.
+        // A storage buffer, because drivers may compile uniforms' values into the shader.
         let fade = stage.storage("antumbra fade", bytemuck::bytes_of(&fade));
         PreparedFade {
             inputs: self.inputs.prepare(stage, frame),
@@ -74,7 +74,7 @@ impl Fade {
 }
 
 impl PreparedFade {
-    /// Records the way of the mask into itself.
+    /// Records the pass, which updates the mask in place.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         recorder.compute("fade", Span::Only, |pass| {
             pass.set_pipeline(&self.pipeline);

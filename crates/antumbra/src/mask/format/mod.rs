@@ -1,4 +1,4 @@
-//! Masks of fewer bits than techniques write, drawn from one of 32.
+//! Conversion of 32-bit masks to the host's formats of fewer bits.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::shaders;
 #[cfg(test)]
 mod tests;
 
-/// The instance of `draw.wesl` that gives three layers as red, green and blue.
+/// Instance of `draw.wesl` that writes three layers as red, green and blue.
 const ALL_LAYERS: u32 = 3;
 
 bindings! {
@@ -18,10 +18,10 @@ bindings! {
     }
 }
 
-/// What draws a host's mask.
+/// Conversion pass to a host's mask.
 #[derive(Clone, Debug)]
 pub(crate) struct NarrowMask {
-    /// What techniques write. Each light's commands fill it and read it before another's do, so lights share it.
+    /// Mask texture that techniques write. Lights share it: each light's commands fill and read it before another light's do.
     scratch: Arc<wgpu::Texture>,
     wide: Mask,
     pipeline: wgpu::RenderPipeline,
@@ -31,12 +31,12 @@ pub(crate) struct NarrowMask {
 }
 
 impl NarrowMask {
-    /// Whether a mask needs one.
+    /// Whether a mask needs a conversion.
     pub(crate) fn serves(mask: &Mask) -> bool {
         mask.texture().format() != Mask::FORMAT
     }
 
-    /// Makes ready to draw `mask`. `earlier` is the frame before's.
+    /// Prepares the conversion to `mask`. `earlier` is the previous frame's.
     pub(crate) fn prepare(stage: &Stage<'_>, mask: &Mask, earlier: Option<Self>) -> Self {
         let descriptor = wgpu::TextureDescriptor {
             label: Some("antumbra mask of 32 bits"),
@@ -66,7 +66,7 @@ impl NarrowMask {
         }
     }
 
-    /// The mask that the technique is to write.
+    /// Mask that the technique writes.
     pub(crate) fn wide(&self) -> &Mask {
         &self.wide
     }
@@ -86,7 +86,7 @@ impl NarrowMask {
     }
 }
 
-/// The components that a mask is written to.
+/// Returns the colour components that a mask is written to.
 fn write_mask(mask: &Mask) -> wgpu::ColorWrites {
     let has_one = mask.texture().format().components() == 1;
     match mask.channels() {
@@ -103,7 +103,7 @@ fn pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mask: &Mask) -> wgpu::Ren
     color_pipeline(gpu, "antumbra narrow mask", shaders::MASK_FORMAT_DRAW, layout, &[Some(target)])
 }
 
-/// The layers to draw to, and with which instance.
+/// Returns the layers to draw to, and the instance that draws each.
 fn targets(stage: &Stage<'_>, mask: &Mask) -> Vec<(wgpu::TextureView, u32)> {
     let instances = match mask.channels() {
         MaskChannels::One => 0..1,

@@ -1,4 +1,4 @@
-//! Masks of every format, in parts of larger textures, against the one of 32 bits.
+//! Tests of masks of every format, in parts of larger textures, against the 32-bit mask.
 
 use glam::{UVec2, Vec3};
 
@@ -8,10 +8,10 @@ use crate::gpu::{Gpu, Recorder};
 use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, RECTANGLE, f32_of_half, gpu, read_layer, run};
 
-/// What a mask's texture holds before, in each component.
+/// Value of each component of a mask's texture before drawing.
 const BEFORE: f32 = 0.25;
 
-/// A host's texture of a format, larger than the masks in it, filled with [`BEFORE`].
+/// Returns a texture of a format, larger than the masks in it, filled with [`BEFORE`].
 fn filled(gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::Texture {
     let size = wgpu::Extent3d { width: 160, height: 150, depth_or_array_layers: 4 };
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -40,7 +40,7 @@ fn filled(gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::Texture {
     texture
 }
 
-/// A layer's components, pixel by pixel.
+/// Returns a layer's components, pixel by pixel.
 fn components(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Vec<f32> {
     let bytes = read_layer(gpu, texture, layer);
     match texture.format().target_component_alignment() {
@@ -50,7 +50,7 @@ fn components(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Vec<f32> {
     }
 }
 
-/// What writing to a format may lose of a value below 1: half a step, or for floats a whole one, since they may be truncated.
+/// Returns the rounding error of stored values below 1: half a step, or a whole one for floats because they may be truncated.
 fn rounding(format: wgpu::TextureFormat) -> f32 {
     match format.target_component_alignment() {
         Some(4) => 0.0,
@@ -63,7 +63,7 @@ fn rounding(format: wgpu::TextureFormat) -> f32 {
 fn masks_of_every_format_and_place_hold_the_same() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
-    // Its opacity differs from channel to channel, and so does the light that is left.
+    // Transmitted light, and hence visibility, differs between channels.
     let tinted = Opacity::Translucent {
         coverage: SurfaceCoverage::Alpha(0.8),
         transmitted: Vec3::new(0.9, 0.5, 0.1),
@@ -74,7 +74,7 @@ fn masks_of_every_format_and_place_hold_the_same() {
         case.with_frame(Casters::Meshes(&casters), |frame| {
             let size_px = frame.receivers.size_px;
             let whole = Mask::with_channels(gpu.device(), size_px, channels);
-            // One that tints, and whose shaders are soon compiled: the masks are none of its business.
+            // Technique that supports tinted casters and compiles fast; the masks do not depend on it.
             let mut shadow = TechniqueKind::MultiView.create(gpu).expect("any device");
             for (key, value) in [("samples", "8"), ("view_size", "64")] {
                 shadow.set(key, value).expect("in range");
@@ -114,7 +114,7 @@ fn masks_of_every_format_and_place_hold_the_same() {
     }
 }
 
-/// What a component is to hold; `None` where it is none of the mask's.
+/// Returns the expected value of a component; `None` if it is not the mask's.
 fn expected(
     truth: &[Vec<f32>],
     place: MaskPlace,
@@ -133,7 +133,7 @@ fn expected(
     Some(channel[(in_mask.y * place.size_px.x + in_mask.x) as usize])
 }
 
-/// Lights of like size share what their techniques write, and each mask is its own light's.
+/// Lights of equal size share the wide mask, and each mask is its own light's.
 #[test]
 fn lights_share_the_wide_mask() {
     let Some(gpu) = gpu() else { return };

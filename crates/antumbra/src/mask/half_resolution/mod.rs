@@ -1,21 +1,21 @@
-//! Half resolution: a technique writes a mask of half the size, from receivers of half the size, and what lies between is interpolated.
+//! Half resolution: a technique writes a mask of half the size from receivers of half the size; an upsampling pass interpolates the rest.
 //!
 //! ```text
 //! receivers ──► pick ──► those of half the size ──► technique ──► mask of half the size ──► upsample ──► mask
 //!     └────────────────────────────────────────────────────────────────────────────────────────┘
 //! ```
 //!
-//! For any technique, which sees a depth buffer of half the size and its camera, and knows of nothing else: cascades, cube faces and the
-//! smoothing of `smrt` are all at half the size. A half-size pixel has the place of a pixel, the first of four, so that its surface is
-//! one that the depth buffer holds (`pick.wesl`); a pixel's visibility comes from half-size pixels on its surface alone
-//! (`upsample.wesl`). One image of half the size serves all lights: it is filled, used and emptied before the next.
+//! This works with any technique. It receives a depth buffer of half the size and its camera, and nothing else: cascades, cube faces and
+//! the smoothing of `smrt` are all at half the size. A half-size pixel lies at the first pixel of a square of four, so that its surface
+//! is one that the depth buffer contains (`pick.wesl`). A pixel's visibility comes from half-size pixels on its own surface alone
+//! (`upsample.wesl`). One image of half the size serves all lights, one after the other.
 //!
-//! Per half-size pixel: 4 bytes of depth, 16 of normals, 4 a channel of the mask. Over the full image both passes read depth and normals
-//! once, `upsample` mostly one to four pixels of the half-size image.
+//! Memory per half-size pixel: 4 bytes of depth, 16 of normals, 4 per channel of the mask. Over the full image both passes read depth
+//! and normals once; `upsample` mostly reads one to four half-size pixels.
 //!
 //! # Limits
-//! Penumbrae narrower than two pixels are widened to that. What is one pixel wide and long in no direction may be in no square, and then
-//! has the visibility of what lies close to it.
+//! Penumbrae narrower than two pixels are widened to that. A feature one pixel in size may be in no square; it then has the visibility
+//! of nearby surfaces.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ use crate::shaders;
 #[cfg(test)]
 mod tests;
 
-/// Pixels along a workgroup's side.
+/// Width of a workgroup's tile, pixels.
 const TILE: u32 = 8;
 
 bindings! {
@@ -46,18 +46,18 @@ bindings! {
     }
 }
 
-/// Passes that halve receivers and double masks.
+/// Passes that halve receivers and upsample masks.
 #[derive(Debug)]
 pub(crate) struct HalfResolution {
     inputs: FrameInputs,
     layouts: [wgpu::BindGroupLayout; 2],
     pick: wgpu::ComputePipeline,
     upsample: wgpu::ComputePipeline,
-    /// Of the last frame.
+    /// Image of the last frame.
     image: Option<HalfImage>,
 }
 
-/// Passes of one frame, and what lies between them.
+/// Passes of one frame, and the image between them.
 #[derive(Debug)]
 pub(crate) struct PreparedHalf {
     inputs: PreparedInputs,
@@ -90,7 +90,7 @@ impl HalfResolution {
         }
     }
 
-    /// Makes ready for a frame whose receivers are a depth buffer, and whose mask is of 32 bits.
+    /// Prepares a frame whose receivers are a depth buffer, and whose mask has 32 bits.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> PreparedHalf {
         let inputs = self.inputs.prepare(stage, frame);
         let size_px = half_of(frame.receivers.size_px);
@@ -105,7 +105,7 @@ impl HalfResolution {
 }
 
 impl PreparedHalf {
-    /// The frame as the technique receives it.
+    /// Returns the frame as the technique receives it.
     pub(crate) fn frame_of<'a>(&'a self, frame: &PreparedFrame<'a>) -> PreparedFrame<'a> {
         let HalfImage { size_px, depth, normals, mask, .. } = &self.image;
         let surfaces = match frame.receivers.surfaces {
@@ -125,7 +125,7 @@ impl PreparedHalf {
         PreparedFrame { receivers, mask, ..*frame }
     }
 
-    /// Records the way from the frame's receivers to those of half the size.
+    /// Records the pass from the frame's receivers to those of half the size.
     pub(crate) fn record_pick(&self, recorder: &mut Recorder<'_>) {
         let (pipeline, group) = &self.pick;
         let tiles = self.image.size_px.map(|px| px.div_ceil(TILE));
@@ -137,7 +137,7 @@ impl PreparedHalf {
         });
     }
 
-    /// Records the way from the mask of half the size to the frame's.
+    /// Records the pass from the mask of half the size to the frame's.
     pub(crate) fn record_upsample(&self, recorder: &mut Recorder<'_>) {
         let (pipeline, group) = &self.upsample;
         recorder.compute("mask of half the size", Span::Only, |pass| {
@@ -150,7 +150,7 @@ impl PreparedHalf {
 }
 
 impl HalfImage {
-    /// With the textures of an earlier one, where they do.
+    /// Prepares an image. It reuses the `earlier` image's mask if their texture is the same.
     fn prepare(stage: &Stage<'_>, size_px: UVec2, channels: MaskChannels, earlier: Option<&Self>) -> Self {
         let texture = |scratch, format| {
             let texture =
@@ -173,15 +173,15 @@ impl HalfImage {
     }
 }
 
-/// Half of a size, with the last column and row of odd ones.
+/// Returns half of a size, rounded up.
 fn half_of(size_px: UVec2) -> UVec2 {
     size_px.map(|px| px.div_ceil(2))
 }
 
-/// From the clip space of an image to that of one of half its size whose pixel (i, j) lies where the image's pixel (2i, 2j) does.
+/// Returns the matrix from an image's clip space to that of a half-size image, whose pixel (i, j) is at the image's pixel (2i, 2j).
 ///
-/// With P a place in pixels from the left, (i + ½) of pixel i, the half image's is (P + ½) / 2: pixel 2i's 2i + ½ is i + ½ there. Of
-/// x = 2P / w − 1, and the same in the half image of width h, follows x' = w / 2h · x + (w + 1) / 2h − 1. Rows run against y.
+/// With P a position in pixels from the left, i + ½ at pixel i's centre, its position in the half image is (P + ½) / 2: the centre 2i + ½
+/// becomes i + ½. With x = 2P / w − 1, and likewise for the half image's width h, x' = w / 2h · x + (w + 1) / 2h − 1. Rows run against y.
 fn half_clip(size_px: UVec2) -> Mat4 {
     let (size, doubled) = (size_px.as_vec2(), 2.0 * half_of(size_px).as_vec2());
     let scale = size / doubled;

@@ -1,4 +1,4 @@
-//! Alone, and through techniques.
+//! Tests of the passes alone, and through techniques.
 
 use antumbra_light::{Light, LightShape};
 use glam::camera::rh::proj::directx::perspective_infinite_reverse;
@@ -15,11 +15,11 @@ use crate::testing::{
     view_of,
 };
 
-/// What a straight line between pixels two apart misses of the closed form at a penumbra's ends, some twelve pixels from one to the
-/// other here.
+/// Error of linear interpolation between pixels two apart at a penumbra's ends, against the closed form; the penumbra is about
+/// twelve pixels wide.
 const MOST_OF_ENDS: f32 = 0.007;
 
-/// A technique that filters over a pixel's footprint filters over one twice as wide, which misses as much again.
+/// Techniques that filter over a pixel's footprint, here twice as wide, which doubles the error.
 const BY_FOOTPRINT: [TechniqueKind; 1] = [TechniqueKind::Essm];
 
 fn at_half(gpu: &Gpu, kind: TechniqueKind, is_half: bool) -> AnyShadow {
@@ -28,7 +28,7 @@ fn at_half(gpu: &Gpu, kind: TechniqueKind, is_half: bool) -> AnyShadow {
     shadow
 }
 
-/// The same point of the world is at the centre of pixel (i, j) of one and of pixel (2i, 2j) of the other.
+/// Pixel (i, j) of the half image and pixel (2i, 2j) of the image have the same point at their centre.
 #[test]
 fn half_size_pixels_lie_where_pixels_do() {
     for size_px in [UVec2::new(96, 54), UVec2::new(97, 55), UVec2::new(1, 2), UVec2::new(7, 1)] {
@@ -49,14 +49,14 @@ fn half_size_pixels_lie_where_pixels_do() {
     }
 }
 
-/// On a ground with one penumbra: nearly as near to the closed form as at full resolution, and never the same mask.
+/// On a ground with one penumbra, the error is nearly that of full resolution, and the masks differ.
 #[test]
 fn penumbrae_are_those_of_full_resolution() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let pixels = case.ground_pixels(test_ground);
-    // One of each family, and the two that look at neighbours themselves.
+    // One of each family, and the two that use neighbours themselves.
     for kind in [
         TechniqueKind::Pcss,
         TechniqueKind::Smrt,
@@ -83,7 +83,7 @@ fn penumbrae_are_those_of_full_resolution() {
 /// Left sides and widths of the posts, which lean to the right by a tenth of their height and lie in the plane z = ½.
 const POSTS: [(f32, f32); 5] = [(-0.9, 0.05), (-0.53, 0.06), (-0.16, 0.08), (0.21, 0.11), (0.58, 0.2)];
 
-/// Of the post that a pixel's centre shows, or of the ground: derived from depth, a post's would be as good as any.
+/// Returns the normal of the post or ground at a pixel's centre: one derived from depth would be arbitrary on a thin post.
 fn normal_at(view: &View, pixel: UVec2) -> [f32; 4] {
     let ndc = (pixel.as_vec2() + 0.5) / SIZE.as_vec2() * Vec2::new(2.0, -2.0) + Vec2::new(-1.0, 1.0);
     let world_from_clip = (view.clip_from_view * view.view_from_world).inverse();
@@ -93,7 +93,7 @@ fn normal_at(view: &View, pixel: UVec2) -> [f32; 4] {
     if POSTS.iter().any(is_on) { [0.0, 0.0, 1.0, 0.0] } else { [0.0, 1.0, 0.0, 0.0] }
 }
 
-/// Posts of one to a few pixels, which the light reaches, before a ground that faces away from it: no surface takes anything from the
+/// Lit posts, one to a few pixels wide, before a ground that faces away from the light: neither surface takes visibility from the
 /// other.
 #[test]
 fn edges_are_those_of_full_resolution() {
@@ -125,7 +125,7 @@ fn edges_are_those_of_full_resolution() {
     assert_eq!(places, [], "{} of {}", differing.len(), full.len());
 }
 
-/// A mask of −1.
+/// Returns a mask filled with −1.
 fn unwritten_mask(gpu: &Gpu, size_px: UVec2, channels: MaskChannels) -> Mask {
     let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some("test mask"),
@@ -144,8 +144,8 @@ fn unwritten_mask(gpu: &Gpu, size_px: UVec2, channels: MaskChannels) -> Mask {
     Mask::of_own_layers(&texture, 0, channels)
 }
 
-/// In one channel and three, under a lamp whose maps are a cube's faces, with a depth buffer of odd size, denoised or not:
-/// every pixel is written.
+/// Every pixel is written: in one channel and three, under a lamp with cube faces, with a depth buffer of odd size,
+/// denoised or not.
 #[test]
 fn every_pixel_of_every_mask_is_written() {
     let Some(gpu) = gpu() else { return };
@@ -179,7 +179,7 @@ fn every_pixel_of_every_mask_is_written() {
     }
 }
 
-/// Frames that move make no object, a frame that stays records nothing, and half the resolution is another frame.
+/// Frames that move create no wgpu resource, a still frame records nothing, and a change of resolution is a new frame.
 #[test]
 fn frames_at_half_the_resolution_make_no_objects() {
     let Some(shared) = gpu() else { return };
@@ -203,7 +203,7 @@ fn frames_at_half_the_resolution_make_no_objects() {
         passes
     };
     (0..6).for_each(|i| assert!(draw(0.1 * i as f32, true) > 2));
-    // Tests share the device: another's poll may hold back a staging buffer, so that one round of several is free of new ones.
+    // Tests share the device: another's poll may delay a staging buffer, so only one round of several must create none.
     let made = (6..12).map(|i| {
         let before = gpu.objects_made();
         draw(0.1 * i as f32, true);

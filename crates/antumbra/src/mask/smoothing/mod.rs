@@ -1,20 +1,20 @@
-//! Smoothing of one frame's noisy visibility over neighbouring pixels, for techniques that know how far their blockers are.
+//! Smoothing of one frame's noisy visibility over neighbouring pixels, for techniques that know the distance of their blockers.
 //!
 //! ```text
 //! technique, of each part of the light ──► visibility, least magnification ──► smooth ──► mask
 //! ```
 //!
-//! `smooth.wesl`: a Gaussian mean over neighbours on the same surface, whose standard deviation is .06 of the penumbra's
-//! width as the light's shape and the nearest blocker give it, 2 pixels at the most. Contacts, whose penumbrae are narrower than
-//! a few pixels, stay as they are. Few rays with their noise spread as blue noise are enough under it. Source of the idea: the
-//! filter widths of Mehta, Wang, Ramamoorthi 2012, "Axis-aligned filtering for interactive sampled soft shadows", here by the light's ellipse and with
-//! neighbours in pairs, so that silhouettes and ramps have no bias.
+//! `smooth.wesl` computes a Gaussian mean over neighbours on the same surface. Its standard deviation is .06 of the penumbra's width, which
+//! follows from the light's shape and the nearest blocker, and at most 2 pixels. Contacts, whose penumbrae are narrower than a few pixels,
+//! are unchanged. With noise spread as blue noise, few rays are enough. Source of the idea: the filter widths of Mehta, Wang, Ramamoorthi
+//! 2012, "Axis-aligned filtering for interactive sampled soft shadows", here with the light's ellipse and neighbours in pairs, so that
+//! silhouettes and ramps have no bias.
 //!
-//! Per pixel: 4 bytes written and read, and the depth buffer once; in tiles that are not all of one visibility 24 pairs of
-//! neighbours in workgroup memory. Unlike [`denoise`](super::denoise) it keeps nothing from frame to frame.
+//! Cost per pixel: 4 bytes written and read, and one read of the depth buffer; in tiles of differing visibility, 24 pairs
+//! of neighbours in workgroup memory. Unlike [`denoise`](super::denoise) it keeps no state between frames.
 //!
-//! Where a light is cut into parts, all of them write one texture and the pass follows the last: a mean that ended where a part does left
-//! a line of noise there.
+//! If a light has several parts, all write one texture and the pass follows the last: means that end at a part's edge leave a line of
+//! noise there.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ use crate::shaders;
 #[cfg(test)]
 mod tests;
 
-/// Two half floats: `noisy.wesl`.
+/// Texel format: two half floats, see `noisy.wesl`.
 pub(crate) const NOISY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
 bindings! {
@@ -35,17 +35,17 @@ bindings! {
     }
 }
 
-/// The pass behind a technique's own.
+/// Smoothing pass that follows a technique.
 #[derive(Debug)]
 pub(crate) struct Smoothing {
     inputs: FrameInputs,
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
-    /// Of the last frame. Each light's commands fill it and read it before another's do, so lights share it.
+    /// Texture of the last frame. Lights share it: each light's commands fill and read it before another light's do.
     noisy: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
 }
 
-/// The pass of one frame.
+/// Smoothing pass of one frame.
 #[derive(Debug)]
 pub(crate) struct PreparedSmoothing {
     inputs: PreparedInputs,
@@ -62,7 +62,7 @@ impl Smoothing {
         Self { inputs, layout, pipeline, noisy: None }
     }
 
-    /// Makes ready for a frame whose mask is of 32 bits.
+    /// Prepares a frame whose mask has 32 bits.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> PreparedSmoothing {
         let mut descriptor = passed_texture("antumbra noisy visibility", NOISY_FORMAT, frame.receivers.size_px, 1);
         descriptor.usage |= wgpu::TextureUsages::RENDER_ATTACHMENT;
@@ -82,17 +82,17 @@ impl Smoothing {
 }
 
 impl PreparedSmoothing {
-    /// Where the technique writes.
+    /// Texture that the technique writes.
     pub(crate) fn noisy(&self) -> &wgpu::TextureView {
         &self.noisy
     }
 
-    /// Records that all is dark, before parts write what they reach.
+    /// Records a clear to dark, before the light's parts write the pixels that they cover.
     pub(crate) fn record_dark(&self, recorder: &mut Recorder<'_>) {
         recorder.clear("smooth", &self.noisy);
     }
 
-    /// Records the way from noisy visibility into the mask.
+    /// Records the pass from noisy visibility to the mask.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         recorder.compute("smooth", Span::Only, |pass| {
             pass.set_pipeline(&self.pipeline);

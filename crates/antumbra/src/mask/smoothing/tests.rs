@@ -1,4 +1,4 @@
-//! Through the technique that writes noisy visibility, against closed forms.
+//! Tests through the technique that writes noisy visibility, against closed forms.
 
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec3};
@@ -17,7 +17,7 @@ fn error_of(case: &Case, mask: &[f32]) -> f32 {
     rmse(&case.ground_pixels(test_ground), mask, |p| half_plane_visibility(p.x, 1.0))
 }
 
-/// In a wide penumbra means of 16 rays come nearer to the truth than the rays.
+/// In a wide penumbra, means of 16 rays are nearer to the truth than the rays.
 #[test]
 fn means_are_nearer_to_the_truth() {
     let Some(gpu) = gpu() else { return };
@@ -27,7 +27,7 @@ fn means_are_nearer_to_the_truth() {
     assert!(smooth < 0.6 * raw, "{raw} {smooth}");
 }
 
-/// Where a pixel and all that its mean reaches are lit, or all are dark, it stays as it is.
+/// A pixel is unchanged if all pixels in its reach are fully lit, or all are dark.
 #[test]
 fn what_is_lit_or_dark_all_about_stays_so() {
     let Some(gpu) = gpu() else { return };
@@ -47,7 +47,7 @@ fn what_is_lit_or_dark_all_about_stays_so() {
     assert!(seen[0] > 100 && seen[1] > 100, "{seen:?}");
 }
 
-/// A penumbra far narrower than a pixel is not widened: what is stored are halves, which is all that differs.
+/// A penumbra far narrower than a pixel is not widened; masks differ only by the rounding to half floats.
 #[test]
 fn sharp_edges_stay_sharp() {
     let Some(gpu) = gpu() else { return };
@@ -58,7 +58,7 @@ fn sharp_edges_stay_sharp() {
     assert!(most <= 1.0 / 2048.0, "{most}");
 }
 
-/// A list of points throws several hard shadows, whose steps are no noise.
+/// A list of points casts several hard shadows, whose steps are not noise.
 #[test]
 fn steps_of_lists_of_points_stay() {
     let Some(gpu) = gpu() else { return };
@@ -67,18 +67,18 @@ fn steps_of_lists_of_points_stay() {
     assert!(mask(gpu, &case, "true") == mask(gpu, &case, "false"));
 }
 
-/// Share of a disk on one side of a line, whose distance from the middle is so much of the radius.
+/// Returns the fraction of a disk on one side of a line, given the line's distance from the centre as a fraction of the radius.
 fn disk_share(distance: f32) -> f32 {
     let d = distance.clamp(-1.0, 1.0);
     ((-d).acos() + d * (1.0 - d * d).sqrt()) / std::f32::consts::PI
 }
 
-/// Where two parts of a light meet in a penumbra, means go on from one into the other.
+/// Means extend across the seam where two parts of a light meet in a penumbra.
 #[test]
 fn means_go_on_where_parts_meet() {
     let Some(gpu) = gpu() else { return };
     let half_plane = Case::half_plane(gpu, LightShape::Sphere { radius_m: 0.5 });
-    // Two faces of the cube about the light meet in the plane z = 0; its axis lies aside, so that the middle's map does not hold both.
+    // Two cube faces meet in the plane z = 0. The axis is tilted so that one map does not cover both.
     let (axis, up) = (Vec3::X, Vec3::new(0.0, -1.0, 1.0).normalize());
     let light = Light { axis, up, ..half_plane.light };
     let case = Case::new(gpu, light, View::new(Vec3::new(0.4, 1.0, 0.9), Vec3::ZERO), half_plane.meshes);

@@ -1,10 +1,10 @@
-//! A mask of which a technique has written every other pixel in both directions, made whole.
+//! Completion of a mask of which a technique has written every other pixel in both directions.
 //!
-//! For any technique: it writes the pixels whose column and row are even, a quarter of them. This block fills in the
+//! Any technique can use it: it writes the pixels with even column and row, a quarter of them. This block fills in the
 //! rest by interpolation within a surface, guided by the receivers' positions and normals (joint bilateral upsampling:
-//! Kopf, Cohen, Lischinski, Uyttendaele 2007). Where the known pixels lie across edges or disagree, it lists the pixel:
-//! the technique runs once more for those alone, side by side wherever they lie in the picture (`missing.wesl`), so that
-//! no thread waits for a neighbour's lookup.
+//! Kopf, Cohen, Lischinski, Uyttendaele 2007). Where the known pixels lie across edges or disagree, it lists the pixel.
+//! The technique runs once more for the listed pixels alone, packed into full workgroups wherever they lie in the image
+//! (`missing.wesl`), so that no thread waits for a neighbour's lookup.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ bindings! {
     }
 }
 
-/// Fills in.
+/// Upsampling pass.
 #[derive(Debug)]
 pub(crate) struct SparseUpsample {
     layout: wgpu::BindGroupLayout,
@@ -32,7 +32,7 @@ pub(crate) struct SparseUpsample {
     lists: Option<Lists>,
 }
 
-/// The pass of one frame.
+/// Upsampling pass of one frame.
 #[derive(Debug)]
 pub(crate) struct PreparedUpsample {
     pipeline: wgpu::ComputePipeline,
@@ -43,15 +43,15 @@ pub(crate) struct PreparedUpsample {
 
 #[derive(Clone, Debug)]
 struct Lists {
-    /// Count and pixels; all lights share it.
+    /// Number of missing pixels and their coordinates; all lights share it.
     missing: Arc<wgpu::Buffer>,
-    /// Workgroups for them.
+    /// Indirect dispatch arguments for the missing pixels.
     dispatch: Arc<wgpu::Buffer>,
     group: wgpu::BindGroup,
 }
 
 impl SparseUpsample {
-    /// From one known pixel to the next, along columns and rows.
+    /// Distance between known pixels, along columns and rows.
     pub(crate) const STRIDE_PX: u32 = 2;
 
     pub(crate) fn new(gpu: &Gpu, inputs: &FrameInputs) -> Self {
@@ -64,7 +64,7 @@ impl SparseUpsample {
         }
     }
 
-    /// Makes room for as many missing pixels as the picture can have. `of_frame` is what `inputs` has made of the frame.
+    /// Allocates lists for as many missing pixels as the image can have. `of_frame` is the result of preparing `inputs` for the frame.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -87,9 +87,9 @@ impl SparseUpsample {
 }
 
 impl PreparedUpsample {
-    /// Fills in the mask of the frame, all but the missing pixels.
+    /// Records the interpolation of the frame's mask, except the missing pixels.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, inputs: &PreparedInputs) {
-        // The count; what lies behind it is written before it is read.
+        // Only the count needs clearing; the entries are written before they are read.
         recorder.clear_buffer(&self.lists.missing);
         recorder.clear_buffer(&self.lists.dispatch);
         recorder.compute("upsample", Span::Only, |pass| {
@@ -100,7 +100,7 @@ impl PreparedUpsample {
         });
     }
 
-    /// Dispatches the pipeline that the pass has set, of 64 threads a workgroup, for the missing pixels, with its group 0.
+    /// Dispatches the current pipeline, of 64 threads per workgroup, for the missing pixels, with its group 0.
     pub(crate) fn dispatch_missing(&self, pass: &mut wgpu::ComputePass<'_>) {
         pass.set_bind_group(0, &self.missing_group, &[]);
         pass.dispatch_workgroups_indirect(&self.lists.dispatch, 0);

@@ -1,4 +1,4 @@
-//! Through the techniques that use it.
+//! Tests through the techniques that use it.
 
 use antumbra_light::LightShape;
 use glam::{Mat4, UVec2, Vec2, Vec3};
@@ -8,9 +8,9 @@ use crate::contract::{Mask, Receivers};
 use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, SIZE, gpu, half_plane_visibility, rmse as rmse_of, run, test_ground};
 
-/// How far a mask may be from that of every pixel: noise is interpolated, too, and neighbours' noise is as unlike as it can be. The
-/// footprint of `essm` ends at what lies beside a pixel, of which those around it know nothing: .0077, where both masks are as far from
-/// the closed form as with footprints that go on beyond (.0070 apart).
+/// Returns the largest allowed difference from the mask of every pixel. Noise is interpolated, too, and neighbours' noise differs as
+/// much as possible. The footprint of `essm` ends at adjacent pixels, which sparse neighbours do not know: .0077, where both masks are
+/// as far from the closed form as with footprints that continue beyond (.0070 apart).
 fn most_of_difference(kind: TechniqueKind) -> f32 {
     match kind {
         TechniqueKind::MultiLayer => 0.0046,
@@ -19,7 +19,7 @@ fn most_of_difference(kind: TechniqueKind) -> f32 {
     }
 }
 
-/// How far an interpolated mask may be from the closed form: two masks of one constant would be near one another, too.
+/// Returns the largest allowed error against the closed form, because two constant masks would agree, too.
 fn most_from_truth(kind: TechniqueKind) -> f32 {
     match kind {
         TechniqueKind::MultiLayer => 0.011,
@@ -27,8 +27,8 @@ fn most_from_truth(kind: TechniqueKind) -> f32 {
     }
 }
 
-/// What a straight line between pixels two apart misses of the closed form at a penumbra's ends, some twelve pixels from one to
-/// the other here.
+/// Error of linear interpolation between pixels two apart at a penumbra's ends, against the closed form; the penumbra is about
+/// twelve pixels wide.
 const MOST_OF_ENDS: f32 = 0.007;
 
 #[test]
@@ -59,18 +59,18 @@ fn known_pixels_stay_and_the_rest_come_near() {
     }
 }
 
-/// A host's picture may be a part of a larger texture, whose pixels beyond it are others: beyond its last known column a pixel has
-/// what the known one has, or was looked up.
+/// An image may be part of a larger texture with unrelated pixels beyond it: a pixel beyond the last known column takes the known
+/// pixel's value or is looked up.
 #[test]
 fn nothing_is_taken_from_beyond_the_picture() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ONE });
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let mut dim = 0;
-    // Whose last columns penumbrae cross.
+    // Widths at which penumbrae cross the last columns.
     for width in [8, 14, 20, 26] {
         let size_px = UVec2::new(width, SIZE.y);
-        // The left part of the camera's picture.
+        // Projection to the left part of the camera's image.
         let part = SIZE.x as f32 / width as f32;
         let crop = Mat4::from_translation((part - 1.0) * Vec3::X) * Mat4::from_scale(Vec3::new(part, 1.0, 1.0));
         let of = |sub: &str| {

@@ -1,11 +1,11 @@
-//! CPU references in double precision. Distributions are lists of (depth, weight).
+//! CPU references in double precision. A distribution is a list of (depth, weight).
 
 use std::f64::consts::PI;
 
-/// A distribution of depths.
+/// Distribution of depths: (depth, weight).
 pub(crate) type Depths<'a> = &'a [(f64, f64)];
 
-/// The mean of what the depths are encoded to.
+/// Mean of the encoded depths.
 fn mean<const N: usize>(depths: Depths<'_>, encode: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     depths.iter().fold([0.0; N], |sum, (z, weight)| {
         let encoded = encode(*z);
@@ -13,7 +13,7 @@ fn mean<const N: usize>(depths: Depths<'_>, encode: impl Fn(f64) -> [f64; N]) ->
     })
 }
 
-/// What a decoded texel says.
+/// Result of decoding a texel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Decoded {
     pub(crate) visibility: f64,
@@ -25,7 +25,7 @@ fn chebyshev(mean: f64, variance: f64, t: f64) -> f64 {
     if beyond <= 0.0 || variance + beyond * beyond == 0.0 { 1.0 } else { variance / (variance + beyond * beyond) }
 }
 
-/// Of depths in [0, 1].
+/// Upper bound on the lit fraction for depths in [0, 1].
 pub(crate) fn bounded(mean: f64, variance: f64, least_variance: f64, t: f64) -> f64 {
     let beyond = t - mean;
     if beyond <= 0.0 {
@@ -55,7 +55,7 @@ fn mean_variance([first, second]: [f64; 2]) -> (f64, f64) {
     (first, (0.25 * (second - u * u)).max(0.0))
 }
 
-/// Half a step of a plane from texel to texel, and eight of the storage's, are standard deviations: their variances add.
+/// Minimum variance: half a plane's step per texel and eight storage steps are deviations whose variances add.
 pub(crate) fn minimum_variance(t_per_texel: [f64; 2], quantum: f64) -> f64 {
     let step = t_per_texel[0].hypot(t_per_texel[1]);
     (0.5 * step).powi(2) + (8.0 * quantum).powi(2)
@@ -67,17 +67,17 @@ pub(crate) fn variance(depths: Depths<'_>, t: f64, least_variance: f64) -> Decod
     Decoded { visibility, blocker_depth: blocker_depth(mean, visibility * t, t, visibility) }
 }
 
-/// Eq. 6 of Lauritzen and McCool 2008 on `[near, far]`, encoded.
+/// Encodes a depth clamped to `[near, far]` by eq. 6 of Lauritzen and McCool 2008.
 pub(crate) fn encode_layered(t: f64, near: f64, far: f64) -> [f64; 2] {
     encode_variance(((t - near) / (far - near)).clamp(0.0, 1.0))
 }
 
-/// Layers without overlap between `splits`, which begin with 0 and end with 1.
+/// Decodes layers without overlap between `splits`, which start with 0 and end with 1.
 pub(crate) fn layered(depths: Depths<'_>, t: f64, splits: &[f64], least_variance: f64) -> Decoded {
     layered_of_step(depths, t, splits, least_variance, 0.0)
 }
 
-/// The same where `quantum` is the storage's step.
+/// Decodes layers with a storage step of `quantum`.
 pub(crate) fn layered_of_step(
     depths: Depths<'_>,
     t: f64,
@@ -103,7 +103,7 @@ pub(crate) fn layered_of_step(
     Decoded { visibility, blocker_depth: blocker_depth(mean_depth, visibility * t, t, visibility) }
 }
 
-/// The visibility of the receiver's layer as published: eq. 3 with the least variance of eq. 7.
+/// Visibility of the receiver's layer as published: eq. 3 with the minimum variance of eq. 7.
 pub(crate) fn layered_as_printed(depths: Depths<'_>, t: f64, splits: &[f64], least_variance: f64, quantum: f64) -> f64 {
     let own = splits.windows(2).rfind(|s| t >= s[0]).unwrap_or(&splits[..2]);
     let width = own[1] - own[0];
@@ -113,7 +113,7 @@ pub(crate) fn layered_as_printed(depths: Depths<'_>, t: f64, splits: &[f64], lea
     chebyshev(mean, variance.max(least), warped_t)
 }
 
-/// Both warps' moments.
+/// Moments of both warps.
 pub(crate) fn encode_exponential_variance(t: f64, c: [f64; 2]) -> [f64; 4] {
     let [a, b] = warp_exponential(t, c);
     [a, a * a, b, b * b]
@@ -124,7 +124,7 @@ fn warp_exponential(t: f64, [positive, negative]: [f64; 2]) -> [f64; 2] {
     [(positive * u).exp(), -(-negative * u).exp()]
 }
 
-/// Two components, then four.
+/// Decodes two components, then four.
 pub(crate) fn exponential_variance(depths: Depths<'_>, t: f64, c: [f64; 2], least_variance: f64) -> [Decoded; 2] {
     let filtered = mean(depths, |z| encode_exponential_variance(z, c));
     let w = warp_exponential(t, c);
@@ -199,7 +199,7 @@ pub(crate) fn quantize_moments(m: [f64; 4]) -> [f64; 4] {
     ]
 }
 
-/// Hamburger's bound, then Hausdorff's.
+/// Decodes by Hamburger's bound, then by Hausdorff's.
 pub(crate) fn moment(depths: Depths<'_>, t: f64, bias: f64) -> [Decoded; 2] {
     let towards = [0.0, 0.375, 0.0, 0.375];
     let m = mean(depths, encode_moments);
@@ -222,7 +222,7 @@ fn apart(difference: f64) -> f64 {
     if difference >= 0.0 { difference.max(1e-6) } else { difference.min(-1e-6) }
 }
 
-/// The roots of det of the Hankel matrix bordered by (1, u, u²) and (1, x, x²), by Cramer's rule.
+/// Roots of the determinant of the Hankel matrix bordered by (1, u, u²) and (1, x, x²), by Cramer's rule.
 fn other_points(m: [f64; 4], u: f64) -> [f64; 2] {
     let b = glam::DMat3::from_cols_array(&[1.0, m[0], m[1], m[0], m[1], m[2], m[1], m[2], m[3]]);
     let c = b.inverse() * glam::DVec3::new(1.0, u, u * u);
@@ -232,7 +232,7 @@ fn other_points(m: [f64; 4], u: f64) -> [f64; 2] {
     [half - root, half + root]
 }
 
-/// Weight and mean of the points in front of `u`; each weight is the mean of its Lagrange polynomial.
+/// Total weight and mean of the points in front of `u`; each weight is the mean of its Lagrange polynomial.
 fn points_in_front(m: [f64; 4], points: &[f64], u: f64) -> (f64, f64) {
     let (mut share, mut sum) = (0.0, 0.0);
     for (i, x) in points.iter().enumerate().filter(|(_, x)| **x < u) {

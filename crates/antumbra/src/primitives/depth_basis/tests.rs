@@ -1,4 +1,4 @@
-//! The CPU references against closed forms and exact comparison, then the shaders against the CPU references.
+//! CPU references against closed forms and exact comparison, then shaders against CPU references.
 
 use antumbra_light::{hash_u32, unit_f32};
 use glam::{Vec2, Vec4};
@@ -8,7 +8,7 @@ use crate::gpu::{Bindings, Gpu, bindings, compute_pipeline, gpu_structs};
 use crate::shaders;
 use crate::testing::{gpu, read_buffer};
 
-/// A bound of the exact answer: the lit weight, and the mean depth of the rest.
+/// Exact lit weight, and mean depth of the blockers.
 fn exact(depths: cpu::Depths<'_>, t: f64) -> (f64, f64) {
     let lit: f64 = depths.iter().filter(|(z, _)| *z >= t).map(|(_, w)| w).sum();
     let blocked: f64 = depths.iter().filter(|(z, _)| *z < t).map(|(z, w)| z * w).sum();
@@ -21,7 +21,7 @@ fn assert_close(what: &str, got: f64, want: f64, tolerance: f64) {
 
 #[test]
 fn one_occluder_over_a_planar_receiver_is_exact_in_every_variance_basis() {
-    // Donnelly and Lauritzen 2006: with two depths, the nearer one before the receiver, Chebyshev's bound is attained.
+    // Donnelly and Lauritzen 2006: with two depths, the nearer one in front of the receiver, Chebyshev's bound is attained.
     for lit in [0.1, 0.25, 0.5, 0.9] {
         let (near, t) = (0.35, 0.8);
         let depths = [(near, 1.0 - lit), (t, lit)];
@@ -40,25 +40,25 @@ fn one_occluder_over_a_planar_receiver_is_exact_in_every_variance_basis() {
 
 #[test]
 fn variance_bleeds_by_equation_4() {
-    // Lauritzen and McCool 2008, eq. 4: depths a, b half each, receiver c.
+    // Lauritzen and McCool 2008, eq. 4: depths a and b with half the weight each, receiver c.
     let (a, b, c) = (0.1, 0.7, 0.8);
     let (dx, dy) = (b - a, c - b);
     let depths = [(a, 0.5), (b, 0.5)];
     let bleeding = 0.25 * dx * dx / (0.5 * dx * dx + dx * dy + dy * dy);
     assert_close("eq. 4", cpu::variance(&depths, c, 0.0).visibility, bleeding, 1e-12);
-    // Eq. 6: a layer that begins between b and c sees one depth, and is exact.
+    // Eq. 6: a layer that starts between b and c contains one depth, and is exact.
     assert_close("a split behind b", cpu::layered(&depths, c, &[0.0, 0.75, 1.0], 0.0).visibility, 0.0, 1e-12);
-    // A split between a and b clamps a, and so lessens the bleeding.
+    // A split between a and b clamps a, and so reduces the bleeding.
     let between = cpu::layered(&depths, c, &[0.0, 0.5, 1.0], 0.0).visibility;
     assert!(between < bleeding && between > 0.0, "{between}");
-    // One layer is the variance basis.
+    // One layer equals the variance basis.
     let one = cpu::layered(&depths, c, &[0.0, 1.0], 1e-5);
     assert_close("one layer", one.visibility, cpu::variance(&depths, c, 1e-5).visibility, 1e-12);
 }
 
-/// Whether a layer by Chebyshev's bound is "at least as good" as one map (section 3.2): in umbrae, where all depths lie before the
-/// receiver, it is. Where a quarter lies behind it, at n = .1, the bound 1 − (a m − (1 − a) n)² / (a m² + (1 − a) n²) rises as the layer
-/// holds what lies m = .4 before the receiver to m = .1.
+/// Checks whether a layer with Chebyshev's bound is "at least as good" as one map (section 3.2). It is in umbrae, where all
+/// depths lie in front of the receiver. If a quarter lies behind it, at n = .1, the bound
+/// 1 − (a m − (1 − a) n)² / (a m² + (1 − a) n²) rises when the layer clamps depths m = .4 in front of the receiver to m = .1.
 #[test]
 fn a_layer_is_as_good_as_one_map_in_umbrae_and_not_where_depths_lie_behind() {
     let bounds = |depths: &[(f64, f64)]| {
@@ -75,19 +75,19 @@ fn a_layer_is_as_good_as_one_map_in_umbrae_and_not_where_depths_lie_behind() {
 
 #[test]
 fn a_layer_knows_that_no_depth_lies_before_it() {
-    // What is nearer than the layer is black, whatever the least variance: Markov's bound of mean 0.
+    // Depths nearer than the layer give black for any minimum variance: Markov's bound of mean 0.
     let clamped = [(0.1, 0.5), (0.3, 0.5)];
     for least_variance in [0.0, 1e-4, 1e-2, 1.0] {
         let dark = cpu::layered(&clamped, 0.7, &[0.0, 0.5, 1.0], least_variance);
         assert_close("held at the near end", dark.visibility, 0.0, 1e-12);
     }
-    // Light on background far behind the receiver is no more than it is; Chebyshev's bound takes it for .1 / (.4)² and more.
+    // Light on background far behind the receiver keeps its exact fraction; Chebyshev's bound gives .1 / (.4)² and more.
     for lit in [0.01, 0.1, 0.3] {
         let depths = [(0.1, 1.0 - lit), (1.0, lit)];
         assert_close("background", cpu::layered(&depths, 0.7, &[0.0, 0.5, 1.0], 1e-6).visibility, lit, 1e-12);
     }
-    // The closed form is the largest share beyond t of all distributions over a fine grid that have the moments: there are
-    // three depths in the extreme ones, so triples are enough.
+    // The closed form is the largest share beyond t of all distributions on a fine grid with these moments. Extreme
+    // distributions have three depths, so triples suffice.
     let grid: Vec<f64> = (0..=40).map(|i| f64::from(i) / 40.0).collect();
     for (mean, second, t) in [(0.2, 0.12, 0.5), (0.3, 0.1, 0.75), (0.05, 0.04, 0.9), (0.5, 0.3, 0.75), (0.1, 0.02, 0.4)]
     {
@@ -95,7 +95,7 @@ fn a_layer_knows_that_no_depth_lies_before_it() {
         for a in &grid {
             for b in grid.iter().filter(|b| *b > a) {
                 for c in grid.iter().filter(|c| *c > b) {
-                    // Weights by Lagrange's polynomials.
+                    // Weights by Lagrange polynomials.
                     let weight = |x: f64, y: f64, z: f64| (second - (y + z) * mean + y * z) / ((x - y) * (x - z));
                     let weights = [(*a, weight(*a, *b, *c)), (*b, weight(*b, *a, *c)), (*c, weight(*c, *a, *b))];
                     if weights.iter().all(|(_, w)| *w >= -1e-9) {
@@ -114,9 +114,9 @@ fn the_least_variance_bears_a_slope_and_its_storage() {
     for (slope, quantum) in [([3e-3, 4e-3], 0.0), ([0.0, 0.0], 1e-4), ([-3e-3, 4e-3], 1e-4)] {
         let least = cpu::minimum_variance(slope, quantum);
         let step = f64::hypot(slope[0], slope[1]);
-        // Half a step between texels and eight of the storage are standard deviations, which are independent.
+        // Half a step between texels and eight storage steps are independent standard deviations.
         assert_close("its root", least.sqrt(), f64::hypot(0.5 * step, 8.0 * quantum), 1e-12);
-        // A receiver that the mean is half a step of the storage before stays lit but for 0.4 %.
+        // A receiver half a storage step behind the mean stays lit except for 0.4 %.
         let lit = cpu::variance(&[(0.5, 1.0)], 0.5 + 0.5 * quantum, least).visibility;
         assert!(quantum == 0.0 || lit >= 1.0 - 0.0039, "{lit} at {slope:?}, {quantum}");
     }
@@ -128,21 +128,21 @@ fn exponential_forms_are_their_definitions() {
     let decoded = cpu::exponential(&depths, 0.8, 20.0);
     assert_close("e^{-c(t-z)}", decoded.visibility, 0.5 * ((-12f64).exp() + (-4f64).exp()), 1e-12);
     assert_close("mean blocker", decoded.blocker_depth, 0.4, 0.005);
-    // Larger exponents take away more bleeding.
+    // Larger exponents reduce bleeding more.
     let bleeding = |c| cpu::exponential_variance(&[(0.1, 0.5), (0.7, 0.5)], 0.8, [c, c], 0.0)[1].visibility;
     assert!(bleeding(20.0) < 0.5 * bleeding(5.0), "{} {}", bleeding(20.0), bleeding(5.0));
 }
 
 #[test]
 fn the_series_is_a_step_of_its_width() {
-    // The series' first maximum lies 1/(2M) behind the step, and is 0.5 + Si(π)/π = 1.0895, clamped.
+    // The first maximum of the series lies 1/(2M) behind the step, and is 0.5 + Si(π)/π = 1.0895, clamped.
     for terms in [4, 16] {
         let width = 0.5 / f64::from(terms);
         assert_close("half at the step", cpu::convolution(&[(0.5, 1.0)], 0.5, terms).visibility, 0.5, 1e-12);
         assert_close("lit", cpu::convolution(&[(0.5, 1.0)], 0.5 - width, terms).visibility, 1.0, 1e-12);
         assert_close("dark", cpu::convolution(&[(0.5, 1.0)], 0.5 + width, terms).visibility, 0.0, 1e-12);
     }
-    // Two depths that straddle the receiver by quarter periods.
+    // Two depths, a quarter period in front of the receiver and behind it.
     let decoded = cpu::convolution(&[(0.25, 0.5), (0.75, 0.5)], 0.5, 64);
     assert_close("half", decoded.visibility, 0.5, 1e-9);
     assert_close("blocker", decoded.blocker_depth, 0.25, 0.01);
@@ -177,7 +177,7 @@ fn bounds_bound_from_above() {
             );
             assert!((0.0..=t).contains(&decoded.blocker_depth), "basis {k}: {decoded:?}");
         }
-        // Known limits of depth only tighten the bound.
+        // Known limits of depth can only tighten the bound.
         assert!(moments[1].visibility <= moments[0].visibility + 1e-4, "{moments:?}");
     }
 }
@@ -207,7 +207,7 @@ fn random_depths(seed: u32) -> [(f64, f64); 4] {
 }
 
 gpu_structs! {
-    /// One case of the shader `probe`.
+    /// Test case of the shader `probe`.
     pub(crate) struct ProbeInput {
         z: Vec4,
         weights: Vec4,
@@ -225,7 +225,7 @@ gpu_structs! {
     }
 }
 
-/// What the CPU references say of a case, in the shader's order.
+/// Results of the CPU references for a test case, in the shader's order.
 fn twins(input: &ProbeInput) -> [Decoded; 8] {
     let depths: Vec<(f64, f64)> = (0..4).map(|i| (f64::from(input.z[i]), f64::from(input.weights[i]))).collect();
     let t = f64::from(input.t);
@@ -268,8 +268,8 @@ fn shaders_equal_their_twins() {
         })
         .collect();
     let outputs = run_probe(gpu, &inputs);
-    // (tolerance of visibility, of blocker depth where more than a twentieth is blocked). Moments are ill-conditioned:
-    // the tolerances are what single precision leaves of them.
+    // (tolerance of visibility, of blocker depth if more than a twentieth is blocked). Moments are ill-conditioned: their
+    // tolerances allow for single precision.
     let tolerances = [
         (2e-4, 2e-4),
         (2e-4, 2e-4),
@@ -287,7 +287,7 @@ fn shaders_equal_their_twins() {
             let visibility = (f64::from(got[0]) - want.visibility).abs();
             let depth = (f64::from(got[1]) - want.blocker_depth).abs();
             worst[k].0 = worst[k].0.max(visibility);
-            // Where all is lit nothing blocks: at the receiver's own depth.
+            // If everything is lit, the blocker depth is the receiver's own.
             let all_lit = want.visibility == 1.0 && got[0] == 1.0;
             if want.visibility < 0.95 || all_lit {
                 worst[k].1 = worst[k].1.max(depth);

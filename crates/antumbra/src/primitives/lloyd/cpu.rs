@@ -2,7 +2,7 @@
 
 use super::{BIN_COUNT, Relaxation, Teleport};
 
-/// Moves `means` and gives the places of the splits. `moved_first` goes round from call to call.
+/// Updates `means` and returns the targets of the splits. `moved_first` advances from call to call.
 pub(crate) fn relax(histogram: &[u32], means: &mut [f64], moved_first: u32, how: &Relaxation) -> Vec<f64> {
     let count = means.len();
     let value = |bin: usize| (bin as f64 + 0.5) / f64::from(BIN_COUNT);

@@ -1,15 +1,15 @@
-//! Lloyd's relaxation in one dimension: means of the clusters of a weighted histogram, kept on the GPU from frame to frame.
+//! Lloyd's relaxation in one dimension: means of the clusters of a weighted histogram, retained on the GPU between frames.
 //!
-//! Stuart Lloyd 1982; as Lauritzen & McCool 2008, section 4, use it, but on a histogram: a cluster's weighted mean comes
-//! from sums of bins instead of a mip pyramid of samples, so that an iteration costs the same for one mean or all, whatever
-//! the number of samples; and integers add up to the same in any order, so that every adapter finds the same means.
+//! Stuart Lloyd 1982; as Lauritzen & McCool 2008, section 4, use it, but on a histogram. A cluster's weighted mean comes from
+//! sums of bins instead of a mip pyramid of samples, so the cost of an iteration does not depend on the number of means or
+//! samples. Integers have the same sum in any order, so every adapter finds the same means.
 //!
 //! After each iteration a mean may *teleport*: the cluster whose merging with a neighbour adds the least inertia (weight ×
-//! variance) is merged, and the one with the most inertia is split at one deviation to both sides, where that pays twice.
-//! The paper teleports clusters without weight, which are but the cheapest to merge, and splits the heaviest
-//! ([`Teleport::Weight`]).
+//! variance) is merged, and the one with the most inertia is split at one standard deviation to both sides, if the gain is more
+//! than twice the cost. The paper instead teleports clusters without weight, which are the cheapest to merge, and splits the
+//! heaviest ([`Teleport::Weight`]).
 //!
-//! Means may jump; splits glide after them, a part of the way in each frame, so that nothing pops where the scene moves.
+//! Means may jump. Splits follow gradually, a fraction of the way per frame, to avoid popping in moving scenes.
 
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, bindings, compute_entry, create_uniform, gpu_structs, write_uniform,
@@ -21,21 +21,21 @@ mod cpu;
 #[cfg(test)]
 mod tests;
 
-/// Bins of the histogram, evenly over [0, 1].
+/// Number of bins of the histogram, which cover [0, 1] evenly.
 pub(crate) const BIN_COUNT: u32 = 4096;
 
-/// The most means.
+/// Maximum number of means.
 pub(crate) const MAX_MEANS: usize = 15;
 
-/// Iterations of the first frame, which has no picture before it to be like: enough to converge.
+/// Iterations of the first frame, which has no earlier frame to be consistent with: enough to converge.
 const FIRST_ITERATIONS: u32 = 32;
 
-/// The part of the way to their places that splits go in a frame: what is left after [`GLIDE_FRAMES`] is less than a bin.
+/// Fraction of the remaining distance that splits move per frame; after [`GLIDE_FRAMES`] less than a bin remains.
 const GLIDE: f32 = 0.25;
 const GLIDE_FRAMES: u32 = 30;
 
 gpu_structs! {
-    /// What an update does.
+    /// Parameters of an update.
     pub(crate) struct LloydUniform {
         cluster_count: u32,
         iterations: u32,
@@ -57,32 +57,32 @@ bindings! {
     }
 }
 
-/// How to relax.
+/// Parameters of the relaxation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Relaxation {
-    /// Iterations of an update.
+    /// Iterations per update.
     pub(crate) iterations: u32,
-    /// Means that move in each iteration, in turns.
+    /// Number of means that move in each iteration, in turn.
     pub(crate) moved_count: u32,
-    /// Added to each mean to give its split.
+    /// Offset of each split from its mean.
     pub(crate) shift: f32,
-    /// Splits lie no closer to each other and to the ends.
+    /// Minimum distance of splits from each other and from the ends.
     pub(crate) least_gap: f32,
-    /// Which clusters merge, and which is split.
+    /// Choice of the clusters to merge and to split.
     pub(crate) teleport: Teleport,
 }
 
-/// Which clusters merge, and which is split for it.
+/// Choice of the clusters to merge and to split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Teleport {
-    /// The one that adds the least inertia, and the one that has the most, where that pays.
+    /// Merges the cluster that adds the least inertia, and splits the one with the most, if that pays.
     #[default]
     Inertia,
-    /// One without weight, and the one of the largest, as Lauritzen and McCool print it, section 5.
+    /// Merges a cluster without weight, and splits the heaviest, as published by Lauritzen and McCool, section 5.
     Weight,
 }
 
-/// The means and their pass.
+/// Means on the GPU and the pass that updates them.
 #[derive(Debug)]
 pub(crate) struct Lloyd {
     layout: wgpu::BindGroupLayout,
@@ -91,12 +91,12 @@ pub(crate) struct Lloyd {
     histogram: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
     splits: wgpu::Buffer,
-    /// Number of means of the last prepared frame; none before the first.
+    /// Number of means of the last prepared frame; `None` if the next one starts anew.
     cluster_count: Option<u32>,
     moved_first: u32,
-    /// Updates since the one that began.
+    /// Number of updates since the one that started anew.
     begun_before: u32,
-    /// Updates until means that begin anywhere have converged.
+    /// Number of updates after which means converge from any start.
     converge_in: u32,
 }
 
@@ -136,18 +136,18 @@ impl Lloyd {
         }
     }
 
-    /// The histogram: [`BIN_COUNT`] weights that sum to less than 2³², for the user to fill between
-    /// [`Self::record_clear`] and [`Self::record`].
+    /// Histogram: [`BIN_COUNT`] weights whose sum is less than 2³². The caller fills it between [`Self::record_clear`] and
+    /// [`Self::record`].
     pub(crate) fn histogram(&self) -> &wgpu::Buffer {
         &self.histogram
     }
 
-    /// The splits: up to [`MAX_MEANS`] floats in ascending order.
+    /// Splits: up to [`MAX_MEANS`] floats in ascending order.
     pub(crate) fn splits(&self) -> &wgpu::Buffer {
         &self.splits
     }
 
-    /// Sets splits by hand; the next [`Self::prepare`] begins anew.
+    /// Sets the splits explicitly; the next [`Self::prepare`] starts anew.
     pub(crate) fn set(&mut self, stage: &Stage<'_>, splits: &[f32]) {
         self.cluster_count = None;
         if !splits.is_empty() {
@@ -155,8 +155,8 @@ impl Lloyd {
         }
     }
 
-    /// Uploads the next update of `cluster_count` means, 1 to [`MAX_MEANS`]. Where their number changes, they begin evenly
-    /// spread and converge at once.
+    /// Uploads the next update of `cluster_count` means, 1 to [`MAX_MEANS`]. If their number changes, they start evenly spread
+    /// and converge in this update.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, cluster_count: u32, how: &Relaxation) {
         if self.pipeline.0 != how.teleport {
             self.pipeline = (how.teleport, pipeline_of(stage, &self.layout, how.teleport));
@@ -180,8 +180,8 @@ impl Lloyd {
         self.write(stage, &uniform);
     }
 
-    /// Whether splits stay where they are once the same histogram was given so many times after the first: where that one began
-    /// they converged at once.
+    /// Whether the splits no longer move after `times` repetitions of the same histogram. They converge at once if its first
+    /// update started anew.
     pub(crate) fn is_settled(&self, times: u32) -> bool {
         times >= self.begun_before.min(self.converge_in + GLIDE_FRAMES)
     }
@@ -192,12 +192,12 @@ impl Lloyd {
         self.moved_first = (uniform.moved_first + uniform.iterations * uniform.moved_count) % uniform.cluster_count;
     }
 
-    /// Empties the histogram.
+    /// Clears the histogram.
     pub(crate) fn record_clear(&self, recorder: &mut Recorder<'_>) {
         recorder.clear_buffer(&self.histogram);
     }
 
-    /// Moves the means, writes the splits.
+    /// Updates the means and writes the splits.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str, span: Span) {
         recorder.compute(label, span, |pass| {
             pass.set_pipeline(&self.pipeline.1);
@@ -206,7 +206,7 @@ impl Lloyd {
         });
     }
 
-    /// Bytes of histogram, means and splits.
+    /// Memory of histogram, means and splits, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.histogram.size() + 2 * self.splits.size()
     }

@@ -1,4 +1,4 @@
-//! The CPU reference on clusters that are known, then the GPU against the CPU reference.
+//! CPU reference on known clusters, then GPU against CPU reference.
 
 use antumbra_light::{hash_u32, unit_f32};
 
@@ -9,7 +9,7 @@ use crate::testing::{gpu, read_buffer};
 const PLAIN: Relaxation =
     Relaxation { iterations: 30, moved_count: 15, shift: 0.0, least_gap: 0.01, teleport: Teleport::Inertia };
 
-/// Bumps of the given middles and weights, a hundredth wide.
+/// Histogram of bumps with the given centres and weights, a hundredth wide.
 fn bumps(middles: &[(f64, u32)]) -> Vec<u32> {
     let mut histogram = vec![0; BIN_COUNT as usize];
     for (middle, weight) in middles {
@@ -27,19 +27,19 @@ fn evenly(count: usize) -> Vec<f64> {
 
 #[test]
 fn twin_finds_what_is_there_within_thirty_iterations() {
-    // All in the lower quarter: even starts leave two means without weight, which must teleport.
+    // All lie in the lower quarter: even starts leave two means without weight, which must teleport.
     let middles = [(0.05, 10), (0.12, 3), (0.2, 40)];
     let mut means = evenly(3);
     let splits = cpu::relax(&bumps(&middles), &mut means, 0, &PLAIN);
     for (split, (middle, _)) in splits.iter().zip(middles) {
         assert!((split - middle).abs() < 0.002, "{splits:?}");
     }
-    // By weight none stays without any, but two share the heaviest bump, and one stands for the others.
+    // By weight no mean stays without weight, but two share the heaviest bump, and one represents the others.
     let mut means = evenly(3);
     let by_weight = Relaxation { teleport: Teleport::Weight, ..PLAIN };
     let splits = cpu::relax(&bumps(&middles), &mut means, 0, &by_weight);
     assert!(splits.iter().all(|split| (0.04..0.22).contains(split)) && splits[2] - splits[1] < 0.02, "{splits:?}");
-    // Two at a time gets there too.
+    // Moving two at a time converges, too.
     let mut means = evenly(3);
     let two = cpu::relax(&bumps(&middles), &mut means, 0, &Relaxation { moved_count: 2, ..PLAIN });
     assert!((two[1] - 0.12).abs() < 0.002, "{two:?}");
@@ -59,7 +59,7 @@ fn run(gpu: &Gpu, lloyd: &mut Lloyd, histogram: &[u32], uniform: &LloydUniform) 
     read_splits(gpu, lloyd, histogram, uniform.cluster_count)
 }
 
-/// The splits after the prepared update.
+/// Returns the splits after the prepared update.
 fn read_splits(gpu: &Gpu, lloyd: &Lloyd, histogram: &[u32], count: u32) -> Vec<f32> {
     gpu.queue.write_buffer(&lloyd.histogram, 0, bytemuck::cast_slice(histogram));
     let bytes = 4 * MAX_MEANS as u64;
@@ -126,7 +126,7 @@ fn splits_glide_to_their_places_within_thirty_frames() {
     let mut before = frame(&mut lloyd, &left);
     for i in 0..30 {
         let now = frame(&mut lloyd, &right);
-        // From .1, .2, .3 to .6, .7, .95: no split goes farther than a quarter of the way at once.
+        // From .1, .2, .3 to .6, .7, .95: no split moves more than a quarter of the way per frame.
         for (before, now) in before.iter().zip(&now) {
             assert!((now - before).abs() < 0.25 * 0.66, "frame {i}: {before} to {now}");
         }

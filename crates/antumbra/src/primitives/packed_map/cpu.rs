@@ -1,10 +1,10 @@
-//! CPU references; filters are of one channel.
+//! CPU references; filters have one channel.
 
 use glam::UVec2;
 
 use super::{Kernel, Packing};
 
-/// The channels of a word; those beyond its count are 0.
+/// Channels of a word; those beyond its number of channels are 0.
 pub(crate) fn unpack_word(word: u32, packing: Packing) -> [f32; 4] {
     let half = |bits: u32| {
         let (exponent, mantissa) = ((bits >> 10) & 0x1f, bits & 0x3ff);
@@ -20,7 +20,7 @@ pub(crate) fn unpack_word(word: u32, packing: Packing) -> [f32; 4] {
     }
 }
 
-/// Both directions, edges repeated.
+/// Blurs in both directions, with edges repeated.
 pub(crate) fn blur(map: &[f32], size: UVec2, kernel: &Kernel) -> Vec<f32> {
     let line = |from: &[f32], at: &dyn Fn(i32, i32, i32) -> (i32, i32)| -> Vec<f32> {
         (0..size.y as i32)
@@ -39,7 +39,7 @@ pub(crate) fn blur(map: &[f32], size: UVec2, kernel: &Kernel) -> Vec<f32> {
     line(&rows, &|x, y, k| (x, y + k))
 }
 
-/// One level from the one before.
+/// Computes a level from the previous one.
 pub(crate) fn halve(map: &[f32], size: UVec2) -> (Vec<f32>, UVec2) {
     let half = (size / 2).max(UVec2::ONE);
     let overlap = |n: u32, h: u32, to: u32, from: u32| {

@@ -1,6 +1,6 @@
 //! Kernels of separable blurs.
 
-/// A symmetric kernel of unit sum.
+/// Symmetric kernel with unit sum.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Kernel {
     /// `2 · radius + 1` weights.
@@ -8,15 +8,15 @@ pub(crate) struct Kernel {
 }
 
 impl Kernel {
-    /// The box of `width` texels; its outermost texels count for the part that it covers.
+    /// Box of `width` texels; its outermost texels are weighted by the part that it covers.
     pub(crate) fn boxed(width: f32) -> Self {
         let half = f64::from(0.5 * width.max(1.0));
         let radius = (half - 0.5).ceil().max(0.0) as i32;
         Self::of(radius, |i| (half - (f64::from(i.abs()) - 0.5)).clamp(0.0, 1.0))
     }
 
-    /// The Gaussian with the standard deviation of a box of `width` texels, cut at three of them: the integral over each
-    /// texel.
+    /// Gaussian with the standard deviation of a box of `width` texels, cut off at three standard deviations and
+    /// integrated over each texel.
     pub(crate) fn gaussian(width: f32) -> Self {
         if width <= 1.0 {
             return Self::boxed(1.0);
@@ -37,7 +37,7 @@ impl Kernel {
         Self { weights: weights.into_iter().map(|w| (w / sum) as f32).collect() }
     }
 
-    /// The weights, then their running sums from 0 before the first to 1 at the last.
+    /// Weights, then their running sums from 0 before the first to 1 at the last.
     pub(super) fn with_running_sums(&self) -> Vec<f32> {
         let mut sum = 0.0;
         let sums = self.weights.iter().map(|weight| {
@@ -47,7 +47,7 @@ impl Kernel {
         self.weights.iter().copied().chain([0.0]).chain(sums).collect()
     }
 
-    /// Texels to each side of the centre.
+    /// Number of texels on each side of the centre.
     pub(crate) fn radius(&self) -> u32 {
         self.weights.len() as u32 / 2
     }

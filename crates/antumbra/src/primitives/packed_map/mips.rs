@@ -1,5 +1,5 @@
-//! Levels of a packed map after its first, and what makes them. They lie side by side in one texture, so that a shader can gather
-//! texels of any of them: a gather has no level. The CPU reference of `levels.wesl`.
+//! Levels of a packed map after its first, and their computation. They lie side by side in one texture, so that a shader can
+//! gather texels of any level, because a gather has no level argument. Includes the CPU reference of `levels.wesl`.
 
 use glam::UVec2;
 
@@ -36,31 +36,31 @@ pub(super) fn mips_size(map_size: UVec2) -> UVec2 {
     UVec2::new((map_size.x >> 1) + (map_size.x >> 2), map_size.y >> 1)
 }
 
-/// Levels down to that whose shorter side is one texel.
+/// Number of levels down to the one whose shorter side is one texel.
 pub(super) fn full_level_count(map_size: UVec2) -> u32 {
     map_size.min_element().ilog2() + 1
 }
 
-/// A dispatch that makes levels from the one before them.
+/// Dispatch that computes levels from the previous one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MipStep {
-    /// Level that is read, counted from 0.
+    /// Source level, counted from 0.
     pub(super) before: u32,
-    /// How many levels after it are made: 1 of a level of any size, more where its sides are multiples of 2 for each.
+    /// Number of levels after it to compute: 1 at any size, more if the sides are divisible by 2 once per level.
     pub(super) count: u32,
 }
 
 impl MipStep {
-    /// The most levels of one dispatch.
+    /// Maximum number of levels per dispatch.
     const MOST: u32 = 6;
 
-    /// Whether every texel is the mean of 2 × 2.
+    /// Whether every texel of the next level is the mean of 2 × 2.
     fn is_even(self, map_size: UVec2) -> bool {
         level_size(map_size, self.before) % 2 == UVec2::ZERO
     }
 }
 
-/// The dispatches that make all levels after the first.
+/// Dispatches that compute all levels after the first.
 pub(super) fn mip_steps(map_size: UVec2, level_count: u32) -> impl Iterator<Item = MipStep> {
     let mut before = 0;
     std::iter::from_fn(move || {
@@ -73,7 +73,7 @@ pub(super) fn mip_steps(map_size: UVec2, level_count: u32) -> impl Iterator<Item
     })
 }
 
-/// The pipelines for one packing.
+/// Pipelines for one packing.
 #[derive(Clone, Debug)]
 pub(super) struct MipPipelines {
     halve: wgpu::ComputePipeline,
@@ -95,7 +95,7 @@ impl MipPipelines {
     }
 }
 
-/// The levels of one map.
+/// Further levels of one map.
 #[derive(Debug)]
 pub(super) struct Mips {
     map_size: UVec2,
@@ -106,7 +106,7 @@ pub(super) struct Mips {
 }
 
 impl Mips {
-    /// Allocates `level_count` levels less one, which are made from `first`.
+    /// Allocates `level_count` − 1 levels, computed from `first`.
     pub(super) fn new(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
@@ -134,14 +134,14 @@ impl Mips {
         &self.view
     }
 
-    /// Uploads what each dispatch makes.
+    /// Uploads the parameters of each dispatch.
     pub(super) fn upload(&self, stage: &Stage<'_>) {
         for (MipStep { before, count }, uniform, _) in &self.steps {
             write_uniform(stage, uniform, &MipsUniform { map_size: self.map_size, before: *before, count: *count });
         }
     }
 
-    /// Makes the levels.
+    /// Computes the levels.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, pipelines: &MipPipelines) {
         for (i, (step, _, group)) in self.steps.iter().enumerate() {
             let (pipeline, tile) = match step.is_even(self.map_size) {

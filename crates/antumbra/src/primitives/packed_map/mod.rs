@@ -1,8 +1,8 @@
-//! Maps whose texels hold several channels, packed into 32-bit words: a texture array of `R32Uint`, a layer for each word.
-//! They are blurred by a separable kernel and have a mip chain, whose further levels are a second texture (`mips`). Filtering is linear
-//! in the channels, whatever the technique stores in them.
+//! Maps with several channels per texel, packed into 32-bit words: a texture array of `R32Uint`, with one layer per word. They
+//! are blurred by a separable kernel and have a mip chain, whose further levels are in a second texture (`mips`). Filtering is
+//! linear in the channels, for any content.
 //!
-//! A reader of some channels reads the words that hold them and no others.
+//! A shader that needs some channels reads only the words that contain them.
 
 use std::sync::Arc;
 
@@ -25,26 +25,26 @@ mod tests;
 pub(crate) use kernel::Kernel;
 use mips::{MipPipelines, Mips, full_level_count, level_origin, level_size};
 
-/// How channels are stored. The numbers are those of `primitives/packing.wesl`.
+/// Storage format of channels. The numbers are those of `primitives/packing.wesl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Packing {
-    /// One 32-bit float a word.
+    /// One 32-bit float per word.
     Float32 = 0,
-    /// Two 16-bit floats a word.
+    /// Two 16-bit floats per word.
     Float16 = 1,
-    /// Two 16-bit fractions of [0, 1] a word.
+    /// Two 16-bit fractions of [0, 1] per word.
     Unorm16 = 2,
-    /// Four 8-bit fractions of [0, 1] a word.
+    /// Four 8-bit fractions of [0, 1] per word.
     Unorm8 = 3,
 }
 
 impl Packing {
-    /// The constant of every pipeline that packs or unpacks words.
+    /// Overridable constants of every pipeline that packs or unpacks words.
     fn constants(self) -> [(&'static str, f64); 1] {
         [("PACKING", f64::from(self as u32))]
     }
 
-    /// Channels in a word.
+    /// Number of channels per word.
     pub(crate) fn channels(self) -> u32 {
         match self {
             Self::Float32 => 1,
@@ -53,7 +53,7 @@ impl Packing {
         }
     }
 
-    /// A word all of whose channels are 1.
+    /// Word whose channels are all 1.
     pub(crate) fn word_of_ones(self) -> u32 {
         match self {
             Self::Float32 => 1.0f32.to_bits(),
@@ -62,8 +62,8 @@ impl Packing {
         }
     }
 
-    /// The largest error that storing and filtering leave in a value of [0, 1]. In 32-bit floats the sums of filters
-    /// round, not the storage: sixteen units in the last place.
+    /// Largest error of a value in [0, 1] after storage and filtering. For 32-bit floats it comes from the filters' sums, not
+    /// from storage: sixteen units in the last place.
     pub(crate) fn step(self) -> f32 {
         match self {
             Self::Float32 => 1.0 / (1 << 20) as f32,
@@ -75,14 +75,14 @@ impl Packing {
 }
 
 gpu_structs! {
-    /// One direction of a blur.
+    /// Parameters of one direction of a blur.
     pub(crate) struct BlurUniform {
         direction: IVec2,
         radius: i32,
         padding: u32,
     }
 
-    /// Levels that one dispatch makes.
+    /// Source level, and number of levels that one dispatch computes.
     pub(crate) struct MipsUniform {
         map_size: UVec2,
         before: u32,
@@ -99,30 +99,30 @@ bindings! {
     }
 }
 
-/// What a map is allocated for.
+/// Allocation key of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Shape {
     size: UVec2,
     words: u32,
     level_count: u32,
     blurred: bool,
-    /// Whether passes that draw write it.
+    /// Whether render passes write the map.
     drawn: bool,
 }
 
 #[derive(Debug)]
 struct Maps {
     shape: Shape,
-    /// The first level of every word.
+    /// First level of every word.
     texture: wgpu::Texture,
     first: wgpu::TextureView,
-    /// Rows, then columns; none without a blur.
+    /// Bind groups of the blur: rows, then columns; empty without a blur.
     blurs: Vec<wgpu::BindGroup>,
-    /// What rows write and columns read, shared by all maps of the size, is kept for as long as it is bound.
+    /// Texture between the two directions of the blur, shared by all maps of the size; held while it is bound.
     _rows: Option<Arc<wgpu::Texture>>,
-    /// None of a map of one level.
+    /// Further levels; `None` if the map has only one.
     mips: Option<Mips>,
-    /// Of the first level of each word, where passes that draw write it.
+    /// Views of the first level, one per word; empty unless render passes write the map.
     drawn: Vec<wgpu::TextureView>,
 }
 
@@ -132,12 +132,12 @@ struct Pipelines {
     mips: MipPipelines,
 }
 
-/// A map, its blur and its mips.
+/// Packed map, with its blur and its mips.
 #[derive(Debug)]
 pub(crate) struct PackedMap {
     blur_layout: wgpu::BindGroupLayout,
     mips_layout: wgpu::BindGroupLayout,
-    /// For the packing that is prepared.
+    /// Pipelines of the last prepared packing.
     pipelines: Cached<Packing, Pipelines>,
     rows: wgpu::Buffer,
     columns: wgpu::Buffer,
@@ -146,7 +146,7 @@ pub(crate) struct PackedMap {
     maps: Option<Arc<Maps>>,
 }
 
-/// A map of one frame, its blur and its mips.
+/// Packed map of one frame, with its blur and its mips.
 #[derive(Debug)]
 pub(crate) struct PreparedPackedMap {
     maps: Arc<Maps>,
@@ -164,11 +164,11 @@ impl Pipelines {
     }
 }
 
-/// Texels along each side of what a workgroup of the blur makes.
+/// Side of the texels that a workgroup of the blur computes, texels.
 const BLUR_TILE: u32 = 16;
 
 impl PackedMap {
-    /// The texture's format.
+    /// Format of the texture.
     pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
     pub(crate) fn new(gpu: &Gpu) -> Self {
@@ -184,12 +184,12 @@ impl PackedMap {
         }
     }
 
-    /// Sets whether passes that draw write the map that is prepared next.
+    /// Sets whether render passes write the next prepared map.
     pub(crate) fn set_drawn(&mut self, is_drawn: bool) {
         self.is_drawn = is_drawn;
     }
 
-    /// Allocates a map of `words` words a texel, and its passes.
+    /// Allocates a map with `words` words per texel, and prepares its passes.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -247,7 +247,7 @@ impl PackedMap {
         }
     }
 
-    /// Each level's first word alone, for whoever wants to look at it.
+    /// Views of the first word of each level, for display.
     pub(crate) fn drawn(&self) -> Vec<MapLevel> {
         let (Some(maps), Some((packing, _))) = (&self.maps, self.pipelines.pair()) else { return Vec::new() };
         let first_word = |texture: &wgpu::Texture| {
@@ -271,14 +271,14 @@ impl PackedMap {
         (0..maps.shape.level_count).map(level).collect()
     }
 
-    /// Bytes of the map with its levels; what rows of its blur are written to is shared by all maps.
+    /// Memory of the map with its levels, bytes; the texture between the blur's directions is shared by all maps.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.maps.as_ref().map_or(0, |maps| {
             texture_bytes(&maps.texture) + maps.mips.as_ref().map_or(0, |mips| texture_bytes(mips.texture()))
         })
     }
 
-    /// The first level's texture, for tests.
+    /// Texture of the first level, for tests.
     #[cfg(test)]
     pub(crate) fn texture(&self) -> &wgpu::Texture {
         &self.maps.as_ref().expect("a map was prepared").texture
@@ -286,37 +286,37 @@ impl PackedMap {
 }
 
 impl PreparedPackedMap {
-    /// The first level of each word, for drawing, where passes that draw write the map.
+    /// Views of the first level, one per word, for drawing; empty unless render passes write the map.
     pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
         &self.maps.drawn
     }
 
-    /// The first level of every word.
+    /// View of the first level of every word.
     pub(crate) fn first(&self) -> &wgpu::TextureView {
         &self.maps.first
     }
 
-    /// The further levels of every word, side by side (`levels.wesl`); of a map of one level something else, which is not read.
+    /// View of the further levels of every word, side by side (`levels.wesl`); a placeholder if there is only one level.
     pub(crate) fn mips(&self) -> &wgpu::TextureView {
         self.maps.mips.as_ref().map_or(&self.maps.first, Mips::view)
     }
 
-    /// How many levels there are.
+    /// Number of levels.
     pub(crate) fn level_count(&self) -> u32 {
         self.maps.shape.level_count
     }
 
-    /// The kernel's weights, and their running sums.
+    /// Weights of the kernel, and their running sums.
     pub(crate) fn weights(&self) -> &wgpu::Buffer {
         &self.weights
     }
 
-    /// Blurs the first level, where the kernel has a width, and makes the further levels, where there are any.
+    /// Blurs the first level if the kernel is wider than a texel, and computes further levels, if any.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let Self { maps, pipelines, .. } = self;
         let Shape { size, words, .. } = maps.shape;
-        // A pass for each dispatch, here and for mips: within one, wgpu 30 lost the layouts of a texture array's levels, as the
-        // validation layers saw it. Whether it loses those of layers, of which the textures consist now, is not known.
+        // Each dispatch, also for mips, has its own pass: within one pass, wgpu 30 lost the layouts of a texture array's
+        // levels, according to the validation layers. Whether it loses those of layers, which these textures have, is unknown.
         for (i, group) in maps.blurs.iter().enumerate() {
             recorder.compute_apart("blur", Span::of(i, maps.blurs.len()), |pass| {
                 pass.set_pipeline(&pipelines.blur);
@@ -330,7 +330,7 @@ impl PreparedPackedMap {
     }
 }
 
-/// The texture of a map's first level, of its further ones, or of what lies between the directions of its blur.
+/// Descriptor of the texture of a map's first level, of its further levels, or between the two directions of its blur.
 fn descriptor(label: &str, size: UVec2, words: u32, is_drawn: bool) -> wgpu::TextureDescriptor<'_> {
     wgpu::TextureDescriptor {
         label: Some(label),

@@ -1,4 +1,4 @@
-//! The CPU references against closed forms, then the GPU against the CPU references.
+//! CPU references against closed forms, then GPU against CPU references.
 
 use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
@@ -22,7 +22,7 @@ fn kernels_have_unit_sum_and_the_deviation_that_they_say() {
             let radius = kernel.radius() as f64;
             let variance: f64 =
                 kernel.weights.iter().enumerate().map(|(i, w)| f64::from(*w) * (i as f64 - radius).powi(2)).sum();
-            // Texels are points to the kernel, and the outermost of a box count as if their part lay in their middle.
+            // The kernel treats texels as points: a box's partly covered outermost texels count at their centres.
             let want = (f64::from(width).powi(2) - 1.0) / 12.0;
             assert!((variance - want).abs() < 0.03 * want + 0.25, "{width}: {variance}, want {want}");
         }
@@ -37,7 +37,7 @@ fn twins_keep_means_and_planes() {
     let size = UVec2::new(21, 17);
     let plane: Vec<f32> = (0..size.x * size.y).map(|i| (i % 21) as f32 * 0.02 + (i / 21) as f32 * 0.01).collect();
     let blurred = cpu::blur(&plane, size, &Kernel::gaussian(5.0));
-    // In the middle, out of reach of the edges.
+    // In the middle, beyond the kernel's distance from the edges.
     assert!((blurred[8 * 21 + 10] - plane[8 * 21 + 10]).abs() < 1e-6);
     let (half, half_size) = cpu::halve(&plane, size);
     assert_eq!(half_size, UVec2::new(10, 8));
@@ -93,7 +93,7 @@ fn gpu_equals_twins_over_a_ladder_of_sizes() {
         let (map, words) = (random_map(size), 2);
         let mut packed = PackedMap::new(gpu);
         let prepared = packed.prepare(&Stage::at_once(gpu), size, words, packing, kernel, true);
-        // The first channel of the second word; all else stays 0.
+        // Fill the first channel of the second word; everything else stays 0.
         let bits: Vec<u32> = map.iter().map(|v| pack(*v, packing)).collect();
         gpu.queue().write_texture(
             wgpu::TexelCopyTextureInfo {
@@ -126,7 +126,7 @@ fn gpu_equals_twins_over_a_ladder_of_sizes() {
     }
 }
 
-/// The second word of a level.
+/// Reads the second word of a level.
 fn read_level(gpu: &crate::Gpu, level: &MapLevel) -> Vec<u32> {
     let UVec2 { x, y } = level.origin_px;
     let source =
@@ -137,7 +137,7 @@ fn read_level(gpu: &crate::Gpu, level: &MapLevel) -> Vec<u32> {
 fn pack(value: f32, packing: Packing) -> u32 {
     match packing {
         Packing::Float32 => value.to_bits(),
-        // Exact for the multiples of 2⁻¹⁰ in [0, 1) that this makes: sign 0, exponent by hand.
+        // Exact for the multiples of 2⁻¹⁰ in [0, 1) that are generated here: sign 0, exponent by hand.
         Packing::Float16 => half_bits((value * 1024.0).floor() / 1024.0),
         Packing::Unorm16 => (value * 65535.0).round() as u32,
         Packing::Unorm8 => (value * 255.0).round() as u32,

@@ -1,8 +1,8 @@
-//! Exclusive prefix sums of `u32`, in place: what turns counts into places to store.
+//! Exclusive prefix sums of `u32`, in place, for example to turn counts into storage offsets.
 //!
-//! Blocks of 2048 items are summed on their own, their sums likewise, until one sum is left, the total; on the way back
-//! each block gains what lies before it (Blelloch 1990, CMU-CS-90-190, section 1.3). Every item is read and written
-//! twice. Sums wrap as `u32` does: count before you trust.
+//! Blocks of 2048 items are scanned separately, then their sums likewise, until one sum is left, the total. On the way
+//! back each block adds the sum of the blocks before it (Blelloch 1990, CMU-CS-90-190, section 1.3). Every item is read
+//! and written twice. Sums wrap as `u32` does, so callers must bound the total.
 
 use std::num::NonZeroU64;
 
@@ -15,20 +15,20 @@ mod cpu;
 mod tests;
 
 shared_constants! {
-    /// Items that one workgroup sums.
+    /// Number of items that one workgroup scans.
     const ITEMS_PER_BLOCK: u32 = 2048, as in PREFIX_SCAN_ADD;
 }
 
 bindings! {
     struct Level = "prefix scan", COMPUTE, group 0 of [PREFIX_SCAN] {
-        /// The shader takes their number from the binding's length.
+        /// Items; the shader derives their number from the size of the binding.
         0 items: ReadWritePart,
-        /// On the way back, what lies before each block.
+        /// Sum of each block; in the second phase, the sum of all blocks before it.
         1 block_sums: ReadWrite,
     }
 }
 
-/// Scans arrays.
+/// Scans arrays of `u32`.
 #[derive(Debug)]
 pub(crate) struct PrefixScan {
     layout: wgpu::BindGroupLayout,
@@ -37,12 +37,12 @@ pub(crate) struct PrefixScan {
     levels: Option<Levels>,
 }
 
-/// The sums of blocks, of blocks of blocks, and so on to the one total.
+/// Sums of blocks, of blocks of blocks, and so on up to the total.
 #[derive(Debug)]
 struct Levels {
     count: u32,
     sums: Vec<wgpu::Buffer>,
-    /// Level by level: its items and the sums of its blocks.
+    /// Steps, level by level: its items and the sums of its blocks.
     steps: Vec<Step>,
 }
 
@@ -63,7 +63,7 @@ impl PrefixScan {
         }
     }
 
-    /// Makes ready for the first `count` items of `items`, a buffer with usage `STORAGE`; `count` is not 0.
+    /// Prepares a scan of the first `count` items of `items`, a buffer with usage `STORAGE`; `count` must not be 0.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, items: &wgpu::Buffer, count: u32) {
         let sums = match self.levels.take() {
             Some(levels) if levels.count == count => levels.sums,
@@ -91,12 +91,12 @@ impl PrefixScan {
         self.levels = Some(Levels { count, sums, steps });
     }
 
-    /// Scans the items, in one pass of this label.
+    /// Scans the items in a pass with this label.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, label: &'static str) {
         recorder.compute(label, Span::Only, |pass| self.dispatch(pass));
     }
 
-    /// Scans the items, in a pass of others'.
+    /// Scans the items in an existing pass.
     pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>) {
         let Some(levels) = &self.levels else { return };
         let mut step = |pipeline, step: &Step| {
@@ -105,28 +105,28 @@ impl PrefixScan {
             pass.dispatch_workgroups(step.block_count, 1, 1);
         };
         levels.steps.iter().for_each(|level| step(&self.scan, level));
-        // The last level is one block, with nothing before it.
+        // The last level is one block, which has no block before it.
         levels.steps.iter().rev().skip(1).for_each(|level| step(&self.add, level));
     }
 
-    /// The sum of all items, a `u32` at offset 0, with usages `STORAGE` and `COPY_SRC`; after [`Self::prepare`].
+    /// Sum of all items, a `u32` at offset 0, with usages `STORAGE` and `COPY_SRC`; `None` before [`Self::prepare`].
     #[allow(dead_code, reason = "for scans whose last item does not hold the total")]
     pub(crate) fn total(&self) -> Option<&wgpu::Buffer> {
         self.levels.as_ref().and_then(|levels| levels.sums.last())
     }
 
-    /// Bytes of the sums.
+    /// Memory of the sums, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.levels.as_ref().map_or(0, |levels| levels.sums.iter().map(wgpu::Buffer::size).sum())
     }
 }
 
-/// The first items of a buffer.
+/// Binding of the first items of a buffer.
 fn first(items: &wgpu::Buffer, count: u32) -> wgpu::BufferBinding<'_> {
     wgpu::BufferBinding { buffer: items, offset: 0, size: NonZeroU64::new(u64::from(count) * 4) }
 }
 
-/// How many sums each level leaves, down to the one total.
+/// Number of sums of each level, down to the total.
 fn level_counts(count: u32) -> Vec<u32> {
     let mut counts = vec![count.div_ceil(ITEMS_PER_BLOCK)];
     while let Some(&count @ 2..) = counts.last() {

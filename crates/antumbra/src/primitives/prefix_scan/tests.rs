@@ -1,4 +1,4 @@
-//! The CPU reference against the definition, then the GPU against the CPU reference.
+//! CPU reference against the definition, then GPU against CPU reference.
 
 use antumbra_light::hash_u32;
 
@@ -25,7 +25,7 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let mut scan = PrefixScan::new(gpu);
     for count in [1, 2, 7, 8, 9, 255, 256, 257, 2047, 2048, 2049, 4096, 100_000, 2048 * 2048 + 3] {
-        // One item more than is scanned, which must stay as it is.
+        // One item more than is scanned; it must not change.
         let items: Vec<u32> = (0..=count).map(|i| hash_u32(i ^ count) >> 20).collect();
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("test items"),

@@ -1,5 +1,4 @@
-//! Numbers by which a surface of partial coverage is there for some of the light's points: `thresholds.wesl`. Here its CPU
-//! reference, and the tests of both.
+//! Stochastic coverage thresholds (`thresholds.wesl`): CPU reference, and tests of both.
 
 use glam::{Vec2, Vec3};
 
@@ -49,7 +48,7 @@ fn every_aligned_run_of_points_is_stratified() {
             }
         }
     }
-    // And what is no power of two nearly is.
+    // Other numbers of points are nearly stratified.
     for (seed, share) in (0..200).zip((0..10).map(|i| 0.1 * i as f32).cycle()) {
         let covered = (0..100).filter(|point| stochastic_threshold(*point, seed) < share).count();
         assert!((covered as f32 - 100.0 * share).abs() < 6.0, "{covered} of 100 below {share}");

@@ -1,5 +1,5 @@
-//! Points as receivers: a pass that packs a host's buffers into textures, which passes over receivers read in place of a depth buffer,
-//! and one that writes the resulting mask into a buffer. No technique knows of either.
+//! Points as receivers: one pass packs a host's buffers into textures, which passes over receivers read in place of a depth buffer,
+//! and another writes the resulting mask into a buffer. No technique depends on either.
 //!
 //! ```text
 //! positions, normals, widths ──► pack ──► textures of texels ──► technique ──► mask ──► write ──► visibilities
@@ -19,7 +19,7 @@ use crate::shaders;
 #[cfg(test)]
 pub(crate) mod tests;
 
-/// Texels along a tile's side: as in `points.wesl`, and as workgroups over receivers have threads.
+/// Width of a tile, texels: as in `points.wesl`, and as in workgroups over receivers.
 const TILE: u32 = 8;
 
 bindings! {
@@ -40,7 +40,7 @@ bindings! {
 }
 
 gpu_structs! {
-    /// Where points lie in buffers and textures.
+    /// Layout of points in buffers and textures.
     pub(crate) struct PointLayout {
         anchor: Vec3,
         count: u32,
@@ -59,7 +59,7 @@ gpu_structs! {
     }
 }
 
-/// Size of the points' textures and of their mask, texels.
+/// Returns the size of the points' textures and of their mask, texels.
 pub(crate) fn size_of_points(count: u32, row_length: Option<u32>) -> UVec2 {
     let Some(row_length) = row_length else {
         let tiles = count.div_ceil(TILE * TILE);
@@ -69,13 +69,13 @@ pub(crate) fn size_of_points(count: u32, row_length: Option<u32>) -> UVec2 {
     UVec2::new(row_length, count.div_ceil(row_length.max(1)))
 }
 
-/// A frame's points as techniques receive them.
+/// Points of a frame, in the textures that techniques read.
 #[derive(Clone, Debug)]
 pub(crate) struct PointTextures {
     size_px: UVec2,
     positions: (Arc<wgpu::Texture>, wgpu::TextureView),
     normals: (Arc<wgpu::Texture>, wgpu::TextureView),
-    /// What techniques write. Each light's commands fill it and read it before another's do, so lights share it.
+    /// Texture that techniques write. Lights share it: each light's commands fill and read it before another light's do.
     scratch: Arc<wgpu::Texture>,
     mask: Mask,
     read: (wgpu::ComputePipeline, wgpu::BindGroup),
@@ -83,7 +83,7 @@ pub(crate) struct PointTextures {
 }
 
 impl PointTextures {
-    /// Makes ready for a frame's points. `earlier` is the frame before's.
+    /// Prepares a frame's points. `earlier` is the previous frame's.
     pub(crate) fn prepare(
         stage: &Stage<'_>,
         receivers: &PointReceivers<'_>,
@@ -107,7 +107,7 @@ impl PointTextures {
             .filter(|earlier| earlier.scratch == scratch)
             .map_or_else(|| Mask::of_own_layers(&scratch, 0, channels), |earlier| earlier.mask);
         let points = &stage.uniform("antumbra points", &PointLayout::new(stage.anchor(), receivers, size_px, channels));
-        // What the host did not bring has the positions in its place, which are not read for it.
+        // Positions are bound, unread, in place of buffers that the host did not provide.
         let words = receivers.buffers().map(|buffer| buffer.unwrap_or(receivers.positions).buffer);
         let read_layout = Read::layout(stage);
         let read = Read {
@@ -135,13 +135,13 @@ impl PointTextures {
         }
     }
 
-    /// Compiles both passes before there is a frame.
+    /// Compiles both passes before the first frame.
     pub(crate) fn compile_ahead(gpu: &Gpu) {
         compute_pipeline(gpu, "points", shaders::POINTS_PACK, &[&Read::layout(gpu)]);
         compute_pipeline(gpu, "points' visibilities", shaders::POINTS_WRITE, &[&Written::layout(gpu)]);
     }
 
-    /// The points, with what the host says of where they lie.
+    /// Returns the points as receivers, with the bounds and hull that the host provides.
     pub(crate) fn receivers<'a>(&'a self, host: &PointReceivers<'a>) -> PreparedReceivers<'a> {
         PreparedReceivers {
             size_px: self.size_px,
@@ -155,7 +155,7 @@ impl PointTextures {
         }
     }
 
-    /// What the technique writes.
+    /// Mask that the technique writes.
     pub(crate) fn mask(&self) -> &Mask {
         &self.mask
     }
@@ -165,7 +165,7 @@ impl PointTextures {
         self.record(recorder, "points", &self.read);
     }
 
-    /// Records the writing of the technique's mask into the host's buffer.
+    /// Records the writing of the technique's mask to the host's buffer.
     pub(crate) fn record_write(&self, recorder: &mut Recorder<'_>) {
         self.record(recorder, "points' visibilities", &self.write);
     }

@@ -1,4 +1,4 @@
-//! Points against masks at the same places, against closed forms in space, and what is refused.
+//! Tests of points against masks at the same positions, against closed forms in space, and of rejected input.
 
 use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
@@ -37,7 +37,7 @@ fn storage<T: bytemuck::NoUninit>(gpu: &Gpu, data: &[T]) -> wgpu::Buffer {
     buffer
 }
 
-/// Runs a technique over points and reads their visibilities.
+/// Runs a technique over points and returns their visibilities.
 fn run_points(gpu: &Gpu, shadow: &mut AnyShadow, frame: &PointFrame<'_>) -> Vec<f32> {
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let work = shadow.prepare_points(frame).unwrap_or_else(|error| panic!("{error}"));
@@ -46,7 +46,7 @@ fn run_points(gpu: &Gpu, shadow: &mut AnyShadow, frame: &PointFrame<'_>) -> Vec<
     read_storage(gpu, frame.visibilities)
 }
 
-/// A camera before closed casters: a ground, and a board and a post on it.
+/// Camera and closed casters: a ground, with a board and a post on it.
 pub(crate) struct Scene {
     meshes: Vec<Mesh>,
     view_from_world: Mat4,
@@ -104,7 +104,7 @@ impl Scene {
         Aabb::of(self.hull.iter().copied())
     }
 
-    /// What each pixel sees, as a mask's passes have it.
+    /// Returns the receiver of each pixel, as passes over a mask load it.
     pub(crate) fn places(&self, gpu: &Gpu) -> Places {
         let light = &lamp(LightShape::Disk { radius_m: 0.1 });
         let casters = PreparedCasters::Draws(&[]);
@@ -125,7 +125,7 @@ impl Scene {
         }
         gpu.queue.submit([encoder.finish()]);
         let found: Vec<[Vec4; 3]> = read_storage(gpu, &found);
-        // Where there is no surface, no point.
+        // Background pixels become NaN, which is no point.
         let position = |found: &[Vec4; 3]| if found[0].w == 1.0 { found[0] } else { Vec3::NAN.extend(0.0) };
         let surfaces = found.iter().filter(|found| found[0].w == 1.0).count();
         assert!(surfaces > 900 && surfaces < found.len(), "{surfaces} pixels see a surface");
@@ -138,7 +138,7 @@ impl Scene {
     }
 }
 
-/// Receivers of a picture, as points.
+/// Receivers of an image, as points.
 pub(crate) struct Places {
     count: u32,
     pub(crate) positions: wgpu::Buffer,
@@ -163,7 +163,7 @@ pub(crate) fn lamp(shape: LightShape) -> Light {
     Light::new(shape, Vec3::new(0.6, 4.0, 0.5), Vec3::ZERO)
 }
 
-/// One of each kind of map: of a place, of a direction, and several, for a lamp between the board and the ground that shines all around.
+/// Returns a light for each kind of map: perspective, parallel, and several, for an omnidirectional lamp between board and ground.
 pub(crate) fn lights() -> [(&'static str, Light); 3] {
     let hung = Vec3::new(1.1, 0.6, 0.9);
     [
@@ -173,7 +173,7 @@ pub(crate) fn lights() -> [(&'static str, Light); 3] {
     ]
 }
 
-/// A technique with those of some settings that it has.
+/// Returns a technique with those of the settings that it supports.
 pub(crate) fn create(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> AnyShadow {
     let mut shadow = kind.create(gpu).expect("the device has it");
     for (key, value) in settings {
@@ -184,11 +184,11 @@ pub(crate) fn create(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) 
     shadow
 }
 
-/// Few samples and texels; and what takes in neighbours, or a pixel's footprint, turned off.
+/// Settings with few samples and texels, and without filters over neighbours or a pixel's footprint.
 const ALONE: [(&str, &str); 5] =
     [("smooth", "false"), ("mips", "false"), ("samples", "16"), ("central_scale", "1"), ("map_size", "256")];
 
-/// Techniques that filter by the pixel's footprint, a parallelogram cut at silhouettes; points have squares.
+/// Techniques that filter by the pixel's footprint, a parallelogram clipped at silhouettes; points have squares.
 const BY_FOOTPRINT: [TechniqueKind; 2] = [TechniqueKind::PcssAnisotropic, TechniqueKind::Essm];
 
 #[test]
@@ -202,7 +202,7 @@ fn so_they_have_under_a_sun_and_a_lamp_in_parts() {
     hold_to_pixels(&lights()[1..]);
 }
 
-/// Where pixels are, points have the pixels' visibilities to the bit. Where a light is covered in parts, a mask's maps are fitted to
+/// Points at pixels' positions have the pixels' visibilities to the bit. If a light has several parts, a mask's maps are fitted to
 /// what the camera sees of each, so that some pixels at edges may differ.
 fn hold_to_pixels(lights: &[(&'static str, Light)]) {
     let Some(gpu) = gpu() else { return };
@@ -226,7 +226,7 @@ fn hold_to_pixels(lights: &[(&'static str, Light)]) {
             if BY_FOOTPRINT.contains(kind) {
                 assert!(rms < 0.02, "{kind}, {name}: rms {rms}");
             } else {
-                // And `multi_view` allows for what a depth buffer rounds, which may decide over a pixel at an edge.
+                // `multi_view` also allows for the rounding of a depth buffer, which may decide a pixel at an edge.
                 let most = if *name == "lamp in parts" || *kind == TechniqueKind::MultiView { 4 } else { 0 };
                 assert!(differing <= most, "{kind}, {name}: {differing} differ");
             }
@@ -239,19 +239,19 @@ pub(crate) fn rms(a: &[f32], b: &[f32]) -> f32 {
     (a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f32>() / a.len() as f32).sqrt()
 }
 
-/// Numbers in [0, 1).
+/// Returns a random number in [0, 1).
 fn random(i: u32, k: u32) -> f32 {
     unit_f32(hash_u32(i.wrapping_mul(193).wrapping_add(k * 7919)))
 }
 
-/// Under a half-plane at a height of 1.5 m whose edge is x = 0, and a rectangle light of 1 m at 4 m: the segment to the light point `o`
-/// crosses its height at x + (o − x) t, and is blocked where that is below 0.
+/// Visibility under a half-plane at a height of 1.5 m with its edge at x = 0, and a rectangle light of 1 m at 4 m: the segment to the
+/// light point `o` crosses the half-plane's height at x + (o − x) t, and is blocked if that is below 0.
 fn visibility_in_space(p: Vec3) -> f32 {
     let t = (1.5 - p.y) / (4.0 - p.y);
     if t <= 0.0 { 1.0 } else { (0.5 + p.x * (1.0 - t) / t).clamp(0.0, 1.0) }
 }
 
-/// Techniques whose penumbrae are near the truth wherever their occluder is.
+/// Techniques whose penumbrae are close to the truth wherever their occluder is.
 const CLOSE: [TechniqueKind; 11] = [
     TechniqueKind::Pcss,
     TechniqueKind::Smrt,
@@ -266,7 +266,7 @@ const CLOSE: [TechniqueKind; 11] = [
     TechniqueKind::SampleBased,
 ];
 
-/// Anywhere below and above an occluder, in any order, points that face the light err as much as surfaces at the same places do.
+/// Points that face the light, in any order and anywhere below or above an occluder, have no larger error than surfaces there.
 #[test]
 fn points_anywhere_err_no_more_than_surfaces() {
     let Some(gpu) = gpu() else { return };
@@ -275,7 +275,7 @@ fn points_anywhere_err_no_more_than_surfaces() {
     let occluder = Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.0, 4.0), 1.5);
     let casters = [ground.caster(), occluder.caster()];
     let light = &Light::new(LightShape::Rectangle { size_m: Vec2::ONE }, Vec3::new(0.0, 4.0, 0.0), Vec3::ZERO);
-    // Wider than the points: maps of `reprojection` hold what casts between this box and the light's centre.
+    // The bounds are wider than the points, because maps of `reprojection` hold casters between this box and the light's centre.
     let bounds = Aabb { min: Vec3::new(-5.0, 0.0, -5.0), max: Vec3::new(5.0, 2.0, 5.0) };
     let place = |i: u32| 2.0 * Vec3::new(random(i, 0) - 0.5, random(i, 1), random(i, 2) - 0.5);
     let in_space: Vec<Vec3> = (0..COUNT).map(place).collect();
@@ -306,7 +306,7 @@ fn points_anywhere_err_no_more_than_surfaces() {
     }
 }
 
-/// Points of a small scene, asked about in some way; those of a technique without noise.
+/// Returns the visibilities of a small scene's points, queried in a given way by a technique without noise.
 fn asked(
     gpu: &Gpu,
     kind: TechniqueKind,
@@ -329,7 +329,7 @@ const SOME: [TechniqueKind; 6] = [
     TechniqueKind::SampleBased,
 ];
 
-/// The order of points, how they lie in buffers, and a place that is none: nothing of it changes what the others get.
+/// The order of points, their layout in buffers, and an invalid position do not change the other points' results.
 #[test]
 fn points_may_lie_in_any_order_and_anyhow_in_buffers() {
     let Some(gpu) = gpu() else { return };
@@ -342,7 +342,7 @@ fn points_may_lie_in_any_order_and_anyhow_in_buffers() {
     let places: Vec<Vec3> = (0..COUNT).map(place).collect();
     let packed = storage(gpu, &places);
     let normals = storage(gpu, &vec![2.0 * Vec3::Y; COUNT as usize]);
-    // Four floats before the first; then width, position, normal and one that is not read.
+    // Four floats before the first; then width, position, normal and one unused word.
     let mut words = vec![f32::NAN; 4];
     let shuffled = |i: u32| (i * 101 + 7) % COUNT;
     for i in 0..COUNT {
@@ -374,7 +374,7 @@ fn points_may_lie_in_any_order_and_anyhow_in_buffers() {
     }
 }
 
-/// Within closed casters it is dark: of points that have no normals, by the exact techniques too.
+/// Points inside closed casters are dark, even without normals and with the exact techniques.
 #[test]
 fn points_within_closed_casters_are_dark() {
     let Some(gpu) = gpu() else { return };
@@ -387,14 +387,14 @@ fn points_within_closed_casters_are_dark() {
     for (name, light) in &lights()[..2] {
         for kind in SOME {
             let got = asked(gpu, kind, light, Casters::Meshes(&casters), receivers);
-            // Moments that are filtered let a ten-thousandth through.
+            // Filtered moments leak a ten-thousandth.
             let most = got.iter().copied().fold(0.0, f32::max);
             assert!(most < 1e-3, "{kind}, {name}: {most}");
         }
     }
 }
 
-/// Far from the world's origin, where floats are half a millimetre apart, as near it.
+/// Results far from the world's origin, where floats are half a millimetre apart, equal those near it.
 #[test]
 fn points_far_from_the_origin() {
     let Some(gpu) = gpu() else { return };
@@ -406,7 +406,7 @@ fn points_far_from_the_origin() {
         let casters = [MeshCaster { instances: &instances, bounds, ..mesh.caster() }];
         let light = lamp(LightShape::Disk { radius_m: 0.3 });
         let light = Light { center: light.center + away, ..light };
-        // Places that are floats there, too.
+        // Positions that are exact floats there, too.
         let place =
             |i: u32| (1024.0 * Vec3::new(2.0 * random(i, 0) - 1.0, random(i, 1), random(i, 2))).round() / 1024.0;
         let positions = storage(gpu, &(0..COUNT).map(|i| place(i) + away).collect::<Vec<_>>());
@@ -427,7 +427,7 @@ fn points_far_from_the_origin() {
     }
 }
 
-/// Red, green and blue of a point lie together, and are those of a mask.
+/// Red, green and blue of a point are adjacent, and equal those of a mask.
 #[test]
 fn points_under_tinted_casters_have_colours() {
     let Some(gpu) = gpu() else { return };
@@ -449,7 +449,7 @@ fn points_under_tinted_casters_have_colours() {
         for layer in 0..3 {
             let want: Vec<f32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, mask.texture(), layer as u32));
             let of_layer: Vec<f32> = got.chunks_exact(3).map(|rgb| rgb[layer]).collect();
-            // Segments from open casters, which tinted ones are, start off them by more where a depth buffer was rounded.
+            // Tinted casters are open: segments from them have a larger ray offset if a depth buffer was rounded.
             let differing = want.iter().zip(&of_layer).filter(|(a, b)| (*a - *b).abs() > 1e-6).count();
             println!("{kind}, layer {layer}: {differing} of {} differ", want.len());
             assert!(differing <= 8, "{kind}, layer {layer}: {differing} differ");
@@ -459,10 +459,10 @@ fn points_under_tinted_casters_have_colours() {
     }
 }
 
-/// Points that stand still are not asked about again, and a light that moves makes nothing anew.
+/// Still points are not queried again, and a moving light creates no wgpu resource.
 #[test]
 fn steady_frames_of_points_make_nothing() {
-    // A device of its own: what is counted is what this test makes.
+    // A device of its own, so that only this test's resources are counted.
     let Some(gpu) = gpu_with(|_| wgpu::Limits::default()) else { return };
     let gpu = &gpu;
     let scene = Scene::new(gpu);
@@ -503,7 +503,7 @@ fn steady_frames_of_points_make_nothing() {
     }
 }
 
-/// What does not fit is refused in one line that says what would be right.
+/// Invalid input is rejected with one line that states what is valid.
 #[test]
 fn bad_points_are_refused() {
     let Some(gpu) = gpu() else { return };
@@ -565,7 +565,7 @@ fn bad_points_are_refused() {
     ));
 }
 
-/// wgpu does not tell a buffer's device, and tells devices of one instance apart when they are used.
+/// wgpu does not expose a buffer's device, and detects devices of one instance only on use.
 #[test]
 fn points_of_another_device_are_refused() {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -589,7 +589,7 @@ fn points_of_another_device_are_refused() {
     assert!(error.contains("positions") && error.contains("of the light's device") && !error.contains('\n'), "{error}");
 }
 
-/// All points have a texel, and as few texels as tiles allow have none.
+/// Each point has a texel, and as few texels are unused as tiles allow.
 #[test]
 fn points_fit_their_texels() {
     for count in [1, 63, 64, 65, 1000, 65_536, 1_000_003] {

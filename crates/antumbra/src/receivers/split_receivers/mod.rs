@@ -1,4 +1,4 @@
-//! Receivers of a multisampled depth buffer, as two pictures of one sample a pixel.
+//! Splits a multisampled depth buffer into two images of one sample per pixel.
 
 use glam::{Mat4, UVec2};
 
@@ -13,10 +13,10 @@ use crate::shaders;
 #[cfg(test)]
 mod tests;
 
-/// Who speaks in errors.
+/// Name of the type in errors.
 const NAME: &str = "SplitReceivers";
 
-/// WebGPU's one sample count beside 1.
+/// The only multisample count in WebGPU.
 const SAMPLES: u32 = 4;
 
 gpu_structs! {
@@ -40,17 +40,16 @@ bindings! {
     }
 }
 
-/// What a multisampled depth buffer shows, for techniques, which take one sample a pixel: a *front* picture of the nearest
-/// surface that a pixel's samples see, and a *back* picture of the farthest where it is another one, and background elsewhere.
+/// Splits a multisampled depth buffer for techniques, which take one sample per pixel. The *front* image has the nearest
+/// surface that a pixel's samples see. The *back* image has the farthest if it is another one, and background elsewhere.
 ///
-/// A pixel on an edge so has a visibility for each of its two surfaces, and a host's shading takes its own surface's: that of the
-/// picture whose depth is nearer to the fragment's ([`SPLIT_WGSL`](Self::SPLIT_WGSL)). Where three surfaces and more meet in one
-/// pixel, those between get the nearer one's. Depths are what each surface has at the pixel's centre, extrapolated along it from
-/// the sample that saw it, as a rasteriser does: so nothing shadows itself for having been seen elsewhere. On strips narrower than
-/// a pixel, of which no neighbour sees more, it is the sample's own. Where the host has no
-/// normals, each surface's come from the same extrapolation.
+/// A pixel on an edge thus has a visibility for each of its two surfaces. The host's shading uses that of the image whose depth is
+/// nearer to the fragment's ([`SPLIT_WGSL`](Self::SPLIT_WGSL)). If three or more surfaces meet in one pixel, those between use the
+/// nearer image. Depths are those at the pixel's centre, extrapolated along each surface from the sample that saw it, as a
+/// rasteriser does. This avoids self-shadowing from an offset position. On strips narrower than a pixel, of which no neighbour
+/// sees more, the sample's own depth is used. If the host has no normals, they come from the same extrapolation.
 ///
-/// Sample counts: 4, as in WebGPU. One is made for a view, serves all lights, and is recorded once a frame:
+/// The sample count is 4, as in WebGPU. One instance serves a view and all its lights, and is recorded once per frame:
 ///
 /// ```no_run
 /// # use antumbra::*;
@@ -65,7 +64,7 @@ bindings! {
 /// # }
 /// ```
 ///
-/// The second picture's light maps stand from the first's. Its receivers are few, so it costs little more than what a technique
+/// The second image reuses the light maps cached for the first. Its receivers are few, so it costs little more than a technique
 /// spends on background.
 #[derive(Debug)]
 pub struct SplitReceivers {
@@ -76,7 +75,7 @@ pub struct SplitReceivers {
     made: Option<Pictures>,
 }
 
-/// Front and back.
+/// Front and back image.
 #[derive(Debug)]
 struct Pictures {
     size_px: UVec2,
@@ -87,8 +86,8 @@ struct Pictures {
 }
 
 impl SplitReceivers {
-    /// For a host's shading: which of the two pictures, and so which of two masks, a fragment of depth `position.z` is in. `depths`
-    /// is [`depth_layers`](Self::depth_layers), `pixel` counts from the viewport's corner.
+    /// WGSL function for a host's shading. It returns which of the two images, and hence which of two masks, contains a fragment of
+    /// depth `position.z`. `depths` is [`depth_layers`](Self::depth_layers), `pixel` is relative to the viewport's corner.
     pub const SPLIT_WGSL: &'static str = "
 fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u32 {
     let front = textureLoad(depths, pixel, 0u, 0).x;
@@ -98,7 +97,7 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
 }
 ";
 
-    /// For views of any size.
+    /// Creates an instance for views of any size.
     pub fn new(gpu: &Gpu) -> Self {
         let no_normals = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("antumbra no normals"),
@@ -119,11 +118,11 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
         }
     }
 
-    /// Records the two pictures of `receivers`, whose depth and normals have four samples a pixel, and whose normals are of a
-    /// format that can be drawn to.
+    /// Records the two images of `receivers`, whose depth and normals have four samples per pixel, and whose normals are of a
+    /// renderable format.
     ///
     /// # Errors
-    /// [`Error::BadFrame`] where depth or normals have another count of samples, or do not hold the receivers.
+    /// [`Error::BadFrame`] if depth or normals have another sample count, or do not contain the receivers.
     pub fn record(&mut self, recorder: &mut Recorder<'_>, receivers: &Receivers<'_>) -> Result<(), Error> {
         check(receivers)?;
         let view_from_clip = receivers.clip_from_view.as_dmat4().inverse().as_mat4();
@@ -171,10 +170,10 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
         Ok(())
     }
 
-    /// The front and the back picture of the receivers last recorded, with the camera and bounds of `receivers`.
+    /// Returns the front and the back image of the receivers last recorded, with the camera and bounds of `receivers`.
     ///
     /// # Panics
-    /// Where nothing was recorded.
+    /// If nothing was recorded.
     pub fn pictures<'a>(&'a self, receivers: &Receivers<'a>) -> [Receivers<'a>; 2] {
         let made = self.made.as_ref().expect("`record` comes before");
         [0, 1].map(|picture: usize| Receivers {
@@ -186,13 +185,13 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
         })
     }
 
-    /// Depth of the front picture and of the back one, in two layers: a `texture_2d_array<f32>` for a host's shading. `None`
-    /// before anything was recorded.
+    /// Depths of the front and the back image, in two layers: a `texture_2d_array<f32>` for a host's shading. `None` before
+    /// the first record.
     pub fn depth_layers(&self) -> Option<&wgpu::TextureView> {
         self.made.as_ref().map(|made| &made.depth_layers)
     }
 
-    /// Bytes of the pictures.
+    /// Size of the images, bytes.
     pub fn memory_bytes(&self) -> u64 {
         self.made.as_ref().map_or(0, |made| {
             let pixels = u64::from(made.size_px.x) * u64::from(made.size_px.y);
@@ -250,7 +249,7 @@ impl Pictures {
         }
     }
 
-    /// What is drawn to for the front picture, 0, or the back one, 1.
+    /// Returns the render targets of the front image, 0, or the back one, 1.
     fn targets(&self, picture: usize) -> [&wgpu::TextureView; 2] {
         [&self.depth[picture], &self.normals[picture]]
     }

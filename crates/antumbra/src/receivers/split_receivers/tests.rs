@@ -1,4 +1,4 @@
-//! A square above a ground, drawn with four samples a pixel, against what each sample's ray meets.
+//! Tests with a square above a ground, drawn with four samples per pixel, against what each sample's ray hits.
 
 use glam::camera::rh::{proj, view};
 use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
@@ -16,7 +16,7 @@ const SHEET_HEIGHT: f32 = 1.0;
 const SHEET: [Vec2; 2] = [Vec2::new(-1.3, -1.1), Vec2::new(1.2, 0.75)];
 const GROUND: [Vec2; 2] = [Vec2::splat(-4.0), Vec2::splat(4.0)];
 
-/// Where WebGPU's four samples lie in a pixel.
+/// Positions of WebGPU's four samples in a pixel.
 const SAMPLES: [Vec2; 4] =
     [Vec2::new(0.375, 0.125), Vec2::new(0.875, 0.375), Vec2::new(0.125, 0.625), Vec2::new(0.625, 0.875)];
 
@@ -39,7 +39,7 @@ impl Camera {
         Self { view_from_world, clip_from_view, convention }
     }
 
-    /// Where the ray through a place in the picture meets the plane of a height, and its depth there.
+    /// Returns where the ray through an image position hits the plane at a height, and its depth there.
     fn at_height(&self, place_px: Vec2, height: f32) -> (Vec3, f32) {
         let ndc = place_px / SIZE.as_vec2() * Vec2::new(2.0, -2.0) + Vec2::new(-1.0, 1.0);
         let clip_from_world = self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4();
@@ -67,7 +67,7 @@ impl Camera {
     }
 }
 
-/// A host's own shaders: a normal for each vertex.
+/// Shaders of a host, with a normal per vertex.
 const HOST_WGSL: &str = "
     struct Varyings { @builtin(position) clip: vec4f, @location(0) normal: vec4f }
     @vertex fn vertex(@location(0) clip: vec4f, @location(1) normal: vec4f) -> Varyings {
@@ -113,7 +113,7 @@ fn host_pipeline(gpu: &Gpu, convention: DepthConvention, samples: u32) -> wgpu::
     })
 }
 
-/// Two triangles for each rectangle: clip position, normal.
+/// Returns two triangles per rectangle: clip position, normal.
 fn host_vertices(camera: &Camera, rectangles: &[(f32, [Vec2; 2])]) -> Vec<Vec4> {
     let clip_from_world = camera.clip_from_view * camera.view_from_world;
     rectangles
@@ -127,7 +127,7 @@ fn host_vertices(camera: &Camera, rectangles: &[(f32, [Vec2; 2])]) -> Vec<Vec4> 
         .collect()
 }
 
-/// A host's own drawing: rectangles at heights, with upward normals that tell them apart.
+/// Draws as a host: rectangles at heights, with upward normals that distinguish them.
 fn draw(gpu: &Gpu, camera: &Camera, rectangles: &[(f32, [Vec2; 2])], samples: u32) -> [wgpu::Texture; 2] {
     let vertices = host_vertices(camera, rectangles);
     let device = gpu.device();
@@ -180,14 +180,14 @@ fn draw(gpu: &Gpu, camera: &Camera, rectangles: &[(f32, [Vec2; 2])], samples: u3
     [depth, normals]
 }
 
-/// How sure a place is to lie in a rectangle: negative outside.
+/// Returns the distance of a position from a rectangle's edges: negative outside.
 fn margin([min, max]: [Vec2; 2], pos: Vec3) -> f32 {
     let p = Vec2::new(pos.x, pos.z);
     (p - min).min(max - p).min_element()
 }
 
-/// The heights of a pixel's nearest and farthest surface, by its samples' rays; `None` where a sample is too near to an edge to
-/// tell, background a height of none.
+/// Returns the heights of a pixel's nearest and farthest surface, by its samples' rays, each `None` for background; `None` if a
+/// sample is too near to an edge.
 fn surfaces(camera: &Camera, pixel: UVec2) -> Option<[Option<f32>; 2]> {
     let mut seen = [false; 3];
     for sample in SAMPLES {
@@ -212,8 +212,8 @@ fn surfaces(camera: &Camera, pixel: UVec2) -> Option<[Option<f32>; 2]> {
     Some([of(front), back])
 }
 
-/// Whether a pixel alone, or one beside it, shows nothing but the surface at a height, and so does one that shares a side with
-/// that: narrower strips have the depth of a sample, elsewhere in the pixel.
+/// Whether a pixel or one beside it, and a pixel that shares a side with that one, show only the surface at a height: narrower
+/// strips have the depth of a sample elsewhere in the pixel.
 fn is_wide(camera: &Camera, pixel: UVec2, height: f32) -> bool {
     let is_whole = |at: glam::IVec2| {
         let is_in = at.cmpge(glam::IVec2::ZERO).all() && at.cmplt(SIZE.as_ivec2()).all();
@@ -264,7 +264,7 @@ fn pictures_hold_both_surfaces_of_edges_at_the_pixels_centre() {
                     let had = texel(&depths[picture], pixel);
                     let expected = height
                         .map_or(convention.background(), |height| camera.at_height(pixel.as_vec2() + 0.5, height).1);
-                    // A few units in the last place, and the extrapolation's.
+                    // Some units in the last place, and the extrapolation's error.
                     let tolerance = if height.is_some() { 4e-6 } else { 0.0 };
                     assert!(
                         (had - expected).abs() <= tolerance,
@@ -279,7 +279,7 @@ fn pictures_hold_both_surfaces_of_edges_at_the_pixels_centre() {
     }
 }
 
-/// Derived normals are upright; a host's are those of the surface.
+/// Checks that derived normals are upright, and that a host's are those of the surface.
 fn check_normals(gpu: &Gpu, camera: &Camera, pictures: &[Receivers<'_>; 2], are_host_s: bool) {
     for (layer, picture) in pictures.iter().enumerate() {
         let texture = picture.normals.expect("pictures have normals").texture();
@@ -305,7 +305,7 @@ fn check_normals(gpu: &Gpu, camera: &Camera, pictures: &[Receivers<'_>; 2], are_
     }
 }
 
-/// A surface has the shadow that it has where it is drawn alone, up to its edges.
+/// A surface has the same shadow as when it is drawn alone, up to its edges.
 #[test]
 fn masks_of_both_pictures_are_those_of_each_surface_alone() {
     let Some(gpu) = gpu() else { return };
@@ -340,7 +340,7 @@ fn masks_of_both_pictures_are_those_of_each_surface_alone() {
         let Some(heights) = surfaces(&camera, pixel) else { continue };
         for (mask, height) in masks.iter().zip(heights) {
             let Some(height) = height else { continue };
-            // Where a surface is seen by a sample but not at the centre, it was not drawn alone.
+            // A surface seen by a sample but not at the centre is not in the image drawn alone.
             let (bounds, truth) = if height > 0.0 { (SHEET, &sheet_alone) } else { (GROUND, &ground) };
             if margin(bounds, camera.at_height(pixel.as_vec2() + 0.5, height).0) < 2e-3 {
                 continue;
@@ -375,6 +375,6 @@ fn what_is_not_multisampled_is_refused() {
     let beyond = Receivers { origin_px: ORIGIN + 30, ..camera.receivers(&depth, None) };
     let error = SplitReceivers::new(gpu).record(&mut recorder, &beyond).unwrap_err().to_string();
     assert!(error.contains("up to pixel"), "{error}");
-    // What was drawn is done before the test ends the process.
+    // The GPU must finish before the test ends the process.
     gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
 }

@@ -1,4 +1,4 @@
-//! A host's fragment shader that asks for visibility where a mask's pixels are, and what is refused.
+//! Tests of shader functions: a host's fragment shader gets visibility at a mask's pixels; invalid requests are errors.
 
 use std::sync::Arc;
 
@@ -12,11 +12,11 @@ use crate::receivers::points::tests::{Places, SIZE, Scene, create, lights};
 use crate::shadow::{AnyShadow, Casters, Frame};
 use crate::testing::{gpu_with, read_texture, view_of};
 
-/// As many as a shader has groups beside the host's own.
+/// Techniques under test: as many as a shader has bind groups besides the host's own.
 const KINDS: [TechniqueKind; 3] = [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss];
 const PREFIXES: [&str; 3] = ["first_", "second_", "third_"];
 
-/// Three lights, or three techniques of one, in one shader; 1 where there is no surface, as in a mask.
+/// Host's shader with the functions of three shadows; visibility is 1 where there is no surface, as in a mask.
 const HOST: &str = "
     @group(0) @binding(0) var<storage, read> positions: array<vec4f>;
     @group(0) @binding(1) var<storage, read> normals: array<f32>;
@@ -50,7 +50,7 @@ fn draw(gpu: &Gpu, shadow: &mut AnyShadow, frame: &Frame<'_>) {
     gpu.queue().submit([encoder.finish()]);
 }
 
-/// What a host's fragments get of three functions.
+/// Returns the values that a host's fragments get from three functions.
 fn ask(gpu: &Gpu, functions: &[ShaderFunction], places: &Places) -> Vec<Vec<f32>> {
     let device = gpu.device();
     let texts: String = functions.iter().map(|function| &*function.wgsl).collect();
@@ -152,8 +152,8 @@ fn target(gpu: &Gpu, size: UVec2) -> wgpu::Texture {
     })
 }
 
-/// At the mask's own places a host's fragments get the mask's bits, of three functions in one shader, within WebGPU's default limits;
-/// and while a light moves neither text nor group nor anything is made anew.
+/// At the mask's pixels a host's fragments get the mask's bits, from three functions in one shader, within WebGPU's default limits.
+/// While a light moves, text, bind group and all other resources are reused.
 #[test]
 fn a_host_s_shader_gets_what_the_mask_has() {
     let Some(gpu) = gpu_with(|_| wgpu::Limits::default()) else { return };
@@ -203,7 +203,7 @@ fn a_host_s_shader_gets_what_the_mask_has() {
     }
 }
 
-/// Techniques without a function, frames without one map, and prefixes that begin no name say so in one line.
+/// Techniques without a function, frames without a single map, and invalid prefixes give errors of one line.
 #[test]
 fn what_has_no_function_says_so() {
     let Some(gpu) = gpu_with(|_| wgpu::Limits::default()) else { return };

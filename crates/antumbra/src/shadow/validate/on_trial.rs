@@ -1,6 +1,6 @@
-//! Resources that are bound on trial once, since wgpu does not tell what they are.
+//! Cache of resources that were bound on trial, because wgpu does not expose their properties.
 
-/// Resources that could be bound on trial, with the last frame of each.
+/// Resources that could be bound on trial, with the last frame that used each.
 #[derive(Debug)]
 pub(super) struct Good<R> {
     found: Vec<(R, u64)>,
@@ -14,7 +14,7 @@ impl<R> Default for Good<R> {
 }
 
 impl<R: PartialEq> Good<R> {
-    /// Resources unused for this many frames are forgotten, so that they can be freed.
+    /// Number of frames after which an unused resource is dropped, so that it can be freed.
     const KEPT_FRAMES: u64 = 8;
 
     /// Begins a frame.
@@ -23,7 +23,7 @@ impl<R: PartialEq> Good<R> {
         self.found.retain(|(_, frame)| frame + Self::KEPT_FRAMES >= self.frame);
     }
 
-    /// What wgpu says against a resource; `None` where nothing is wrong with it. Only new resources are tried.
+    /// Validation error that wgpu reports for a resource, or `None`. Only new resources are tried.
     pub(super) fn complaint(&mut self, resource: R, trial: impl FnOnce(&R) -> Option<String>) -> Option<String> {
         if let Some((_, frame)) = self.found.iter_mut().find(|(good, _)| *good == resource) {
             *frame = self.frame;

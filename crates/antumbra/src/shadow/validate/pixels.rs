@@ -8,11 +8,11 @@ use crate::contract::{Denoise, DepthConvention, Error, Receivers};
 use crate::gpu::ViewKind;
 use crate::shadow::Frame;
 
-/// How far a rigid matrix's axes may be from unit length and right angles: rotations that are multiplied for hours drift.
+/// Tolerance of a rigid matrix's axes, in length and in the cosine between two: rotations multiplied for hours drift.
 const RIGID_TOLERANCE: f64 = 1e-2;
 
 impl Check<'_, Frame<'_>> {
-    /// Sizes of receivers, depth buffer, normals and mask.
+    /// Checks the sizes of receivers, mask and depth buffer.
     pub(super) fn picture(&self) -> Result<(), Error> {
         let Frame { receivers, mask, .. } = self.frame;
         let size_px = receivers.size_px;
@@ -59,10 +59,10 @@ impl Check<'_, Frame<'_>> {
         Ok(())
     }
 
-    /// Refuses bounds, hull, seen points and a shadow distance that are none.
+    /// Refuses invalid bounds, hull, seen points and shadow distance.
     pub(super) fn places(&self) -> Result<(), Error> {
         let Receivers { bounds, hull, seen, shadow_distance, .. } = self.frame.receivers;
-        // A box of no receivers is empty, and does.
+        // An empty box is valid: there are no receivers.
         if let Some(problem) = bounds.filter(|bounds| *bounds != Aabb::EMPTY).and_then(|bounds| bounds.problem()) {
             return self.bad("the receivers' box", problem, "a box with its least corner first, or `None`");
         }
@@ -152,7 +152,7 @@ impl Check<'_, Frame<'_>> {
     }
 }
 
-/// Whether a matrix turns and moves, mirrors perhaps, and does nothing else.
+/// Whether a matrix is a rotation and a translation, possibly with a reflection.
 fn is_rigid(matrix: &Mat4) -> bool {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.truncate().as_dvec3());
     let is_unit = |axis: DVec3| (axis.length() - 1.0).abs() < RIGID_TOLERANCE;
@@ -161,7 +161,7 @@ fn is_rigid(matrix: &Mat4) -> bool {
     is_affine && [x, y, z].into_iter().all(is_unit) && is_right(x, y) && is_right(y, z) && is_right(z, x)
 }
 
-/// Whether a format's components are signed floats or fractions, three of them at least.
+/// Whether a format has at least three components, signed floats or fractions.
 fn holds_directions(format: wgpu::TextureFormat) -> bool {
     use wgpu::TextureFormat as Format;
     matches!(format, Format::Rgba32Float | Format::Rgba16Float | Format::Rgba16Snorm | Format::Rgba8Snorm)

@@ -42,7 +42,7 @@ impl Check<'_, PointFrame<'_>> {
         self.point_buffer(validator, "the points' visibilities", &written, u64::from(channels.count()))
     }
 
-    /// Refuses a buffer that does not have so many floats for each point, or cannot be bound.
+    /// Refuses a buffer that has fewer than `floats` floats per point, or cannot be bound.
     pub(super) fn point_buffer(
         &self,
         validator: &mut Validator,
@@ -89,7 +89,7 @@ impl Check<'_, PointFrame<'_>> {
         }
     }
 
-    /// Refuses bounds, hull and seen points that are no places.
+    /// Refuses invalid bounds, hull and seen points.
     pub(super) fn point_places(&self) -> Result<(), Error> {
         let receivers = &self.frame.receivers;
         if let Some(problem) = receivers.bounds.problem() {

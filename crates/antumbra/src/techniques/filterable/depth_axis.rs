@@ -1,12 +1,12 @@
-//! The direction in which filtered depths are measured.
+//! Direction in which filtered depths are measured.
 //!
-//! A filtered map may measure depth along any direction that every ray of its view goes forward in: what is nearer on a ray
-//! stays nearer. Along the light's own axis a floor that is lit at a slant has another depth in each texel; two moments take
-//! that spread for a second occluder, four have nothing left for a third. Along the floor's normal it has one.
-//! What is built lies along the world's axes, most of it, so the one nearest to the light's axis is the best guess.
+//! A filtered map may measure depth along any direction along which every ray of its view runs forward: the order of depths on
+//! a ray is then kept. Along the light's own axis, a floor that is lit at a slant has a different depth in each texel. Two
+//! moments take this spread for a second occluder, and four have nothing left for a third. Along the floor's normal it has one
+//! depth. Most built geometry lies along the world axes, so the axis nearest to the light's is the best guess.
 //!
-//! Lauritzen and McCool 2008, section 5, measure "the normalized Euclidean distance to the light point or plane": along every
-//! ray of the map itself. A floor then has another depth in each texel even straight below the light.
+//! Lauritzen and McCool 2008, section 5, measure "the normalized Euclidean distance to the light point or plane", along each
+//! ray of the map. A floor then has a different depth in each texel even straight below the light.
 
 use antumbra_light::Aabb;
 use glam::{Vec2, Vec3};
@@ -16,42 +16,42 @@ use crate::light_map::light_view::{LightView, LightViewGpu};
 use crate::light_map::occluding_bounds::Between;
 
 param_choice! {
-    /// The direction in which a filterable map measures depth.
+    /// Direction in which a filterable map measures depth.
     pub enum DepthAxis {
         /// The light's axis.
         Light = "light",
-        /// The world's axis nearest to the light's, where every ray of the map goes along with it; else the light's.
+        /// World axis nearest to the light's axis if every ray of the map runs forward along it; otherwise the light's axis.
         World = "world",
-        /// Each ray of the map: the distance to the light's centre, and of a sun the light's axis.
+        /// Each ray of the map: the distance to the light's centre. A sun uses its axis.
         Distance = "distance",
     }
 }
 
-/// The least cosine between a ray and the axis: depths along the ray shrink by it, and their errors do not.
+/// Smallest cosine allowed between a ray and the axis: depths along the ray shrink by it, while their errors do not.
 const LEAST_COSINE: f32 = 0.4;
 
-/// Where t is 0 and 1.
+/// Depth axis and range of a map: t is 0 at `near_m` and 1 at `far_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthRange {
-    /// Unit, in light space: along right, up and axis.
+    /// Unit vector in light space: right, up, axis.
     pub(crate) axis: Vec3,
-    /// Whether depth is the distance to the view's origin in its place.
+    /// Whether depth is the distance to the view's origin instead.
     pub(crate) is_distance: bool,
-    /// Metres from the view's origin.
+    /// Depth at which t is 0, metres from the view's origin.
     pub(crate) near_m: f32,
-    /// See [`Self::near_m`].
+    /// Depth at which t is 1; see [`Self::near_m`].
     pub(crate) far_m: f32,
 }
 
 impl DepthRange {
-    /// Along the light's axis: all that the view holds.
+    /// Returns the whole range of the view along the light's axis.
     pub(crate) fn of_view(view: &LightViewGpu) -> Self {
         Self { axis: Vec3::Z, is_distance: false, near_m: view.near_m, far_m: view.far_m }
     }
 
-    /// No farther than the farthest of points that hold every receiver; as it is without any. What lies behind shades none,
-    /// and texels without a caster, which count as the far end, are as near as they may be: two moments take each for an
-    /// occluder, and the farther it lies the less they say of what is before it.
+    /// Cuts the range at the farthest of `receivers`, points that enclose every receiver; none leave it unchanged. Geometry
+    /// behind them shades nothing. Texels without a caster count as the far end, so it should be near: two moments take such a
+    /// texel for an occluder, and the farther it lies, the less they resolve in front of it.
     pub(crate) fn up_to(self, view: &LightViewGpu, receivers: &[Vec3]) -> Self {
         let along = |p: &Vec3| {
             let from_light = *p - view.origin_in_world;
@@ -65,8 +65,8 @@ impl DepthRange {
         Self { far_m: self.far_m.min(farthest + pad), ..self }
     }
 
-    /// Along the world's axis nearest to the light's: what receives, and what casts before it. None where a ray of the view goes
-    /// across it.
+    /// Returns the range of receivers, and of casters in front of them, along the world axis nearest to the light's. `None` if
+    /// a ray of the view runs at too large an angle to the axis.
     pub(crate) fn along_world(view: &LightView, casters: &Between, receivers: &[Vec3]) -> Option<Self> {
         let frame = &view.frame;
         let nearest = frame.axis.abs().max_position();
@@ -89,7 +89,7 @@ impl DepthRange {
         let (mut near_m, mut far_m) =
             ends_of(receivers.iter().copied().map(along), &of_casters, casters.unknown.is_some());
         if let Some(unknown) = casters.unknown {
-            // What lies farther before all that receives than that is deep counts as so far before it.
+            // Unknown casters at most double the range; those even nearer to the light are clamped to its near end.
             let nearest = unknown.corners().into_iter().map(along).fold(near_m, f32::min);
             near_m = nearest.max(near_m - (far_m - near_m));
         }
@@ -101,13 +101,13 @@ impl DepthRange {
         (far_m - near_m > 0.0).then_some(Self { axis, is_distance: false, near_m, far_m })
     }
 
-    /// By distance to the light's centre: what receives, and what casts before it. None for a sun, which has no centre.
+    /// Returns the range of receivers and casters by distance to the light's centre. `None` for a sun, which has no centre.
     pub(crate) fn by_distance(view: &LightView, casters: &Between, receivers: &[Vec3]) -> Option<Self> {
         if !view.perspective {
             return None;
         }
         let center = view.frame.center;
-        // A box's nearest point may lie on a side of it.
+        // A box's nearest point may lie on a face, not at a corner.
         let nearest = casters.all().map(|bounds| center.clamp(bounds.min, bounds.max));
         let farthest = casters.all().flat_map(|bounds| bounds.corners());
         let of_casters: Vec<f32> = nearest.chain(farthest).map(|p| p.distance(center)).collect();
@@ -122,12 +122,12 @@ impl DepthRange {
         })
     }
 
-    /// By distance to the light's centre: all that the view holds. None for a sun.
+    /// Returns the whole range of the view by distance to the light's centre. `None` for a sun.
     pub(crate) fn of_view_by_distance(view: &LightViewGpu) -> Option<Self> {
         if view.perspective == 0 {
             return None;
         }
-        // The longest of the rays through the window's corners, of those that go 1 m along the axis.
+        // The longest ray through a corner of the window, per metre along the axis.
         let [a, b, c, d] = view.plane_from_uv;
         let ray_m = |corner: Vec2| {
             let from_origin = corner - view.uv_origin;
@@ -139,8 +139,8 @@ impl DepthRange {
     }
 }
 
-/// The nearest and the farthest of all depths; where casters may be anywhere, the farthest of the receivers': what lies behind all
-/// of them shades none.
+/// Returns the nearest and the farthest of all depths. If casters may be anywhere, the farthest is that of the receivers,
+/// because geometry behind all of them shades nothing.
 fn ends_of(receivers: impl Iterator<Item = f32> + Clone, casters: &[f32], are_anywhere: bool) -> (f32, f32) {
     let all = || receivers.clone().chain(casters.iter().copied());
     let farthest = if are_anywhere { receivers.clone().reduce(f32::max) } else { None };
@@ -155,7 +155,7 @@ mod tests {
     use super::*;
     use crate::light_map::central_view::fit_light_view;
 
-    /// A floor below a point's light: its nearest point lies below the light, its farthest at a corner.
+    /// A floor below a point light: its nearest point lies below the light, its farthest at a corner.
     #[test]
     fn distances_hold_what_casts_and_receives() {
         let light = Light::new(LightShape::Sphere { radius_m: 0.1 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
@@ -166,7 +166,7 @@ mod tests {
         assert!(range.is_distance && (range.near_m - 5.0).abs() < 0.01, "{range:?}");
         let corner_m = Vec3::new(4.0, 5.1, 3.0).length();
         assert!((range.far_m - corner_m).abs() < 0.01, "{range:?}");
-        // All that the view holds, and no receiver farther than those there are.
+        // The view's range contains it, and receivers cut it at the farthest of them.
         let gpu_view = view.to_gpu(64);
         let all = DepthRange::of_view_by_distance(&gpu_view).expect("a light with a centre");
         assert!(all.near_m <= range.near_m && all.far_m >= range.far_m, "{all:?}");

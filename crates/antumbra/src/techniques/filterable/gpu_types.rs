@@ -3,7 +3,7 @@ use glam::Vec3;
 use crate::gpu::gpu_structs;
 
 gpu_structs! {
-    /// What the encode, resolve and exact passes of every basis share.
+    /// Parameters that the encode, resolve and exact passes of every basis share.
     pub(crate) struct FilterUniform {
         packing: u32,
         sample_count: u32,

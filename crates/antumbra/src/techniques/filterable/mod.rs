@@ -1,20 +1,19 @@
-//! Passes of the filterable techniques of fixed width. They differ in their basis alone (see
-//! `primitives/depth_basis`): two thin shaders, one that encodes and one that decodes.
+//! Passes of the filterable techniques of fixed kernel width. They differ only in their basis (see `primitives/depth_basis`):
+//! each has two thin shaders, one that encodes and one that decodes.
 //!
 //! ```text
-//! light map (1 to 8 samples a texel) ─► encode ─► blur ─► mips ─► resolve ─► mask
+//! light map (1 to 8 samples per texel) ─► encode ─► blur ─► mips ─► resolve ─► mask
 //! ```
 //!
-//! Depths are measured along the world's axis nearest to the light's, where the map's rays all go along with it
-//! (`depth_axis`): a floor then has one depth under the kernel, however slanted the light. A constant of the pipelines makes them
-//! distances to the light in their place. Texels without a caster count as the
-//! far end of the range, which is that of casters and receivers; of a host's map it is the map's own, or the farthest receiver's
-//! where `Receivers` says how far they reach.
+//! By default depth is measured along the world axis nearest to the light's axis, provided that every ray of the map runs
+//! forward along it (see `depth_axis`). A floor then has one depth under the kernel, however slanted the light. A pipeline
+//! constant selects distances to the light instead. Texels without a caster count as the far end of the range. The range covers
+//! casters and receivers; for a host's map it is the map's own, cut at the farthest receiver if `Receivers` bounds them.
 //!
-//! The map's texels hold the basis's channels in 32-bit words, two or four to a word where they have 16 or 8 bits; a
-//! receiver reads the words of the channels that it needs and no others. Lookups are trilinear and anisotropic over the
-//! pixel's footprint on the receiver's plane. `resolve = exact` takes the basis's place by comparisons of every texel under
-//! the same kernel, which is what these techniques are held against.
+//! Texels of the map store the basis's channels in 32-bit words: one 32-bit, two 16-bit or four 8-bit channels per word. A
+//! receiver reads only the words that it needs. Lookups are trilinear and anisotropic over the pixel's footprint on the
+//! receiver's plane. `resolve = exact` replaces the basis by a comparison of every texel under the same kernel; it is the
+//! reference for these techniques.
 
 use glam::UVec2;
 
@@ -54,7 +53,7 @@ pub(crate) use pipelines::pipelines_index;
 use pipelines::{Basis, Filtered, MapPipelines};
 pub use prepared_basis::PreparedBasis;
 
-/// A basis's shaders.
+/// Shaders of one basis, as WGSL.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BasisShaders {
     pub(crate) encode: &'static str,
@@ -62,29 +61,29 @@ pub(crate) struct BasisShaders {
     pub(crate) resolve: &'static str,
 }
 
-/// The light map of the prepared frame.
+/// Light map of the prepared frame.
 #[derive(Clone, Debug)]
 pub(crate) struct FrameMap {
-    /// Depth: one sample a texel or several.
+    /// Depth texture, with one or several samples per texel.
     pub(crate) depth: wgpu::TextureView,
     pub(crate) size: UVec2,
     pub(crate) sample_count: u32,
-    /// Where it lies.
+    /// Light view with which the map is drawn.
     pub(crate) view: LightViewGpu,
-    /// What its depths are measured along.
+    /// Depth axis and range of the map.
     pub(crate) range: DepthRange,
     settings: FilterSettings,
     inputs: PreparedInputs,
-    /// An earlier frame has drawn it.
+    /// Whether an earlier frame has already drawn the map with the same casters and view.
     is_drawn: bool,
 }
 
-/// The passes. `P` is the basis's parameter uniform.
+/// Passes that all filterable techniques share. `P` is the basis's parameter uniform.
 #[derive(Debug)]
 pub(crate) struct Filterable<P> {
     technique: &'static str,
     shaders: BasisShaders,
-    /// With the sample count that it draws for.
+    /// Pipelines that draw the light map, keyed by sample count.
     casters: Cached<u32, CasterDepth>,
     inputs: FrameInputs,
     packed: PackedMap,
@@ -92,29 +91,29 @@ pub(crate) struct Filterable<P> {
     resolve_layout: wgpu::BindGroupLayout,
     gather_sampler: wgpu::Sampler,
     resolve: wgpu::ComputePipeline,
-    /// Constants of the basis, of the pipeline that resolves, where it has any.
+    /// Pipeline constants of the basis for `resolve`; may be empty.
     constants: Vec<(&'static str, f64)>,
-    /// Whether others draw what the encode pass would write.
+    /// Whether the caster pass writes the packed map in place of the encode pass.
     is_drawn: bool,
-    /// What that pipeline is compiled for.
+    /// Constants that `resolve` is compiled for.
     compiled: Vec<(&'static str, f64)>,
-    /// By [`pipelines_index`].
+    /// Pipelines per kind of map, indexed by [`pipelines_index`].
     map_pipelines: [Option<MapPipelines>; 4],
     view_uniform: wgpu::Buffer,
     filter_uniform: wgpu::Buffer,
     params_uniform: wgpu::Buffer,
-    /// Stands in where a basis has no buffer of its own.
+    /// Placeholder for a basis that has no buffer of its own.
     no_buffer: wgpu::Buffer,
     own_map: Option<OwnMap>,
-    /// Of it.
+    /// Cache key of the light map: casters, view and sample count.
     content: Content<(CastersKey, Vec<u8>)>,
     frame_map: Option<FrameMap>,
     _params: std::marker::PhantomData<P>,
 }
 
 impl<P: GpuStruct> Filterable<P> {
-    /// Makes the pipelines of `technique`. Its shaders find `P` at binding 0 and the basis's buffer at binding 1, of
-    /// group 1 when they encode and of group 2 when they resolve.
+    /// Creates the pipelines of `technique`. Its shaders find `P` at binding 0 and the basis's buffer at binding 1: in group 1
+    /// of the encode pass, in group 2 of the resolve pass.
     pub(crate) fn new(gpu: &Gpu, technique: &'static str, shaders: BasisShaders) -> Self {
         let inputs = FrameInputs::new(gpu);
         let params_layout = Basis::layout(gpu);
@@ -132,7 +131,7 @@ impl<P: GpuStruct> Filterable<P> {
             inputs,
             params_layout,
             resolve_layout,
-            // Takes texels as they are, and at the map's ends the outermost.
+            // The default sampler: no filtering, clamped to the edge.
             gather_sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
             map_pipelines: [const { None }; 4],
             view_uniform: create_uniform::<LightViewGpu>(gpu, "antumbra light view"),
@@ -151,19 +150,18 @@ impl<P: GpuStruct> Filterable<P> {
         }
     }
 
-    /// Sets whether others draw the packed map as the casters' pass goes, in the place of the encode pass; before
-    /// [`Self::prepare_map`].
+    /// Sets whether the caster pass writes the packed map in place of the encode pass. Call it before [`Self::prepare_map`].
     pub(crate) fn set_drawn(&mut self, is_drawn: bool) {
         self.is_drawn = is_drawn;
         self.packed.set_drawn(is_drawn);
     }
 
-    /// Sets the basis's constants of what resolves, which are 0 before; [`Self::prepare_basis`] compiles it for them.
+    /// Sets the basis's constants of the resolve pipeline (default 0). [`Self::prepare_basis`] compiles the pipeline for them.
     pub(crate) fn specialise(&mut self, constants: &[(&'static str, f64)]) {
         self.constants = constants.to_vec();
     }
 
-    /// Compiles what resolves where it is not compiled for the frame's constants.
+    /// Recompiles the resolve pipeline if it is not compiled for the frame's constants.
     fn compile_resolve(&mut self, gpu: &Gpu) {
         let constants = [&self.distance_constant()[..], &self.constants].concat();
         let made = self.compiled.iter().map(|(_, value)| *value).chain(std::iter::repeat(0.0));
@@ -175,12 +173,12 @@ impl<P: GpuStruct> Filterable<P> {
         self.compiled = constants;
     }
 
-    /// The constant of every pipeline that measures depth.
+    /// Returns the constant `IS_DISTANCE`, which every pipeline that measures depth takes.
     pub(crate) fn distance_constant(&self) -> [(&'static str, f64); 1] {
         [("IS_DISTANCE", f64::from(u8::from(self.is_distance())))]
     }
 
-    /// Fits and allocates the light map of the frame, and tells of it.
+    /// Fits and allocates the light map of the frame, and returns its description.
     pub(crate) fn prepare_map(
         &mut self,
         stage: &Stage<'_>,
@@ -208,7 +206,7 @@ impl<P: GpuStruct> Filterable<P> {
                     size: map.size_px,
                     sample_count: 1,
                     view,
-                    // How far its casters reach is not known along another axis.
+                    // The map does not say how far its casters reach along another axis.
                     range: match settings.depth_axis {
                         DepthAxis::Distance => DepthRange::of_view_by_distance(&view),
                         DepthAxis::Light | DepthAxis::World => None,
@@ -229,8 +227,8 @@ impl<P: GpuStruct> Filterable<P> {
         Ok(map)
     }
 
-    /// Allocates the filtered map of `channels` channels and uploads the basis's parameters. `t_step` is the error in t that
-    /// storing leaves.
+    /// Allocates the filtered map of `channels` channels and uploads the basis's parameters. `t_step` is the rounding error of
+    /// stored depths, in t.
     pub(crate) fn prepare_basis(
         &mut self,
         stage: &Stage<'_>,
@@ -278,27 +276,27 @@ impl<P: GpuStruct> Filterable<P> {
         }
     }
 
-    /// What draws the light map of the prepared frame, where it is ours.
+    /// Returns the pipelines that draw the light map of the prepared frame; `None` for a host's map.
     pub(crate) fn casters(&self) -> Option<&CasterDepth> {
         self.casters.get()
     }
 
-    /// The light map of the prepared frame, where it is ours, and what draws it.
+    /// Returns the light map of the prepared frame and the pipelines that draw it; `None` for a host's map.
     pub(crate) fn own_depth(&self) -> Option<(&wgpu::TextureView, &CasterDepth)> {
         Some((&self.own_map.as_ref()?.view, self.casters()?))
     }
 
-    /// The view's, the filter's and the basis's.
+    /// Returns the uniforms of the light view, the filter and the basis.
     pub(crate) fn uniforms(&self) -> (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer) {
         (&self.view_uniform, &self.filter_uniform, &self.params_uniform)
     }
 
-    /// The layout of group 0 of passes over the receivers.
+    /// Returns the layout of group 0 of passes over the receivers.
     pub(crate) fn inputs_layout(&self) -> &wgpu::BindGroupLayout {
         &self.inputs.layout
     }
 
-    /// Whether the prepared frame's light map has several samples a texel.
+    /// Whether the prepared frame's light map has several samples per texel.
     pub(crate) fn is_multisampled(&self) -> bool {
         self.frame_map.as_ref().is_some_and(|map| map.sample_count > 1)
     }
@@ -308,7 +306,7 @@ impl<P: GpuStruct> Filterable<P> {
         self.frame_map.as_ref().is_some_and(|map| map.range.is_distance)
     }
 
-    /// Records the light map, where it is ours and no earlier frame has drawn it.
+    /// Records the light map, unless the host draws it or an earlier frame has drawn it.
     pub(crate) fn record_map(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedBasis) {
         if prepared.map.is_drawn {
             return;
@@ -322,17 +320,17 @@ impl<P: GpuStruct> Filterable<P> {
         }
     }
 
-    /// The light map of the frame prepared last, and the levels of what is filtered from it.
+    /// Returns the light map of the frame prepared last, and the levels of the filtered map.
     pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
         let map = self.frame_map.as_ref()?;
-        // The background of either convention.
+        // The background depth of either convention.
         let empty_depth = if map.view.depth_sign > 0.0 { 0.0 } else { 1.0 };
-        // Compared texel by texel, the filtered map is neither made nor read.
+        // With exact comparisons the filtered map is neither written nor read.
         let levels = if map.settings.resolve == ResolveBy::Exact { Vec::new() } else { self.packed.drawn() };
         Some(DrawnMap { levels, ..map.view.drawn_map(&map.depth, map.sample_count, empty_depth) })
     }
 
-    /// Bytes of the light map and the filtered map.
+    /// Returns the size of the light map and the filtered map, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let map = self.own_map.as_ref().map_or(0, |map| u64::from(map.size).pow(2) * u64::from(map.sample_count) * 4);
         map + self.packed.memory_bytes()

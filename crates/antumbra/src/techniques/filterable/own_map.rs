@@ -1,4 +1,4 @@
-//! Light map that is drawn here, with one or several samples a texel.
+//! Light map that the library draws, with one or several samples per texel.
 
 use antumbra_light::Aabb;
 use glam::UVec2;
@@ -14,7 +14,7 @@ use crate::light_map::occluding_bounds::Between;
 use crate::light_map::stable_fit::{corners_to_hold, in_whole_texels};
 use crate::receivers::inputs::PreparedInputs;
 
-/// A light map of our own.
+/// Light map that the library draws.
 #[derive(Debug)]
 pub(super) struct OwnMap {
     pub(super) view: wgpu::TextureView,
@@ -23,7 +23,7 @@ pub(super) struct OwnMap {
 }
 
 impl<P: GpuStruct> Filterable<P> {
-    /// Fits, allocates and prepares the map.
+    /// Fits, allocates and prepares the light map.
     pub(super) fn prepare_own_map(
         &mut self,
         stage: &Stage<'_>,
@@ -46,7 +46,7 @@ impl<P: GpuStruct> Filterable<P> {
                 Some(OwnMap { view: depth_texture(stage, technique, size, sample_count)?, size, sample_count });
         }
         let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
-        // The window holds the receivers; their kernels reach beyond it.
+        // Kernels of receivers at the window's edge reach beyond it.
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
         let view = in_whole_texels(stage, view, UVec2::splat(size));
@@ -64,16 +64,16 @@ impl<P: GpuStruct> Filterable<P> {
     }
 }
 
-/// What a map takes with the basis of most techniques: depths, and four channels in two words with their levels, which take
-/// three eighths as much again.
+/// Returns the memory of a map with the basis of most techniques, bytes: depth, and four channels in two words. Mip levels add
+/// three eighths.
 fn bytes_of(size: u32, sample_count: u32) -> u64 {
     const OF_BASIS: u32 = 8 * 11 / 8;
     u64::from(4 * sample_count + OF_BASIS) * u64::from(size).pow(2)
 }
 
-/// A square depth map.
+/// Creates a square depth map.
 fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u32) -> Result<wgpu::TextureView, Error> {
-    // Every adapter has 1 and 4; of the others only the attempt tells.
+    // Every adapter supports 1 and 4 samples; others are only known by trying.
     let is_core = matches!(sample_count, 1 | 4);
     let unsupported = || Error::Unsupported {
         technique,
@@ -94,7 +94,7 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     };
-    // Browsers, which do not answer at once, never have the feature.
+    // Browsers cannot answer synchronously, but they never have the feature.
     let mut made = None;
     if gpu.complaint(|| made = Some(gpu.device.create_texture(&descriptor))).is_some() {
         return Err(unsupported());

@@ -3,31 +3,31 @@ use crate::contract::{MapSize, param_choice};
 use crate::primitives::packed_map::{Kernel, Packing};
 
 param_choice! {
-    /// The kernel that a filterable map is blurred with.
+    /// Kernel with which a filterable map is blurred.
     pub enum FilterKernel {
-        /// Every texel of a square alike.
+        /// Equal weights within a square.
         Box = "box",
-        /// The Gaussian with the box's standard deviation.
+        /// Gaussian with the box's standard deviation.
         Gaussian = "gaussian",
     }
 }
 
 param_choice! {
-    /// Samples of each texel of the light map.
+    /// Number of samples per texel of the light map.
     pub enum Multisampling {
-        /// One.
+        /// One sample.
         One = "1",
-        /// Two; a native feature.
+        /// Two samples; needs a native feature.
         Two = "2",
-        /// Four.
+        /// Four samples.
         Four = "4",
-        /// Eight; a native feature.
+        /// Eight samples; needs a native feature.
         Eight = "8",
     }
 }
 
 impl Multisampling {
-    /// The number.
+    /// Returns the number of samples.
     pub fn count(self) -> u32 {
         match self {
             Self::One => 1,
@@ -41,15 +41,15 @@ impl Multisampling {
 param_choice! {
     /// Source of visibility.
     pub enum ResolveBy {
-        /// The technique: the filtered basis.
+        /// Filtered basis of the technique.
         Basis = "basis",
-        /// Comparisons of every texel under the same kernel: what the basis approximates, slowly.
+        /// Comparisons of every texel under the same kernel: the slow reference that the basis approximates.
         Exact = "exact",
     }
 }
 
 param_choice! {
-    /// How two moments are stored.
+    /// Storage format of two moments.
     pub enum MomentStorage {
         /// 32-bit float.
         Float32 = "float32",
@@ -71,7 +71,7 @@ impl From<MomentStorage> for Packing {
 }
 
 param_choice! {
-    /// How warped depths are stored; fixed point cannot hold exponentials.
+    /// Storage format of warped depths. Fixed point cannot hold exponentials.
     pub enum FloatStorage {
         /// 32-bit float.
         Float32 = "float32",
@@ -89,7 +89,7 @@ impl From<FloatStorage> for Packing {
     }
 }
 
-/// The parameters that every filterable technique has.
+/// Parameters that every filterable technique has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FilterSettings {
     pub(crate) map_size: MapSize,
@@ -112,7 +112,7 @@ impl FilterSettings {
     }
 }
 
-/// Declares the parameters of a filterable technique: those that all of them have, then its own.
+/// Declares the parameters of a filterable technique: the shared ones, then its own.
 macro_rules! filterable_params {
     ($(#[$outer:meta])* pub struct $name:ident { $($own:tt)* } $( => $($paper:tt)+ )?) => {
         $crate::contract::params! {
@@ -148,7 +148,7 @@ macro_rules! filterable_params {
                     more "exact compares every texel under the kernel: the truth that the technique approximates.";
                 shared bias_scale;
             }
-            // The blur is as wide in the world at each.
+            // The blur has the same width in the world at every quality.
             Fast { map_size: $crate::contract::MapSize::Texels(512), kernel_size: 3.5, anisotropy: 4, }
             High { map_size: $crate::contract::MapSize::Texels(2048), kernel_size: 14.0, }
             Best { map_size: $crate::contract::MapSize::Texels(4096), kernel_size: 28.0, }

@@ -6,7 +6,7 @@ use crate::primitives::packed_map::{PackedMap, PreparedPackedMap};
 use crate::shaders;
 
 bindings! {
-    /// Of passes over the light map. Depth may have several samples a texel, here and below.
+    /// Inputs and target of passes over the light map. Depth may have several samples per texel, here and below.
     struct Encoded = "encode", COMPUTE, group 0 of [VSM_ENCODE, VSM_ENCODE_MULTISAMPLED] {
         0 map_view: Uniform,
         1 settings: Uniform,
@@ -14,63 +14,63 @@ bindings! {
         3 packed_target: WrittenArray(PackedMap::FORMAT),
     }
 
-    /// Of passes over the receivers that ask the map.
+    /// Uniforms of passes over the receivers that look up the map.
     pub(super) struct Lookup = "lookup", COMPUTE {
         0 light_view: Uniform,
         1 settings: Uniform,
         5 snapped_texels: Uniform,
     }
 
-    /// Of those that read the filtered map.
+    /// Inputs of passes over the receivers that read the filtered map.
     pub(super) struct Filtered = "filtered map", COMPUTE, group 1 of [VSM_RESOLVE], with lookup: Lookup {
         2 packed_map: TextureArray(texels::UINT),
         6 packed_mips: TextureArray(texels::UINT),
         7 gather_sampler: Sampler(samples::TAKES),
     }
 
-    /// Of those that read what the filtered map would be made of.
+    /// Inputs of the exact pass: the light map's depth and the weights of the blur.
     struct Exact = "exact", COMPUTE, group 1 of [FILTERABLE_EXACT, FILTERABLE_EXACT_MULTISAMPLED], with lookup: Lookup {
         3 depth_map: Texture(texels::DEPTH),
         4 weights: Storage,
     }
 
-    /// Of passes over the receivers that read depth alone.
+    /// Inputs of passes over the receivers that read only depth.
     struct Depth = "depth of receivers' map", COMPUTE, group 1 of [LVSM_BLEEDING, LVSM_BLEEDING_MULTISAMPLED] {
         0 light_view: Uniform,
         1 settings: Uniform,
         3 depth_map: Texture(texels::DEPTH),
     }
 
-    /// Of every basis. Each has its own name for the first.
+    /// Parameters and buffer of a basis. Each basis has its own name for the first.
     pub(super) struct Basis = "basis parameters", COMPUTE {
         0 parameters: Uniform,
         1 buffer: Storage,
     }
 }
 
-/// The pipelines for maps of one sample a texel, or of several.
+/// Pipelines for maps of one sample per texel, or of several.
 #[derive(Clone, Debug)]
 pub(super) struct MapPipelines {
     pub(super) encode_layout: wgpu::BindGroupLayout,
     pub(super) encode: wgpu::ComputePipeline,
     pub(super) exact_layout: wgpu::BindGroupLayout,
     pub(super) depth_layout: wgpu::BindGroupLayout,
-    /// Made when it is first asked for.
+    /// Pipeline of the exact pass, created on first use.
     pub(super) exact: Option<wgpu::ComputePipeline>,
 }
 
-/// What the passes of a frame bind.
+/// Bind groups of the passes of one frame.
 #[derive(Debug)]
 pub(super) struct BindGroups {
     pub(super) encode: wgpu::BindGroup,
     pub(super) depth: wgpu::BindGroup,
-    /// The basis's, or the exact pass's.
+    /// Group of the basis's resolve pass, or of the exact pass.
     pub(super) resolve: wgpu::BindGroup,
     pub(super) params: wgpu::BindGroup,
 }
 
 impl<P: GpuStruct> Filterable<P> {
-    /// Binds a frame's maps.
+    /// Creates the bind groups of a frame.
     pub(super) fn bind(
         &self,
         stage: &Stage<'_>,
@@ -97,7 +97,7 @@ impl<P: GpuStruct> Filterable<P> {
         }
     }
 
-    /// The pipelines of the frame's map, compiled where they are not yet.
+    /// Returns the pipelines for the frame's kind of map, and compiles those that are missing.
     pub(super) fn map_pipelines(&mut self, gpu: &Gpu, with_exact: bool) -> MapPipelines {
         let (multisampled, constants) = (self.is_multisampled(), self.distance_constant());
         let index = pipelines_index(multisampled, self.is_distance());
@@ -121,7 +121,7 @@ impl<P: GpuStruct> Filterable<P> {
     }
 }
 
-/// Which pipelines are for maps of several samples a texel, and for distances as depths.
+/// Returns the index of the pipelines for a sample count of one or more, and for depths along an axis or as distances.
 pub(crate) fn pipelines_index(is_multisampled: bool, is_distance: bool) -> usize {
     usize::from(is_multisampled) + 2 * usize::from(is_distance)
 }

@@ -1,4 +1,4 @@
-//! One frame's passes after its light map.
+//! Passes of one frame that follow its light map.
 
 use super::pipelines::BindGroups;
 use super::{FrameMap, ResolveBy};
@@ -9,53 +9,53 @@ use crate::receivers::inputs::PreparedInputs;
 /// Threads along each side of a workgroup over the map.
 const TILE: u32 = 8;
 
-/// The passes of one frame that follow its light map.
+/// Passes of one frame that follow its light map.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedBasis {
     pub(super) map: FrameMap,
     pub(super) groups: BindGroups,
-    /// Layouts of the groups that passes between the map and the basis bind.
+    /// Layouts of the groups that passes between light map and basis bind.
     pub(super) encode_layout: wgpu::BindGroupLayout,
     pub(super) depth_layout: wgpu::BindGroupLayout,
-    /// `None` where others draw what it would write, or nothing is filtered.
+    /// Pipeline of the encode pass; `None` if the caster pass writes the packed map, or nothing is filtered.
     pub(super) encode: Option<wgpu::ComputePipeline>,
     pub(super) packed: PreparedPackedMap,
     pub(super) resolve: wgpu::ComputePipeline,
 }
 
 impl PreparedBasis {
-    /// Group 0 of passes over the light map.
+    /// Returns group 0 of passes over the light map.
     pub(crate) fn encode_group(&self) -> &wgpu::BindGroup {
         &self.groups.encode
     }
 
-    /// Layout of [`Self::encode_group`].
+    /// Returns the layout of [`Self::encode_group`].
     pub(crate) fn encode_layout(&self) -> &wgpu::BindGroupLayout {
         &self.encode_layout
     }
 
-    /// Group 1 of passes over the receivers that read the light map's depth, beside its view and the filter.
+    /// Returns group 1 of passes over the receivers that read the light map's depth: view, filter and depth.
     pub(crate) fn depth_group(&self) -> &wgpu::BindGroup {
         &self.groups.depth
     }
 
-    /// Layout of [`Self::depth_group`].
+    /// Returns the layout of [`Self::depth_group`].
     pub(crate) fn depth_layout(&self) -> &wgpu::BindGroupLayout {
         &self.depth_layout
     }
 
-    /// The receivers: group 0 of passes over them.
+    /// Returns the receivers: group 0 of passes over them.
     pub(crate) fn inputs(&self) -> &PreparedInputs {
         &self.map.inputs
     }
 
-    /// A view of each word of the packed map, where others draw it.
+    /// Returns a view of each word of the packed map, for a caster pass that writes them.
     pub(crate) fn layer_views(&self) -> &[wgpu::TextureView] {
         self.packed.layer_views()
     }
 
-    /// Records all that follows the light map.
+    /// Records every pass after the light map.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>) {
         let Self { map, groups, .. } = self;
         if let Some(encode) = &self.encode {

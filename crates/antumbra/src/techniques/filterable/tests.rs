@@ -1,5 +1,5 @@
-//! The filterable techniques against exact filtering of the same map, in the case that they solve exactly and at the ends
-//! of what numbers hold.
+//! Tests of the filterable techniques against exact filtering of the same map: in the case that they solve exactly, and at the
+//! extremes of number formats.
 
 use antumbra_light::{Aabb, Light};
 use glam::{DVec4, UVec2, Vec2, Vec3, Vec4Swizzles};
@@ -25,14 +25,14 @@ const ALL: [TechniqueKind; 6] = [
     TechniqueKind::Moment,
 ];
 
-/// A wide kernel on a small map: half a metre of the ground.
+/// Settings of a wide kernel on a small map: half a metre of the ground.
 const WIDE: [(&str, &str); 3] = [("map_size", "256"), ("kernel_size", "11"), ("mips", "false")];
 
 fn with<'a>(settings: &[(&'a str, &'a str)]) -> Vec<(&'a str, &'a str)> {
     WIDE.iter().chain(settings).copied().collect()
 }
 
-/// Root mean square and greatest of the differences.
+/// Returns the root mean square and the maximum of the differences.
 fn difference(pixels: &[usize], a: &[f32], b: &[f32]) -> (f32, f32) {
     let squares: f32 = pixels.iter().map(|i| (a[*i] - b[*i]).powi(2)).sum();
     let most = pixels.iter().map(|i| (a[*i] - b[*i]).abs()).fold(0.0, f32::max);
@@ -65,7 +65,7 @@ fn one_planar_occluder_over_a_planar_receiver_is_exact() {
     let split = [("layers", "2"), ("placement", "manual"), ("split_depths", "4.0")];
     let (rmse, most) = against_exact(TechniqueKind::Lvsm, &split);
     assert!(rmse <= 0.02 && most <= 0.12, "a split on the receiver: {rmse}, {most}");
-    // Multisampled maps mean the same.
+    // Multisampled maps have the same mean.
     for samples in ["2", "4", "8"] {
         if !has_samples(gpu, &case, samples) {
             continue;
@@ -77,8 +77,8 @@ fn one_planar_occluder_over_a_planar_receiver_is_exact() {
     }
 }
 
-/// Depth as distance to the light, as published: a floor that it curves by less than bleeds under the kernel is filtered as well,
-/// and not alike.
+/// Depth as distance to the light, as published: where the curvature of the floor is too small to bleed under the kernel,
+/// results are as accurate, but not identical.
 #[test]
 fn distances_to_the_light_are_filtered_as_exactly() {
     let Some(gpu) = gpu() else { return };
@@ -95,8 +95,8 @@ fn distances_to_the_light_are_filtered_as_exactly() {
     }
 }
 
-/// A host's map that reaches two hundred metres down and has one occluder, no ground: where the receivers' box is known, texels
-/// without a caster count as its far side, and not as the map's.
+/// Host's map that reaches two hundred metres down and holds one occluder but no ground. If the receivers' box is known, texels
+/// without a caster count as its far side instead of the map's.
 #[test]
 fn a_host_s_deep_map_without_ground_is_filtered_as_exactly() {
     let Some(gpu) = gpu() else { return };
@@ -136,7 +136,7 @@ fn a_host_s_deep_map_without_ground_is_filtered_as_exactly() {
     }
 }
 
-/// Whether the adapter has light maps of so many samples a texel; where not, the error says so in one line.
+/// Whether the adapter supports light maps of `samples` samples per texel; if not, checks that the error says so in one line.
 fn has_samples(gpu: &Gpu, case: &Case, samples: &str) -> bool {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     match case.run_with(gpu, TechniqueKind::Vsm, &with(&[("msaa", samples)]), Casters::Meshes(&casters)) {
@@ -155,7 +155,7 @@ fn says_which_sample_counts(error: &Error, samples: &str) {
     assert!(text.contains(&format!("{samples} samples a texel")) && !text.contains('\n'), "{text}");
 }
 
-/// A basis with its CPU reference: what a texel's samples, given as t, are stored as.
+/// A basis with its CPU reference, which maps t of a sample to the stored channels.
 struct BasisCase<'a, P> {
     kind: TechniqueKind,
     shaders: BasisShaders,
@@ -164,11 +164,11 @@ struct BasisCase<'a, P> {
     packing: Packing,
     buffer: Option<&'a wgpu::Buffer>,
     encode: &'a dyn Fn(f64) -> Vec<f64>,
-    /// Of values up to 1; larger ones may be off in proportion.
+    /// Tolerance for values up to 1; it is relative for larger ones.
     tolerance: f64,
 }
 
-/// Depth of one sample, which the fragment shader and its CPU reference make alike: a seventh of them background.
+/// Returns the depth of one sample, by the hash that the fragment shader uses too. A seventh of the samples are background.
 fn sample_depth(x: u32, y: u32, sample: u32) -> f32 {
     let h = (x * 7919 + y * 104_729 + sample * 1_299_721 + 12345).wrapping_mul(2_654_435_761);
     let h = h ^ (h >> 15);
@@ -189,7 +189,7 @@ fn fragment(@builtin(position) pos: vec4f, @builtin(sample_index) sample: u32) -
 }
 ";
 
-/// Fills a depth texture by [`sample_depth`].
+/// Fills a depth texture with [`sample_depth`].
 fn draw_samples(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &wgpu::TextureView, sample_count: u32) {
     let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("test samples"),
@@ -235,7 +235,7 @@ fn draw_samples(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &wgpu::Te
     pass.draw(0..3, 0..1);
 }
 
-/// t of a depth of the reversed perspective map at the centre of a texel.
+/// Returns t of a depth of the reversed perspective map at the centre of a texel.
 fn t_of_depth(map: &FrameMap, texel: UVec2, depth: f32) -> f64 {
     if depth == 0.0 {
         return 1.0;
@@ -251,7 +251,7 @@ fn t_of_depth(map: &FrameMap, texel: UVec2, depth: f32) -> f64 {
     ((along_m - near_m) / (far_m - near_m)).clamp(0.0, 1.0)
 }
 
-/// Encodes and resolves a light map of every sample count and size, and holds each channel of each texel to the CPU reference.
+/// Compares each channel of each encoded texel with the CPU reference, for light maps of every sample count and size.
 fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
     let case = Case::half_plane(gpu, RECTANGLE);
     let mut passes: Filterable<P> = Filterable::new(gpu, basis.kind.name(), basis.shaders);
@@ -259,7 +259,7 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
     for (i, msaa) in
         [Multisampling::One, Multisampling::Two, Multisampling::Four, Multisampling::Eight].into_iter().enumerate()
     {
-        // Each sample count has sizes of its own, and all have the one that fills several workgroups.
+        // Sample counts take turns at the sizes; all include the one that fills several workgroups.
         for size in sizes.iter().copied().skip(i % 2).step_by(2).chain([33]) {
             let settings = FilterSettings {
                 map_size: MapSize::Texels(size),
@@ -269,7 +269,7 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
                 mips: false,
                 anisotropy: 1,
                 resolve: ResolveBy::Basis,
-                // Of a view in which every ray goes down: all are tested, in turns.
+                // Every ray of the view runs down, so each axis is valid; sizes take turns at all three.
                 depth_axis: [DepthAxis::Light, DepthAxis::World, DepthAxis::Distance][size as usize % 3],
                 bias_scale: 1.0,
             };
@@ -386,7 +386,7 @@ fn lvsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
         packing: Packing::Unorm16,
         buffer: Some(&buffer),
         encode: &layered,
-        // A warp magnifies what t is off by.
+        // Encoding a layer magnifies the error of t.
         tolerance: 3e-5,
     };
     encode_equals_its_twin(gpu, &basis);
@@ -490,7 +490,7 @@ fn ranges_from_a_metre_to_ten_kilometres_hold() {
         let case = Case::new(gpu, light, view, vec![ground, occluder]);
         let pixels: Vec<usize> = case.ground_pixels(|p| test_ground(p / scale)).into_iter().map(|(i, _)| i).collect();
         let exact = case.run(gpu, TechniqueKind::Vsm, &with(&[("resolve", "exact")]));
-        // What they are held to is a shadow: neither all dark nor all lit.
+        // The reference must contain a shadow: neither all dark nor all lit.
         let mean = pixels.iter().map(|i| exact[*i]).sum::<f32>() / pixels.len() as f32;
         println!("{} m: mean {mean:.4}", 4.0 * scale);
         assert!((0.62..0.64).contains(&mean), "exact filtering at {scale}: a mean of {mean}");
@@ -499,7 +499,7 @@ fn ranges_from_a_metre_to_ten_kilometres_hold() {
             assert!(mask.iter().all(|v| (0.0..=1.0).contains(v)), "{kind} at {scale}");
             let (rmse, _) = difference(&pixels, &exact, &mask);
             println!("{kind}, {} m: rmse {rmse:.4}", 4.0 * scale);
-            // Scale changes nothing.
+            // The bounds are the same at both scales.
             let bound = match kind {
                 TechniqueKind::Esm => 0.11,
                 TechniqueKind::Convolution => 0.0089,

@@ -1,11 +1,11 @@
-//! The filter's CPU reference, for one channel.
+//! CPU reference of the filter, for one channel.
 
 use super::levels::Level;
 use crate::light_map::texel_lists::cpu::TwinFragment;
 use crate::light_map::texel_lists::options::DepthTolerance;
 
-/// One level's lists from the lists of the level before; opacities in one list come together by their overlap, depths are
-/// averaged by opacity or by count.
+/// Returns one level's lists, merged from the lists `before`. Opacities in one list are accumulated by their overlap; depths
+/// are averaged by opacity or by count.
 pub(crate) fn filter(
     before: &Level,
     lists: &[Vec<TwinFragment>],
@@ -36,14 +36,14 @@ pub(crate) fn filter(
         .collect()
 }
 
-/// What two opacities hide together, by the overlap of the farther one.
+/// Returns the combined opacity of two fragments; `overlap` is the farther one's.
 pub(crate) fn accumulated(nearer: f32, farther: f32, overlap: f32) -> f32 {
-    // Rounding may leave the least above the most.
+    // Rounding may put the lower bound above the upper one.
     let common = (overlap * nearer * farther).max(nearer + farther - 1.0).max(0.0);
     nearer + farther - common.min(nearer).min(farther)
 }
 
-/// Figure 3, as far as surfaces are looked up.
+/// Merges four lists as in figure 3, up to the depth limit of lookups.
 pub(crate) fn merge(
     mut lists: [&[TwinFragment]; 4],
     epsilon: DepthTolerance,

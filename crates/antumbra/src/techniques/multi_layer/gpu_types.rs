@@ -32,10 +32,10 @@ gpu_structs! {
         padding_2: u32,
     }
 
-    /// A level for one size of filter, for `resolve.wesl`.
+    /// Rung of the lookup ladder of `resolve.wesl`: a level for one filter width.
     pub(crate) struct MultiLayerRung {
         size: UVec2,
-        /// Of the level's lists.
+        /// Index of the level's first list.
         first: u32,
         spacing: f32,
         offset: f32,
@@ -52,7 +52,7 @@ gpu_structs! {
         padding_0: u32,
     }
 
-    /// What `resolve.wesl` looks up, from the receiver towards the light.
+    /// Rungs that `resolve.wesl` looks up, from the receiver towards the light.
     pub(crate) struct MultiLayerLadder {
         rungs: [MultiLayerRung; 32],
     }

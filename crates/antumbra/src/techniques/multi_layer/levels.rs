@@ -1,86 +1,86 @@
-//! The levels: where their lists lie, how each is made from the one before, and how much its lookup blurs.
+//! Levels: position of their lists, how each is made from another one, and the blur of its lookup.
 
 use glam::UVec2;
 
 use crate::light_map::texel_lists::options::DepthTolerance;
 
-/// One level. Level 0 is the base.
+/// Level of the hierarchy. Level 0 is the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Level {
-    /// Its first entry among the lists.
+    /// Index of its first list.
     pub(crate) first: u32,
-    /// Texels along each side.
+    /// Number of texels along each side.
     pub(crate) size: UVec2,
-    /// Distance of its texels, in texels of the base.
+    /// Distance between its texels, in texels of the base.
     pub(crate) spacing: f32,
-    /// Texel (x, y) lies at (x + offset, y + offset) · spacing in the base: ½ where levels halve, 0 in the stack, −½ where
-    /// its first kernel is shifted.
+    /// Texel (x, y) lies at (x + offset, y + offset) · spacing in the base: ½ for halved levels, 0 in the stack, −½ if its
+    /// first kernel is shifted.
     pub(crate) offset: f32,
     /// Side of the box that blurs as much as the level's bilinear lookup, in texels of the base.
     pub(crate) width: f32,
-    /// Side of the box that is spread as the texels which a list merges, in texels of the base: 0 of one.
+    /// Side of the box with the variance of the texels that a list merges, in texels of the base; 0 for a single texel.
     pub(crate) merged: f32,
-    /// How often its kernel has doubled.
+    /// Number of doublings of its kernel; halves are possible.
     pub(crate) octave: f32,
-    /// The level that it merges.
+    /// Index of the level that it merges.
     pub(crate) source: usize,
-    /// How it merges that level; `None` for the base.
+    /// Merge step from that level; `None` for the base.
     pub(crate) step: Option<Step>,
-    /// Surfaces that begin beyond this depth are left out, since no receiver looks them up in the level.
+    /// Depth limit, metres: surfaces that begin beyond it are dropped, because no receiver looks them up in the level.
     pub(crate) z_limit_m: f32,
 }
 
 impl Level {
-    /// Side of what a list merges texels of, in texels of the base.
+    /// Returns the side of the square of texels that a list merges, in texels of the base.
     pub(crate) fn kernel(&self) -> f32 {
         self.octave.floor().exp2() * (1.0 + self.octave.fract())
     }
 }
 
-/// Which four lists of its source a texel merges: `stride · texel + {near, far}` in each direction.
+/// Merge step: a texel merges four lists of its source, at `stride · texel + {near, far}` in each direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Step {
     pub(crate) stride: u32,
     pub(crate) near: i32,
     pub(crate) far: i32,
-    /// Take one of the four as it is.
+    /// Whether one of the four lists is taken unchanged instead.
     pub(crate) subsample: bool,
 }
 
-/// The most doublings of kernels, the base among them: a base of 8192 texels a side halved to one.
+/// Maximum number of kernel sizes, including the base: a base of 8192 texels a side halved to one.
 pub(crate) const MAX_OCTAVES: u32 = 14;
 
-/// Kernels of a fine stack are at most so many texels wide; beyond that its levels have fewer. Kernels of two texels miss
-/// their shape (`lantern-wall` .015 instead of .012); of eight, a tenth more lists give the same.
+/// Maximum width of kernels of a fine stack, in texels of the level; wider ones halve the level. Kernels of two texels distort
+/// the filter's shape (`lantern-wall` .015 instead of .012); kernels of eight give the same with a tenth more lists.
 const FINE_KERNEL_TEXELS: u32 = 4;
 
-/// What levels to make.
+/// Options of the hierarchy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LevelOptions {
-    /// Texels along each side of the base.
+    /// Number of texels along each side of the base.
     pub(crate) map_size: UVec2,
-    /// How often kernels double, the base counted; at most down to a kernel as wide as the map.
+    /// Number of kernel sizes, including the base; bounded by a kernel as wide as the map.
     pub(crate) octaves: u32,
-    /// Levels halve while they have more than the square of this many texels.
+    /// Side in texels: levels halve while they have more than its square.
     pub(crate) stack_size: u32,
-    /// The stack halves again where kernels have many texels, and has a level between each two kernels.
+    /// Whether the stack halves again when kernels have many texels, and has a level between each two kernels.
     pub(crate) fine: bool,
-    /// First steps that keep one of four lists.
+    /// Number of first steps that keep one of four lists.
     pub(crate) subsampled_steps: u32,
-    /// Of a texel of the base.
+    /// Number of samples per texel of the base.
     pub(crate) samples: u32,
 }
 
-/// The levels of a base.
+/// Returns the levels of a base.
 ///
-/// They halve down to the stack. From there on kernels grow by overlapping (figure 7): the first level of the stack has
-/// its texels at the corners of the level before, and so one more a side; each further one merges texels at twice the
-/// distance. In a fine stack, a kernel shifted by a fourth of itself to either side makes one of 1.3 times its width,
-/// about half-way to the next, and levels halve once kernels are four texels wide.
+/// They halve down to the stack. From there on kernels grow by overlapping (figure 7): the first level of the stack has its
+/// texels at the corners of the previous level, and so one more per side; each further level merges texels at twice the
+/// distance. In a fine stack, a kernel shifted by a fourth of itself to either side makes one of 1.3 times its width, about
+/// half-way to the next, and levels halve once kernels are four texels wide.
 pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
     let LevelOptions { map_size, octaves, stack_size, fine, subsampled_steps, samples } = *options;
     let mut levels: Vec<Level> = Vec::new();
-    // Of the level of the last whole octave.
+    // State of the level of the last whole octave.
     let (mut size, mut spacing, mut source) = (map_size, 1, 0);
     let mut first = 0;
     let mut is_stacked = false;
@@ -93,7 +93,7 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
         if i > 0 && kernel / 2 >= map_size.max_element() {
             break;
         }
-        // Half the distance of what is merged, in texels of the level before.
+        // Half the distance between the merged texels, in texels of the previous level.
         let half = (kernel / spacing / 4) as i32;
         let step = if i == 0 {
             None
@@ -130,10 +130,10 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
         push(&mut levels, level);
         if fine && is_stacked && i + 1 < octaves && kernel < map_size.max_element() {
             let fourth = (kernel / spacing / 4) as i32;
-            // A fourth of a kernel of two texels is half of one: texels lie between those of the kernel.
+            // A fourth of a kernel of two texels is half a texel: the new texels lie between the old ones.
             let (near, far, size, offset) =
                 if fourth == 0 { (-1, 0, size + 1, -0.5) } else { (-fourth, fourth, size, 0.0) };
-            // Two places ¼ kernel from the middle have the variance of a square of √¾ kernels.
+            // Two positions at ¼ kernel from the middle have the variance of a square of √¾ kernels.
             let squared = merged_squared(1.75 * (kernel as f32).powi(2));
             let width = effective_width(squared, spacing, samples);
             let step = Some(Step { stride: 1, near, far, subsample: false });
@@ -146,9 +146,9 @@ pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
     levels
 }
 
-/// A kernel that blurs as a square of so many texels, `2^subsampled_steps` apart, has the variance of their places,
-/// (kernel² − 4^steps) / 12 = `merged_squared` / 12, and that of the samples in a texel; looking it up bilinearly between texels
-/// `spacing` apart adds a tent's, spacing² / 6. A box has width² / 12.
+/// Returns the side of the box with the variance of a level's lookup. The texels of a kernel, `2^subsampled_steps` apart, have
+/// the variance (kernel² − 4^steps) / 12 = `merged_squared` / 12. The samples in a texel add theirs, and bilinear interpolation
+/// between texels `spacing` apart adds a tent's, spacing² / 6. A box has width² / 12.
 fn effective_width(merged_squared: f32, spacing: u32, samples: u32) -> f32 {
     let spacing = spacing as f32;
     // Four samples lie at ±1/8 and ±3/8 along either axis.
@@ -156,28 +156,28 @@ fn effective_width(merged_squared: f32, spacing: u32, samples: u32) -> f32 {
     (merged_squared + in_texel + 2.0 * spacing * spacing).sqrt()
 }
 
-/// What depths receivers and occluders may have, and what filter lies between.
+/// Depths of receivers and occluders, and the filter widths between them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DepthReach {
     pub(crate) perspective: bool,
-    /// No occluder is nearer.
+    /// Smallest depth of an occluder, metres.
     pub(crate) near_m: f32,
-    /// No receiver is farther.
+    /// Largest depth of a receiver, metres.
     pub(crate) far_m: f32,
-    /// A filter's width, in texels of the base, for each unit of g.
+    /// Filter width per unit of g, in texels of the base.
     pub(crate) filter_per_g: f32,
 }
 
 impl DepthReach {
-    /// The depth at which the farthest receiver asks for a filter of this width; all others ask for it nearer to the light.
+    /// Returns the depth at which the farthest receiver needs a filter of this width; others need it nearer to the light.
     fn z_of_filter(&self, width: f32) -> f32 {
         let g = width / self.filter_per_g;
         if self.perspective { 1.0 / (g + 1.0 / self.far_m) } else { self.far_m - g }
     }
 }
 
-/// Leaves out what no receiver looks up. A level serves depths up to the one for which the next finer level's filter is
-/// asked for: what lies beyond that of the farthest receiver is never read, nor is any of a level where nothing is nearer.
+/// Removes what no receiver looks up. A level serves depths up to the depth of the next finer level's filter. Surfaces beyond
+/// that depth for the farthest receiver are never read; a level without nearer depths is never read at all.
 pub(crate) fn keep_what_is_looked_up(
     levels: &mut Vec<Level>,
     reach: &DepthReach,
@@ -187,49 +187,48 @@ pub(crate) fn keep_what_is_looked_up(
         [0.0].into_iter().chain(levels.iter().map(|level| level.width)).map(|finer| reach.z_of_filter(finer)).collect();
     let needed = z_far.iter().skip(1).take_while(|z_far| **z_far > reach.near_m).count() + 1;
     levels.truncate(needed);
-    // A surface reaches ε beyond its nearest fragment, where its mean depth may lie.
+    // A surface extends ε beyond its nearest fragment, and its mean depth may lie there.
     let end_of_surface = |level: &Level, z: f32| {
         let epsilon = epsilon(level);
         z + epsilon.slope * z + epsilon.m
     };
     for (level, z_far) in levels.iter_mut().zip(z_far) {
-        // The lookup reads on for the surface that begins before z_far.
+        // The lookup continues for the surface that begins before z_far.
         level.z_limit_m = end_of_surface(level, z_far);
     }
-    // A level has all that those made from it need.
+    // A level keeps everything that the levels made from it need.
     for i in (1..levels.len()).rev() {
         let (source, limit) = (levels[i].source, end_of_surface(&levels[i], levels[i].z_limit_m));
         levels[source].z_limit_m = levels[source].z_limit_m.max(limit);
     }
 }
 
-/// How many lists all levels have.
+/// Returns the number of lists of all levels.
 pub(crate) fn list_count(levels: &[Level]) -> u32 {
     levels.iter().map(|level| level.size.element_product()).sum()
 }
 
-/// A level, and the filter that it is looked up for.
+/// Rung of the lookup ladder: a level and the filter width that it is looked up for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rung {
     pub(crate) level: usize,
-    /// Its width, in texels of the base, for one part of the light.
+    /// Filter width for one part of the light, in texels of the base.
     pub(crate) filter: f32,
-    /// How far from the receiver's place lookups for any part of the light read, in texels of the base.
+    /// Distance from the receiver's position within which lookups for any part of the light read, in texels of the base.
     pub(crate) reach: f32,
 }
 
-/// One level for all depths, counted from 1; the last where there are fewer.
+/// Returns one level for all depths; `count` starts from 1 and is clamped to the last level.
 pub(crate) fn fixed_rung(levels: &[Level], count: u32) -> Rung {
     let level = (count.max(1) as usize).min(levels.len()) - 1;
     Rung { level, filter: 0.0, reach: levels[level].spacing + 0.5 * levels[level].kernel() }
 }
 
-/// What is looked up, from the receiver towards the light: every level for the filter that it is, and before them, where
-/// parts of the light look past the receiver at one side, the base for none, just there.
+/// Returns the rungs from the receiver towards the light: every level for its own filter width. If parts of the light are
+/// looked up beside the receiver, a rung at the receiver itself precedes them: the base without a filter.
 pub(crate) fn rungs(levels: &[Level], in_parts: bool) -> Vec<Rung> {
     let rung = |i: usize, filter: f32| {
-        // Parts look past the receiver by half their filters, lists lie up to a texel of the level away, and merge half a
-        // kernel.
+        // Parts are looked up half their filter aside, lists lie up to a texel of the level away, and they merge half a kernel.
         let shift = if in_parts { 0.5 * filter } else { 0.0 };
         Rung { level: i, filter, reach: shift + levels[i].spacing + 0.5 * levels[i].kernel() }
     };

@@ -1,116 +1,116 @@
 //! `multi_layer`: filtered multi-layer shadow maps.
 //!
 //! Kai Selgrad, Carsten Dachsbacher, Quirin Meyer, Marc Stamminger, "Filtering Multi-Layer Shadow Maps for Accurate Soft
-//! Shadows", Computer Graphics Forum 34(1), 2014. Each texel of the base holds the list of *all* its fragments, with
-//! depth and opacity. Merging the lists of 2 × 2 texels blurs the occluders themselves: what a fragment covers in part
-//! becomes a fragment of less opacity. A receiver then looks each depth up in the level whose blur is the light's.
+//! Shadows", Computer Graphics Forum 34(1), 2014. Each texel of the base holds the list of *all* its fragments, with depth and
+//! opacity. Merging the lists of 2 × 2 texels blurs the occluders themselves: partial coverage becomes lower opacity. A
+//! receiver looks each depth up in the level whose blur matches the light's.
 //!
-//! # Which level for which depth
-//! A segment from a receiver at depth `z_r` to a point of the light that is `o` from its centre crosses depth `z` at
-//! `o · g` from the segment to the centre, on the light's plane, where
+//! # Level for a depth
+//! A segment from a receiver at depth `z_r` to a point of the light at offset `o` from its centre crosses depth `z` at distance
+//! `o · g` from the segment to the centre, measured on the light's plane, where
 //!
 //! ```text
 //! g = 1/z − 1/z_r   (perspective)        g = z_r − z   (sun, o a tangent)
 //! ```
 //!
-//! so an occluder there is seen through a filter of width `f_s = l · g`, for a square light of side `l` (section 5.1,
-//! where `z_near` cancels against the texel's width). Inverted, `g = f / l` gives the depth for a filter size, the
-//! paper's `z(f_s)`. Level `i` serves the depths between those of its neighbours' widths, with a weight that falls from
-//! 1 at its own to 0 at theirs (section 5.2). The weight is linear in `f²`: variances of blurs add, so the mixture of
-//! two levels then has the variance asked for.
+//! so the receiver sees an occluder there through a filter of width `f_s = l · g`, for a square light of side `l` (section 5.1,
+//! where `z_near` cancels against the texel's width). The inverse, `g = f / l`, gives the depth for a filter size, the paper's
+//! `z(f_s)`. Level `i` serves the depths between its neighbours' filter widths, with a weight that falls from 1 at its own to 0
+//! at theirs (section 5.2). The weight is linear in `f²`: variances of blurs add, so the mixture of two levels has the required
+//! variance.
 //!
-//! A level's own width counts its bilinear lookup: a box of width `W` looked up between texels `s` apart blurs as a box
-//! of width `√(W² + 2 s²)`. Lights that are not squares act as the square of the same variance.
+//! A level's width includes its bilinear lookup: a box of width `W` interpolated between texels `s` apart blurs like a box of
+//! width `√(W² + 2 s²)`. Lights that are not squares act as the square of the same variance.
 //!
-//! # Where we depart from the paper
-//! Errors are rmse against the ray tracer, 320 × 180.
-//! - **How surfaces at different depths come together.** The paper adds opacities, which darkens what stands one behind
-//!   the other (figure 15), or multiplies transmittances, which breaks one occluder apart where it lies in two levels,
-//!   (1 − ½)(1 − ½) = ¼ (figure 14). Two neighbouring levels see the *same* surface, one too sharp and one too soft, so
-//!   we mix them. Different surfaces come together by how their edges lie: the four lists of a lookup also give the
-//!   change of opacity across the map, an edge. Where the edges of two surfaces point the same way one hides behind the
-//!   other and the larger opacity counts; where they point opposite ways the surfaces adjoin and opacities add; where
-//!   they are unrelated transmittances multiply. With `level_accumulation=pairs`, which mixes and multiplies, and with
-//!   `correlated`: `stacked-panels` .049 and .015, `leaning-plank` .025 and .013, `stained-glass` .057 and .037.
-//! - **What fragments of one list have in common** is found when lists are merged (`list_accumulation=overlap`). What fragments of
-//!   different lists hide adjoins; merged, they stand in one list, and multiplied there, or added where they do lie behind one
-//!   another, they hide too little or too much. So each fragment keeps how much of it lies behind the nearer ones, from the mean
-//!   of the lists' transmittances (as in deep shadow maps: Lokovic, Veach, SIGGRAPH 2000). A wall that the light grazes is one wall
-//!   at any kernel's size: in a closed room under a lamp (`inside_out`) 1 % of the light leaked with `multiply` and 0.3 %
-//!   with `overlap`; root mean square error on the scenes `overlap` and `fence-geometry` (320 × 180) .0147 and .0140, .0575 and .0532.
-//! - **What the hat weights** (section 5.2: fragments are "weighted depending on their z-value by a hat-function" and
-//!   gathered). With `hat=fragments`, as published, each fragment of opacity α counts w α in a level and (1 − w) α in the
-//!   next, and all of these are accumulated. Two opaque surfaces at w = ½ are four fragments of ½: multiplied they hide
-//!   1 − (1 − ½)⁴ = .94, added min(4 · ½, 1) = 1. We accumulate a level first, here 1 in both, and weight what it hides:
-//!   multiplied that is 1 − (1 − ½)² = .75, mixed it is ½ · 1 + ½ · 1 = 1, which is the truth.
-//! - **All faces** of closed meshes cast, where the paper keeps the back ones: a solid's two faces have the same edges,
-//!   so they do not darken twice, and grooves and contacts finer than a texel no longer leak. `street` .094 and .079,
+//! # Differences from the paper
+//! Errors are rmse against the ray tracer, 320 × 180. Of two values, the first is without the difference and the second with
+//! it.
+//! - **Accumulation of surfaces at different depths.** The paper adds opacities, which darkens stacked occluders too much
+//!   (figure 15), or multiplies transmittances, which splits one occluder that lies in two levels, (1 − ½)(1 − ½) = ¼
+//!   (figure 14). Two neighbouring levels see the *same* surface, one too sharp and one too soft, so they are mixed here.
+//!   Different surfaces are accumulated by the directions of their edges; the four lists of a lookup also give the change of
+//!   opacity across the map, an edge. If the edges of two surfaces point the same way, one hides behind the other and the
+//!   larger opacity counts; if they point opposite ways, the surfaces adjoin and opacities add; if they are unrelated,
+//!   transmittances multiply. With `level_accumulation=pairs`, which mixes and multiplies, and with `correlated`:
+//!   `stacked-panels` .049 and .015, `leaning-plank` .025 and .013, `stained-glass` .057 and .037.
+//! - **Overlap of fragments in one list** is computed when lists are merged (`list_accumulation=overlap`). Fragments of
+//!   different lists adjoin. Once merged, they share a list, where multiplying them, or adding them although they lie behind
+//!   one another, hides too little or too much. Each fragment therefore stores how much of it lies behind nearer ones, from the
+//!   mean of the lists' transmittances (as in deep shadow maps: Lokovic, Veach, SIGGRAPH 2000). A wall at a grazing angle stays
+//!   one wall for any kernel size: in a closed room under a lamp (`inside_out`) 1 % of the light leaked with `multiply` and
+//!   0.3 % with `overlap`; the scene `overlap` has .0147 and .0140, `fence-geometry` .0575 and .0532.
+//! - **Weights of the hat function** (section 5.2: fragments are "weighted depending on their z-value by a hat-function" and
+//!   gathered). With `hat=fragments`, as published, each fragment of opacity α counts w α in a level and (1 − w) α in the next,
+//!   and all of these are accumulated. Two opaque surfaces at w = ½ are four fragments of ½: multiplied they hide 1 − (1 − ½)⁴
+//!   = .94, added min(4 · ½, 1) = 1. Here a level is accumulated first, in the example to 1 in both levels, and its occlusion
+//!   is weighted: multiplied that is 1 − (1 − ½)² = .75, mixed it is ½ · 1 + ½ · 1 = 1, which is correct.
+//! - **All faces** of closed meshes cast, whereas the paper keeps the back faces. A solid's two faces have the same edges, so
+//!   they do not darken twice, and grooves and contacts finer than a texel no longer leak. `street` .094 and .079,
 //!   `stained-glass` .037 and .020. `faces=back` has half the fragments.
-//! - **Coverage.** Four samples a texel (`msaa`): the opacity of the base's fragments is the share of the texel that they
-//!   cover (opaque casters whose positions and indices have the usage `STORAGE`), not 0 or 1, which the paper leaves to
-//!   future work ("semi-transparent fragments at silhouette edges"). What is thinner than a texel keeps its area, before
-//!   the light's parts: `fence-geometry` .069 with one sample and .067 with four, `tree` .059 and .056.
+//! - **Coverage.** With four samples per texel (`msaa`), the opacity of the base's fragments is the covered fraction of the
+//!   texel instead of 0 or 1 (for opaque casters whose positions and indices have the usage `STORAGE`). The paper leaves this
+//!   to future work ("semi-transparent fragments at silhouette edges"). Casters thinner than a texel keep their area. Without
+//!   quarters of the light: `fence-geometry` .069 with one sample and .067 with four, `tree` .059 and .056.
 //! - **Quarters of the light** (`light_parts`) are looked up one by one, each in kernels half as wide and at its own side of
-//!   the receiver. What hides one quarter and what hides another then add, and what hides the same one is found in lists
-//!   that were merged once less: where a kernel holds many leaves, how they lie to one another is what is lost by
-//!   merging. `tree` .056 and .050, `overlap` .019 and .011, `lantern-wall` .018 and .016, `street` .078 and .074, in four
-//!   times the lookups. Next to the receiver, where the parts' kernels are finer than texels, the base is looked up
-//!   unshifted.
-//! - **ε** grows by √2 a level from 10 w, not by 2 from 2 w: coarse levels keep surfaces apart that lie far apart, fine
-//!   levels stay short.
-//! - **A finer Y-map.** What two levels mix is a blur of the right variance and the wrong shape, the more so the farther
-//!   their widths lie apart. `fine_y_map` has a level between each two of the stack, and in exchange halves again once
-//!   kernels are four texels wide. Against the paper's:
-//!   `overlap` .0124 and .0100, `lantern-wall` .0163 and .0120, from 1.21 times the lists of a MIP-map where the paper's
-//!   has 1.32 times; a MIP-map has .0216 and .0267.
+//!   the receiver. Occluders of different quarters then add, and occluders of the same quarter come from lists that were merged
+//!   once less. Merging loses the arrangement of leaves within a kernel. `tree` .056 and .050, `overlap` .019 and .011,
+//!   `lantern-wall` .018 and .016, `street` .078 and .074, for four times the lookups. Next to the receiver, where the
+//!   quarters' kernels are finer than texels, the base is looked up without the shift.
+//! - **ε** grows by √2 per level from 10 w, not by 2 from 2 w: coarse levels keep distant surfaces apart, and fine levels stay
+//!   short.
+//! - **A finer Y-map.** A mixture of two levels is a blur of the right variance and the wrong shape, more so the farther their
+//!   widths are apart. `fine_y_map` has a level between each two of the stack, and in exchange halves again once kernels are
+//!   four texels wide. Compared with the paper's: `overlap` .0124 and .0100, `lantern-wall` .0163 and .0120, from 1.21 times
+//!   the lists of a MIP-map where the paper's has 1.32 times. With a MIP-map the two scenes have .0216 and .0267.
 //! - **Depths are averaged by opacity,** not by count, so that a sliver does not pull a surface from its place.
-//! - **The receiver's plane.** A fragment must be in front of the receiver's plane at the list's texel, which keeps
-//!   tilted receivers from shading themselves; lists behind that plane at an occluder's depth have no say in its opacity,
-//!   which those before it give (`street` .067 and .063, `tree` .049 and .044: receivers that the light grazes no longer
-//!   miss half of what is above them); and the light's part below the plane counts as occluded. Where the light comes near the
-//!   plane, what merged lists hold of the receiver's own surface is taken away: half of it is nearer to the light than where the
-//!   lists lie (a sphere of .2 m whose middle is .1 m above the ground of `leaning-plank`: .374 and .071; `sconce_touch` .106 and .015).
-//! - **Rectangular maps.** The map has the sides of the window, and `map_size`² texels in all (`street` .073 and .067).
-//!   Texels have the light's own proportions, up to 4 : 1, so that square kernels of them are rectangles of the light's
-//!   shape.
+//! - **The receiver's plane.** A fragment must be in front of the receiver's plane at the list's texel, so that tilted
+//!   receivers do not shade themselves. Lists behind that plane at an occluder's depth are ignored; the lists in front of it
+//!   give the opacity (`street` .067 and .063, `tree` .049 and .044: receivers at grazing angles no longer miss half of the
+//!   occluders above them). The light's part below the plane counts as occluded. Where the light comes near the plane, the
+//!   opacity of the receiver's own surface in merged lists is removed, because half of that surface is nearer to the light than
+//!   the lists' positions (a sphere of .2 m with its centre .1 m above the ground of `leaning-plank`: .374 and .071;
+//!   `sconce_touch` .106 and .015).
+//! - **Rectangular maps.** The map has the window's aspect ratio, and `map_size`² texels in total (`street` .073 and .067).
+//!   Texels have the light's aspect ratio, up to 4 : 1, so that square kernels of them are rectangles of the light's shape.
 //!
-//! `multi_layer:paper` (`Quality::Paper`) turns each of these off; the parameters' declarations
-//! say which does what, and so does `antumbra techniques multi_layer`. `level_weights=none`, `fixed_level` and
-//! `hierarchy=mip_map` are what figures 5, 6 and 10 compare with.
+//! `multi_layer:paper` (`Quality::Paper`) turns each of these off; the parameters' declarations and
+//! `antumbra techniques multi_layer` say which parameter does what. `level_weights=none`, `fixed_level` and `hierarchy=mip_map`
+//! reproduce the comparisons of figures 5, 6 and 10.
 //!
 //! # Passes
-//! `count` and `collect` draw the casters, `scan` turns counts into places, `sort` orders each list (or `link`, `sort`);
-//! `filter` makes each level from a finer one; `nearest` takes the nearest fragment of every square of 4, 8, 16, … texels
-//! of the base; `resolve` looks up; with `sub`, `upsample` interpolates between every other pixel and lists what it would
-//! get wrong, and `resolve missing` looks those up, packed side by side.
+//! `count` and `collect` draw the casters, `scan` turns counts into offsets, `sort` orders each list (or `link`, `sort`).
+//! `filter` computes each level from a finer one. `nearest` finds the nearest fragment of every square of 4, 8, 16, … texels of
+//! the base. `resolve` looks up. With `sub`, `upsample` interpolates between every other pixel and lists the pixels that this
+//! would get wrong, and `resolve missing` looks those up, packed side by side.
 //!
-//! A level keeps what receivers look up in it, and no more: filters as wide as its own are asked for by what lies far
-//! enough before the farthest receiver, so its lists end there, and levels that nothing lies far enough before are not
-//! made: nine of seventeen on `overlap`. `prune=false` makes all of them in full, as the paper does.
+//! A level stores only what receivers look up in it. Filters as wide as its own apply only to occluders far enough in front of
+//! the farthest receiver, so its lists end there. Levels without occluders at such distances are not made: of seventeen on
+//! `overlap`, nine are. `prune=false` makes all levels in full, as the paper does.
 //!
-//! A lookup first tells which levels have anything for it: by four reads of `nearest` for each, those about which anything
-//! lies near enough to the light, and of these the ones whose lists have it at the level's depths. Then it walks the lists
-//! of those alone. Threads of one group differ in which levels these are, and in one loop over all of them would wait for
-//! one another at each: eight at a time, walks a pixel, all parts of the light together, are 4.6 on `overlap` and 3.7 on
-//! `lantern-wall` where there are up to forty levels to walk, and a MIP-map's are 4.4 and 3.6. How opacities come together
-//! is a constant of the pipeline, made anew when it changes.
+//! A lookup first finds the levels that contain anything for it: by four reads of `nearest` per level, those with a fragment
+//! near enough to the light around the receiver, and of these the ones whose lists have fragments at the level's depths. It
+//! then walks only their lists. Threads of a group need different levels, and in one loop over all levels they would wait for
+//! one another at each. In groups of eight threads, walks per pixel for all parts of the light together are 4.6 on `overlap`
+//! and 3.7 on `lantern-wall`, where up to forty levels exist to walk; those of a MIP-map are 4.4 and 3.6. The accumulation of
+//! opacities is a pipeline constant; the pipeline is recompiled when it changes.
 //!
-//! A level's lookup ends with the surface that begins before the next finer level's depth: what begins beyond is that
-//! level's own.
+//! A level's lookup ends with the surface that begins before the next finer level's depth; surfaces that begin beyond it belong
+//! to that level.
 //!
-//! Time follows what the lists hold: a larger ε shortens them where many surfaces lie behind one another (`tree`), and has
-//! nothing left to merge where a list has one or two (`lantern-wall`: 1.4 a list from the third level on).
+//! Time depends on the length of the lists: a larger ε shortens them where many surfaces lie behind one another (`tree`), and
+//! has nothing left to merge where a list has one or two (`lantern-wall`: 1.4 per list from the third level on).
 //!
-//! Memory: 8 bytes a fragment and 8 bytes a list. Counts come back a frame later; a frame without room for all keeps
-//! unmerged lists in coarse levels or leaves fragments out, says so by [`Technique::overflow`], and the next has room.
+//! Memory: 8 bytes per fragment and 8 per list. Counts are read back a frame later. A frame without memory for all fragments
+//! keeps unmerged lists in coarse levels or drops fragments, and reports [`Technique::overflow`]; the next has enough.
 //!
 //! # Limits
-//! Occluders finer than a fourth of a texel of the base are seen where a sample meets them, and so in bands
-//! (`fence-geometry`). Surfaces that a list holds within ε are one: foliage of many layers is a little too light in its
-//! umbra (`tree`). Receivers that the light grazes look what touches them up in texels that are wider than it, and are a
-//! little too dark beside it, or miss it (`street`'s signs, washing and ribbed lanterns). Fragments are seen from the
-//! light's centre alone: sides of thick occluders that face the light's rim are missed. Penumbrae wider than the last
-//! level are cut. Lights act as rectangles: of their variance where they are round or their emission varies, about its mean. A mask is filtered by its mean alpha, which for cutoffs far from ½ covers too much or too little.
+//! Occluders finer than a fourth of a texel of the base are seen only where a sample meets them, and so in bands
+//! (`fence-geometry`). Surfaces within ε in a list are one: the umbra of foliage with many layers is a little too light
+//! (`tree`). Receivers at grazing angles look up objects in contact with them in texels wider than the objects, and are a
+//! little too dark beside them or miss them (`street`'s signs, washing and ribbed lanterns). Fragments are seen from the
+//! light's centre alone: sides of thick occluders that face the light's rim are missed. Penumbrae wider than the last level are
+//! cut off. Lights act as rectangles: round ones, and ones of varying emission, by mean and variance. Alpha masks are filtered
+//! by mean alpha, which covers too much or too little for cutoffs far from ½.
 
 use crate::contract::{
     CastersKey, DrawnLists, Error, ListLengths, ListLevel, ListOrder, MeshCaster, Overflow, PreparedCasters,
@@ -151,7 +151,7 @@ use plan::FramePlan;
 
 bindings! {
     struct FilteredLists = "multi_layer filter", COMPUTE, group 0 of [MULTI_LAYER_FILTER] {
-        /// [`FilterStep`]s, [`STEP_STRIDE`] apart.
+        /// [`FilterStep`]s, [`STEP_STRIDE`] bytes apart.
         0 filter_step: DynamicStorage(size_of::<FilterStep>()),
         1 lists: ReadWrite,
         2 fragments: ReadWrite,
@@ -171,13 +171,13 @@ bindings! {
 /// Threads along each side of a workgroup.
 const TILE: u32 = 8;
 
-/// Bytes from one [`FilterStep`] to the next: dynamic offsets are multiples of WebGPU's default alignment.
+/// Distance of [`FilterStep`]s, bytes: dynamic offsets are multiples of WebGPU's default alignment.
 const STEP_STRIDE: u32 = 256;
 
-/// Fragments for each texel of the base that the first frame has room for, before any count has come back.
+/// Fragments per texel of the base that the first frame allocates, before any count is known.
 const FIRST_FRAGMENTS_PER_TEXEL: u32 = 4;
 
-/// Room beyond what the last frame needed, so that a moving scene seldom overflows.
+/// Factor on the number of fragments that the last frame needed, so that a moving scene seldom overflows.
 const HEADROOM: f64 = 1.25;
 
 /// Filtered multi-layer shadow maps.
@@ -186,7 +186,7 @@ pub struct MultiLayer {
     lists: TexelLists,
     inputs: FrameInputs,
     filter_layout: wgpu::BindGroupLayout,
-    /// With whether it averages depths by count.
+    /// Pipeline that filters a level, keyed by its constants.
     filter: Cached<FilterDesign, wgpu::ComputePipeline>,
     nearest: NearestSquares,
     lookup_layout: wgpu::BindGroupLayout,
@@ -194,20 +194,20 @@ pub struct MultiLayer {
     view_uniform: wgpu::Buffer,
     lookup_uniform: wgpu::Buffer,
     ladder_uniform: wgpu::Buffer,
-    /// [`FilterStep`]s, [`STEP_STRIDE`] apart.
+    /// [`FilterStep`]s, [`STEP_STRIDE`] bytes apart.
     filter_steps: Option<wgpu::Buffer>,
     feedback: Feedback,
     capacity: u32,
-    /// Of lists, levels and squares.
+    /// Cache key of lists, levels and squares.
     content: Content<(CastersKey, Vec<u8>)>,
-    /// What the frames that the feedback is of had.
+    /// Side of a square base with as many texels, in the frames that the feedback describes.
     map_size: u32,
     overflow: Option<Overflow>,
-    /// Of the frame prepared last, where they are the light's own.
+    /// Lists of the frame prepared last, if they are the light's own.
     drawn_lists: Option<DrawnLists>,
 }
 
-/// What the lookup is compiled for: the constants of `resolve.wesl`.
+/// Key of the lookup's pipeline: the constants of `resolve.wesl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct LookupDesign {
     colored: bool,
@@ -222,7 +222,7 @@ struct LookupDesign {
 }
 
 impl LookupDesign {
-    /// By their names.
+    /// Returns the constants with their names.
     fn constants(self) -> [(&'static str, f64); 9] {
         [
             ("COLORED", f64::from(u8::from(self.colored))),
@@ -238,7 +238,7 @@ impl LookupDesign {
     }
 }
 
-/// What the filter is compiled for: what is not asked for is no code at all.
+/// Key of the filter's pipeline, which contains no code for options that are off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct FilterDesign {
     averages_by_count: bool,
@@ -247,7 +247,7 @@ struct FilterDesign {
 }
 
 impl FilterDesign {
-    /// By their names.
+    /// Returns the constants with their names.
     fn constants(self) -> [(&'static str, f64); 3] {
         [
             ("AVERAGES_BY_COUNT", f64::from(u8::from(self.averages_by_count))),
@@ -257,12 +257,12 @@ impl FilterDesign {
     }
 }
 
-/// The passes of one frame.
+/// Passes of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedMultiLayer {
     lists: PreparedLists,
-    /// An earlier frame has made the lists, their levels and squares.
+    /// Whether an earlier frame has already made the lists, their levels and squares.
     are_made: bool,
     levels: Vec<Level>,
     filter: wgpu::ComputePipeline,
@@ -337,7 +337,7 @@ impl Technique for MultiLayer {
         };
         let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, params.sub, &shader);
         let steps = plan.filter_steps(self.capacity);
-        // Their order is that of the fields; floats that print alike are alike.
+        // `Debug` prints the fields in order, and floats that print alike are equal.
         let options = format!("{list_options:?} {squares:?} {:?}", plan.filter_design());
         let casters = stage.casters().filter(|_| lists.lease.is_own());
         let of = [bytemuck::bytes_of(&plan.gpu_view), options.as_bytes(), &steps];
@@ -381,7 +381,7 @@ impl Technique for MultiLayer {
         prepared.resolve.record(recorder, |pass| pass.set_bind_group(1, &prepared.lookup_group, &[]));
     }
 
-    /// Whether there was room for all is learnt some frames later.
+    /// Whether counts have arrived, some frames later, and all fragments fitted.
     fn is_settled(&self, _params: &MultiLayerParams, _still_frames: u32) -> bool {
         !self.feedback.is_awaited() && self.overflow.is_none()
     }
@@ -400,7 +400,7 @@ impl Technique for MultiLayer {
 }
 
 impl MultiLayer {
-    /// Gathers the lists, and makes their levels.
+    /// Records the passes that gather the lists and make their levels and squares.
     fn record_lists(&self, recorder: &mut Recorder<'_>, prepared: &PreparedMultiLayer, meshes: &[MeshCaster<'_>]) {
         self.lists.record(recorder, meshes, &prepared.lists);
         recorder.compute("filter", Span::Only, |pass| {
@@ -420,7 +420,7 @@ impl MultiLayer {
         FilteredLists { filter_step, lists, fragments, counters }.group(stage, &self.filter_layout)
     }
 
-    /// The filter, compiled where it is not compiled for this.
+    /// Returns the filter's pipeline, and compiles it if it is missing.
     fn filter(&mut self, gpu: &Gpu, design: FilterDesign) -> wgpu::ComputePipeline {
         let make = || {
             let (wgsl, layouts) = (shaders::MULTI_LAYER_FILTER, [&self.filter_layout]);
@@ -429,7 +429,7 @@ impl MultiLayer {
         self.filter.get_or_make(design, make).clone()
     }
 
-    /// Sets the capacity by what the last frames needed, and says whether they had it.
+    /// Sets the capacity from what the last frames needed, and records whether it sufficed.
     fn make_room(&mut self, stage: &Stage<'_>, map_size: u32, levels: &[Level]) -> Result<(), Error> {
         let limits = stage.device.limits();
         let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
@@ -462,7 +462,7 @@ impl MultiLayer {
     }
 }
 
-/// The lists of a map and of its levels, as hosts may look at them.
+/// Returns the lists of a map and of its levels, for hosts to inspect.
 fn drawn_lists(lists: &PreparedLists, levels: &[Level]) -> DrawnLists {
     let level = |level: &Level| ListLevel { first: level.first, size_texels: level.size };
     DrawnLists {

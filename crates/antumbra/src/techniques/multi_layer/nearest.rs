@@ -1,4 +1,4 @@
-//! The nearest fragment of every square of texels, from 4 × 4 to the whole map: where a lookup has nothing to find.
+//! Nearest fragment of every square of texels, from 4 × 4 to the whole map, with which lookups skip empty levels.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use crate::shaders;
 
 bindings! {
     struct Nearest = "multi_layer nearest", COMPUTE, group 0 of [MULTI_LAYER_NEAREST] {
-        /// [`STEP_STRIDE`] apart.
+        /// [`NearestStep`]s, [`STEP_STRIDE`] bytes apart.
         0 nearest_step: DynamicStorage(size_of::<NearestStep>()),
         1 lists: Storage,
         2 fragments: Storage,
@@ -20,21 +20,21 @@ bindings! {
     }
 }
 
-/// Sizes of squares that a dispatch makes.
+/// Number of sizes of squares that a dispatch makes.
 const SIZES_A_STEP: u32 = 4;
 
-/// One size of squares.
+/// Squares of one size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Squares {
-    /// Their side is `1 << shift` texels of the base.
+    /// Log2 of their side: `1 << shift` texels of the base.
     pub(crate) shift: u32,
-    /// Along each side of the map.
+    /// Number of squares along each side of the map.
     pub(crate) count: UVec2,
-    /// The first among all.
+    /// Index of the first square of this size.
     pub(crate) first: u32,
 }
 
-/// All sizes of a map, the last a single square, and what else the last step makes.
+/// Returns all sizes of squares of a map up to a single square, and further ones that complete the last dispatch.
 pub(crate) fn all_squares(map_size: UVec2) -> Vec<Squares> {
     let mut all: Vec<Squares> = Vec::new();
     let mut first = 0;
@@ -48,33 +48,33 @@ pub(crate) fn all_squares(map_size: UVec2) -> Vec<Squares> {
     all
 }
 
-/// The size of which two a side hold all within `reach` of anywhere.
+/// Returns the smallest size of which two squares per side cover all within `reach` of any position.
 pub(crate) fn squares_for(all: &[Squares], reach: f32) -> Squares {
     let holds = |squares: &&Squares| squares.count == UVec2::ONE || (1 << squares.shift) as f32 >= 2.0 * reach;
     *all.iter().find(holds).expect("the last is the whole map")
 }
 
-/// Makes them.
+/// Passes that find the nearest fragment of every square.
 #[derive(Debug)]
 pub(crate) struct NearestSquares {
     layout: wgpu::BindGroupLayout,
     of_lists: wgpu::ComputePipeline,
     of_squares: wgpu::ComputePipeline,
     steps: Option<wgpu::Buffer>,
-    /// And whether they are the light's own.
+    /// Buffer of depths, and whether it is the light's own.
     depths: Option<(Arc<wgpu::Buffer>, bool)>,
-    /// How many squares are made, for tests.
+    /// Number of squares that are made, for tests.
     #[cfg(test)]
     pub(crate) made: u64,
 }
 
-/// The passes of one frame.
+/// Passes of one frame.
 #[derive(Debug)]
 pub(crate) struct PreparedNearest {
-    /// Depths, metres, size after size.
+    /// Nearest depths, metres, size after size.
     pub(crate) depths: Arc<wgpu::Buffer>,
     group: wgpu::BindGroup,
-    /// Squares of each step.
+    /// Number of squares of each dispatch.
     steps: Vec<UVec2>,
 }
 
@@ -95,14 +95,14 @@ impl NearestSquares {
         }
     }
 
-    /// Bytes of the depths of a map of so many texels in all, squared, whatever its sides: a twelfth of them in squares, and what
-    /// rounding adds along the sides.
+    /// Returns the size of the depths of a map of `map_size`² texels, bytes, whatever its sides: a twelfth of the texels in
+    /// squares, and rounding along the sides.
     pub(crate) fn bytes_of(map_size: u32) -> u64 {
         let side = u64::from(map_size);
         4 * (side * side / 8 + 16 * side + 64)
     }
 
-    /// Makes room for the squares up to the largest that lookups ask for, of [`bytes_of`](Self::bytes_of) a map.
+    /// Prepares the squares up to the size `largest` in a buffer of `room_bytes`, from [`bytes_of`](Self::bytes_of).
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,

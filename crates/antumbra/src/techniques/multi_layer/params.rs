@@ -1,57 +1,56 @@
 use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
-    /// How [`MultiLayer`](super::MultiLayer) gathers fragments.
+    /// Method by which [`MultiLayer`](super::MultiLayer) gathers fragments.
     pub enum MultiLayerGather {
         /// Two passes over the geometry: count, collect.
         Arrays = "arrays",
-        /// One pass over the geometry, into linked lists, which are packed after.
+        /// One pass over the geometry, into linked lists, which are packed afterwards.
         Linked = "linked",
     }
 }
 
 param_choice! {
-    /// Which faces of closed opaque meshes cast.
+    /// Faces of closed opaque meshes that cast.
     pub enum MultiLayerFaces {
-        /// What faces away from the light: never what receives.
+        /// Back faces, turned away from the light: they never receive.
         Back = "back",
-        /// All: twice the fragments, and sides of solids that are finer than a texel cast too.
+        /// All faces: twice the fragments, and sides of solids finer than a texel cast too.
         All = "all",
     }
 }
 
 param_choice! {
-    /// The levels of [`MultiLayer`](super::MultiLayer).
+    /// Hierarchy of levels of [`MultiLayer`](super::MultiLayer).
     pub enum MultiLayerHierarchy {
-        /// A Y-map with a level between each two kernels of the stack, whose size halves again once kernels are four
-        /// texels wide.
+        /// Y-map with a level between each two kernels of the stack, which halves again once kernels are four texels wide.
         FineYMap = "fine_y_map",
-        /// Halves down to `stack_size`, then keeps that size while kernels grow and overlap.
+        /// Y-map: halves down to `stack_size`, then keeps that size while kernels grow and overlap.
         YMap = "y_map",
-        /// Halves down to one texel.
+        /// MIP-map: halves down to one texel.
         MipMap = "mip_map",
     }
 }
 
 param_choice! {
-    /// How opacities at one place come together.
+    /// Accumulation of opacities at one place.
     pub enum MultiLayerListAccumulation {
-        /// Their sum: they do not overlap.
+        /// Sum of opacities, which assumes no overlap.
         Add = "add",
-        /// The product of transmittances: they overlap at random.
+        /// Product of transmittances, which assumes random overlap.
         Multiply = "multiply",
-        /// The largest: they cover one another.
+        /// Largest opacity, which assumes full overlap.
         Max = "max",
-        /// By how much the farther one was found to lie behind the nearer when lists were merged.
+        /// Overlap of each fragment with nearer ones, computed when lists are merged.
         Overlap = "overlap",
     }
 }
 
 param_choice! {
-    /// How [`MultiLayer`](super::MultiLayer)'s levels come together at a receiver.
+    /// Accumulation of [`MultiLayer`](super::MultiLayer)'s levels at a receiver.
     pub enum MultiLayerLevelAccumulation {
-        /// Two neighbouring levels, which see the same surfaces, mix; such pairs come together by how their edges lie:
-        /// aligned ones hide one another, opposite ones adjoin, unrelated ones overlap at random.
+        /// Two neighbouring levels, which see the same surfaces, mix. Such pairs are accumulated by the directions of their
+        /// edges: aligned ones hide one another, opposite ones adjoin, unrelated ones overlap at random.
         Correlated = "correlated",
         /// Two neighbouring levels mix; transmittances of such pairs multiply.
         Pairs = "pairs",
@@ -59,23 +58,23 @@ param_choice! {
         Add = "add",
         /// All transmittances multiply.
         Multiply = "multiply",
-        /// The pair of the largest opacity.
+        /// The pair with the largest opacity counts.
         Max = "max",
     }
 }
 
 param_choice! {
-    /// Parts of the light that [`MultiLayer`](super::MultiLayer) looks up one by one.
+    /// Number of parts of the light that [`MultiLayer`](super::MultiLayer) looks up one by one.
     pub enum MultiLayerLightParts {
         /// The whole light at once.
         One = "1",
-        /// Its quarters.
+        /// Quarters of the light.
         Four = "4",
     }
 }
 
 impl MultiLayerLightParts {
-    /// The number.
+    /// Returns the number of parts.
     pub fn count(self) -> u32 {
         match self {
             Self::One => 1,
@@ -85,27 +84,27 @@ impl MultiLayerLightParts {
 }
 
 param_choice! {
-    /// How ε grows from level to level.
+    /// Growth factor of ε per level.
     pub enum MultiLayerEpsilonGrowth {
-        /// By √2.
+        /// √2 per level.
         Sqrt2 = "sqrt2",
-        /// By 2, as the levels' texels do.
+        /// 2 per level, like the levels' texels.
         Double = "double",
     }
 }
 
 param_choice! {
-    /// Samples of each texel of [`MultiLayer`](super::MultiLayer)'s base.
+    /// Number of samples per texel of [`MultiLayer`](super::MultiLayer)'s base.
     pub enum MultiLayerSamples {
-        /// One: a texel is covered or not.
+        /// One sample: a texel is covered or not.
         One = "1",
-        /// Four: opacity is the share that is covered.
+        /// Four samples: opacity is the covered fraction.
         Four = "4",
     }
 }
 
 impl MultiLayerSamples {
-    /// The number.
+    /// Returns the number of samples.
     pub fn count(self) -> u32 {
         match self {
             Self::One => 1,
@@ -115,73 +114,73 @@ impl MultiLayerSamples {
 }
 
 param_choice! {
-    /// The shape of [`MultiLayer`](super::MultiLayer)'s base.
+    /// Shape of [`MultiLayer`](super::MultiLayer)'s base.
     pub enum MultiLayerMapShape {
-        /// That of what it sees, its texels of the light's proportions.
+        /// The window's aspect ratio, with texels of the light's aspect ratio.
         Fitted = "fitted",
-        /// A square of squares.
+        /// A square with square texels.
         Square = "square",
     }
 }
 
 param_choice! {
-    /// How [`MultiLayer`](super::MultiLayer) shares a depth between two levels.
+    /// Weights by which [`MultiLayer`](super::MultiLayer) divides a depth between two levels.
     pub enum MultiLayerLevelWeights {
-        /// Linear in the square of the filter's width: what two levels mix has the variance asked for.
+        /// Linear in the square of the filter's width: the mixture of two levels has the required variance.
         Variance = "variance",
         /// Linear in depth: the paper's hat.
         Depth = "depth",
-        /// Not: the finer level has it, as far as to the coarser one's own depth.
+        /// No division: the finer level counts alone, up to the coarser one's own depth.
         None = "none",
     }
 }
 
 param_choice! {
-    /// What [`MultiLayer`](super::MultiLayer) weights where two levels share a depth.
+    /// Quantity that [`MultiLayer`](super::MultiLayer) weights where two levels share a depth.
     pub enum MultiLayerHat {
-        /// What each level has accumulated.
+        /// Accumulated opacity of each level.
         Levels = "levels",
-        /// Every fragment, before it is accumulated: the paper's.
+        /// Opacity of every fragment before accumulation: the paper's.
         Fragments = "fragments",
     }
 }
 
 param_choice! {
-    /// What width a level of [`MultiLayer`](super::MultiLayer) is looked up for.
+    /// Filter width for which a level of [`MultiLayer`](super::MultiLayer) is looked up.
     pub enum MultiLayerFilterWidths {
-        /// That of the box that blurs as much as the level's lookup does.
+        /// Width of the box that blurs as much as the level's lookup.
         Effective = "effective",
-        /// That of the texels that its lists merge.
+        /// Width of the texels that its lists merge.
         Merged = "merged",
     }
 }
 
 param_choice! {
-    /// Whose depth a merged fragment has.
+    /// Depth of a merged fragment.
     pub enum MultiLayerDepthAverage {
-        /// The mean, weighted by opacity.
+        /// Mean depth, weighted by opacity.
         Opacity = "opacity",
-        /// The mean.
+        /// Unweighted mean depth.
         Count = "count",
     }
 }
 
 param_choice! {
-    /// How the four lists about a receiver are looked up.
+    /// Lookup of the four lists around a receiver.
     pub enum MultiLayerLists {
-        /// As one: what lies within ε in any of them is one surface.
+        /// As one list: fragments within ε in any of them are one surface.
         Together = "together",
-        /// Each by itself; what they say is interpolated.
+        /// One by one; their results are interpolated.
         Apart = "apart",
     }
 }
 
 param_choice! {
-    /// What [`MultiLayer`](super::MultiLayer) writes into the mask.
+    /// Output of [`MultiLayer`](super::MultiLayer).
     pub enum MultiLayerShow {
         /// Visibility.
         Visibility = "visibility",
-        /// The levels that hide the light from each receiver in colours, mixed by the hat's weights and darker in shadow; a mask of
+        /// Levels that hide the light from each receiver in colours, mixed by the hat's weights and darker in shadow; a mask of
         /// one channel gets their luminance.
         Levels = "levels",
     }
@@ -190,87 +189,86 @@ param_choice! {
 params! {
     /// Parameters of [`MultiLayer`](super::MultiLayer).
     pub struct MultiLayerParams {
-        /// Texels along a side of the base where it is square; elsewhere it has as many, in the shape of what it sees. With `auto`
-        /// as many as make a texel about half as wide as a pixel where receivers are seen.
+        /// Side of the base if it is square; otherwise the base has as many texels in the window's shape. `auto` makes a texel
+        /// about half as wide as a pixel where receivers are seen.
         map_size: MapSize = MapSize::Texels(1024), in 16..=4096, unit "texels", scale Log,
             more "Sharper contacts and finer occluders; memory and filter time grow with the square.";
-        /// The shape of the base.
+        /// Shape of the base.
         map_shape: MultiLayerMapShape = MultiLayerMapShape::Fitted,
             more "square is the paper's: finer kernels one way and coarser ones the other, where light or view are longer than wide.";
-        /// Samples of each texel of the base.
+        /// Number of samples per texel of the base.
         msaa: MultiLayerSamples = MultiLayerSamples::Four,
             more "4 keeps the area of what is thinner than a texel; 1 is the paper's, with fewer fragments at edges.";
-        /// Fragments kept of each texel's list, from the light; 0 keeps all.
+        /// Maximum number of fragments in each texel's list, counted from the light; 0 keeps all.
         layers: u32 = 0, in 0..=1024, unit "fragments",
             more "Fewer occluders behind occluders missed; 16 is nearly all. With faces=all a solid counts twice.";
-        /// Which faces of closed opaque meshes cast.
+        /// Faces of closed opaque meshes that cast.
         faces: MultiLayerFaces = MultiLayerFaces::All,
             more "back is the paper's, with half the fragments; grooves and contacts finer than a texel leak.";
-        /// How near in depth fragments must be to merge, in texel widths at their depth.
+        /// Depth difference within which fragments merge, in texel widths at their depth.
         epsilon: f32 = 10.0, in 0.0..=1000.0, unit "texel widths", scale Log,
             more "Shorter lists and less time; far above the default distant surfaces merge.";
-        /// How ε grows from level to level.
+        /// Growth factor of ε per level.
         epsilon_growth: MultiLayerEpsilonGrowth = MultiLayerEpsilonGrowth::Sqrt2,
             more "double is the paper's, with epsilon=2; sqrt2 keeps coarse levels' surfaces apart.";
         /// Joins fragments of the base within ε.
         join_base: bool = false,
             more "true shortens lists where surfaces lie within ε of one another.";
-        /// Levels of the hierarchy, the base among them, and so the widest penumbra; at most what the map has.
+        /// Number of levels, including the base, which bounds the width of penumbrae; at most what the map allows.
         levels: u32 = 11, in 1..=14,
             more "Wider penumbrae, each level twice the one before; filter and lookup time grow in proportion.";
-        /// Halving throughout, or down to a size.
+        /// Hierarchy: halving throughout, or down to a size.
         hierarchy: MultiLayerHierarchy = MultiLayerHierarchy::FineYMap,
             more "fine_y_map blurs by what is asked for, y_map is the paper's; mip_map shows texels in wide penumbrae.";
         /// Size at which a Y-map stops halving.
         stack_size: u32 = 128, in 8..=512, unit "texels", scale Log,
             more "Finer sampling of wide penumbrae; filter time grows with the square.";
-        /// First filter steps that keep one of four lists instead of merging them.
+        /// Number of first filter steps that keep one of four lists instead of merging them.
         subsampled_steps: u32 = 0, in 0..=4,
             more "Less filter time for large maps, of which only contacts see the full size.";
-        /// How opacities in one list come together.
+        /// Accumulation of opacities in one list.
         list_accumulation: MultiLayerListAccumulation = MultiLayerListAccumulation::Overlap,
             more "add over-darkens stacked occluders; max leaks where they do not cover one another; multiply leaks through slanted surfaces.";
-        /// How levels come together.
+        /// Accumulation of levels.
         level_accumulation: MultiLayerLevelAccumulation = MultiLayerLevelAccumulation::Correlated,
             more "add over-darkens overlapping occluders; multiply breaks occluders apart between levels.";
-        /// How a depth is shared between the two levels whose filters it lies between.
+        /// Weights by which a depth is divided between the two levels whose filters it lies between.
         level_weights: MultiLayerLevelWeights = MultiLayerLevelWeights::Variance,
             more "depth is the paper's, a little too sharp between levels; none shows where levels meet.";
-        /// What is weighted where two levels share a depth.
+        /// Quantity that is weighted where two levels share a depth.
         hat: MultiLayerHat = MultiLayerHat::Levels,
             more "fragments is the paper's: two opaque surfaces half-way between two levels hide 1 − (½)⁴ by multiplication, where levels \
                   hides 1 − (½)². Levels that mix (correlated, pairs) multiply then.";
-        /// The width that a level is looked up for.
+        /// Filter width for which a level is looked up.
         filter_widths: MultiLayerFilterWidths = MultiLayerFilterWidths::Effective,
             more "merged is the paper's: penumbrae come out too wide, by as much as interpolation blurs.";
-        /// A level that everything is looked up in, 1 being the base; 0 looks each depth up in the level whose filter it
-        /// asks for.
+        /// Level for all lookups, 1 for the base; 0 looks each depth up in the level that matches its filter width.
         fixed_level: u32 = 0, in 0..=24,
             more "A wider blur of one width, whatever the light: the paper's figures 5 and 6.";
-        /// The depth of merged fragments.
+        /// Depth of merged fragments.
         depth_average: MultiLayerDepthAverage = MultiLayerDepthAverage::Opacity,
             more "count is the paper's: a sliver pulls a surface from its place.";
-        /// How the four lists about a receiver are looked up.
+        /// Lookup of the four lists around a receiver.
         lists: MultiLayerLists = MultiLayerLists::Together,
             more "apart is the paper's: what two lists hold is not compared, so a surface that lies in both counts as two.";
-        /// Leave out of every level what no receiver looks up in it.
+        /// Whether levels omit what no receiver looks up in them.
         prune: bool = true,
             more "false is the paper's: the same shadow, in the time and memory that epsilon and levels ask for.";
         /// Whether fragments are compared with the receiver's plane, and the light's part below it counts as hidden.
         planes: bool = true,
             more "false is the paper's: fragments are compared with the receiver's depth, and tilted receivers shade themselves.";
-        /// Parts of the light looked up one by one.
+        /// Number of parts of the light that are looked up one by one.
         light_parts: MultiLayerLightParts = MultiLayerLightParts::Four,
             more "4 keeps apart what hides different quarters of the light, in four times the lookups; 1 is the paper's.";
-        /// How fragments are gathered.
+        /// Method that gathers fragments.
         gather: MultiLayerGather = MultiLayerGather::Arrays,
             more "linked draws the casters once instead of twice, and packs lists with scattered reads.";
         shared sub;
-        /// Least blur at a receiver, for anti-aliasing.
+        /// Minimum blur at a receiver, for anti-aliasing.
         footprint: f32 = 0.0, in 0.0..=4.0, unit "pixels",
             more "Smoother shadow edges that are finer than pixels.";
         shared bias_scale;
-        /// What goes into the mask.
+        /// Content of the mask.
         show: MultiLayerShow = MultiLayerShow::Visibility,
             more "levels colours each receiver by the levels that hide the light from it, as the paper's figure 14.";
     }

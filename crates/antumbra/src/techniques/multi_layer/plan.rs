@@ -21,30 +21,30 @@ use crate::light_map::map_texels::map_texels;
 use crate::light_map::stable_fit::{corners_to_hold, in_whole_texels};
 use crate::light_map::texel_lists::options::{Accumulation, DepthTolerance, Gather, ListOptions};
 
-/// How near in depth, in texel widths, fragments in one texel must be for a sample to count the nearest alone. Against
-/// truth: 0 darkens thin things twice (`fence-geometry` .073, `tree` .058), 1 gives .067 and .056, 2 .064 and .057, but
-/// lifts receivers to what nearly touches them (`street` .077 with 1, .079 with 2, .086 with 4).
+/// Depth difference, in texel widths, up to which a sample counts only the nearest fragment of a texel. Errors against truth: 0
+/// darkens thin casters twice (`fence-geometry` .073, `tree` .058); 1 gives .067 and .056, 2 gives .064 and .057. Large values
+/// lift receivers to objects that nearly touch them (`street` .077 with 1, .079 with 2, .086 with 4).
 const ADJOINING_TEXELS: f32 = 1.0;
 
-/// The automatic bias, in texel widths: a third more than the library's own (`light_map/bias.wesl`), so that fewer folds finer
-/// than texels shade themselves. With ½, ⅔ and ¾: `street` .0606, .0597, .0596 at 320 × 180, but leaves lose what touches
-/// them, `tree` .0437, .0448, .0467 at 256 × 144.
+/// Automatic bias, in texel widths: a third more than the library's own (`light_map/bias.wesl`), so that fewer folds finer than
+/// texels shade themselves. With ½, ⅔ and ¾, `street` has .0606, .0597, .0596 at 320 × 180. But leaves lose shadows of objects
+/// that touch them: `tree` has .0437, .0448, .0467 at 256 × 144.
 const BIAS_TEXELS: f32 = 2.0 / 3.0;
 
-/// Bytes of a base with its fragments and those of the levels: 50 MiB of 1024² on most scenes.
+/// Returns the memory of a base with its fragments and levels, bytes: 50 MiB at 1024² on most scenes.
 fn bytes_of(size: u32) -> u64 {
     50 * u64::from(size).pow(2)
 }
 
-/// What a frame's lists and levels are made by, and looked up by.
+/// Plan of a frame's lists, levels and lookups.
 #[derive(Debug)]
 pub(super) struct FramePlan<'a> {
     params: &'a MultiLayerParams,
     pub(super) view: LightView,
     pub(super) gpu_view: LightViewGpu,
-    /// Texels along a side of a square base of as many texels.
+    /// Side of a square base with the same number of texels.
     pub(super) square_size: u32,
-    /// Texels along each side of the base.
+    /// Number of texels along each side of the base.
     pub(super) map_size: UVec2,
     pub(super) levels: Vec<Level>,
     tolerances: Tolerances,
@@ -52,13 +52,13 @@ pub(super) struct FramePlan<'a> {
     colored: bool,
 }
 
-/// How near in depth surfaces are one.
+/// Depth tolerances within which surfaces count as one.
 #[derive(Clone, Copy, Debug)]
 struct Tolerances {
-    /// A texel's width: at depth z, so many times z in a perspective view.
+    /// Width of a texel, metres; in a perspective view per metre of depth.
     texel_in_plane: f32,
     perspective: bool,
-    /// Of the base, in texel widths, and how much more of it each octave has.
+    /// ε of the base, in texel widths, and its growth factor per octave.
     epsilon: f32,
     growth: f32,
 }
@@ -76,7 +76,7 @@ impl Tolerances {
         }
     }
 
-    /// So many texel widths.
+    /// Returns a tolerance of a number of texel widths.
     fn widths(self, widths: f32) -> DepthTolerance {
         let widths = widths * self.texel_in_plane;
         if self.perspective {
@@ -86,7 +86,7 @@ impl Tolerances {
         }
     }
 
-    /// ε of a level.
+    /// Returns ε of a level.
     fn epsilon(self, octave: f32) -> DepthTolerance {
         self.widths(self.epsilon * self.growth.powf(octave))
     }
@@ -124,9 +124,9 @@ impl<'a> FramePlan<'a> {
         if params.filter_widths == MultiLayerFilterWidths::Merged {
             levels.iter_mut().for_each(|level| level.width = level.kernel());
         }
-        // A quarter is half as wide as the light.
+        // The filter of a quarter is half as wide as the light's.
         let filter_per_g = filter_per_g(&view, extent, map_size) * if is_in_parts(params) { 0.5 } else { 1.0 };
-        // What a pixel's footprint adds to filters is known in the shader alone.
+        // Only the shader knows what a pixel's footprint adds to filters.
         if params.prune && params.footprint == 0.0 && params.fixed_level == 0 {
             let reach =
                 DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
@@ -136,7 +136,7 @@ impl<'a> FramePlan<'a> {
         Self { params, view, gpu_view, square_size, map_size, levels, tolerances, filter_per_g, colored }
     }
 
-    /// What lists to make, with room for `capacity` fragments.
+    /// Returns the options of the lists, with memory for `capacity` fragments.
     pub(super) fn list_options(&self, capacity: u32) -> ListOptions {
         let params = self.params;
         ListOptions {
@@ -149,7 +149,7 @@ impl<'a> FramePlan<'a> {
             layers: params.layers,
             join: params.join_base.then(|| self.tolerances.epsilon(0.0)),
             all_faces: params.faces == MultiLayerFaces::All,
-            // What faces away from the light is never what receives, so closed meshes need no bias.
+            // Faces turned away from the light never receive, so closed meshes need no bias.
             open_offset: self.tolerances.widths(BIAS_TEXELS * params.bias_scale),
             accumulation: self.list_accumulation(),
             gather: match params.gather {
@@ -170,7 +170,7 @@ impl<'a> FramePlan<'a> {
         }
     }
 
-    /// What is looked up where.
+    /// Returns the parameters and rungs of the lookup.
     pub(super) fn lookup(&self, squares: &[Squares]) -> (MultiLayerUniform, MultiLayerLadder) {
         let rungs = match self.params.fixed_level {
             0 => rungs(&self.levels, is_in_parts(self.params)),
@@ -209,7 +209,7 @@ impl<'a> FramePlan<'a> {
         (lookup, ladder)
     }
 
-    /// What the lookup is compiled for.
+    /// Returns the key of the lookup's pipeline.
     pub(super) fn design(&self) -> LookupDesign {
         LookupDesign {
             colored: self.colored,
@@ -224,7 +224,7 @@ impl<'a> FramePlan<'a> {
         }
     }
 
-    /// What the filter is compiled for.
+    /// Returns the key of the filter's pipeline.
     pub(super) fn filter_design(&self) -> FilterDesign {
         FilterDesign {
             averages_by_count: self.params.depth_average == MultiLayerDepthAverage::Count,
@@ -233,7 +233,7 @@ impl<'a> FramePlan<'a> {
         }
     }
 
-    /// How each level is made from its source: a [`FilterStep`] every [`STEP_STRIDE`] bytes.
+    /// Returns the steps that make each level from its source: a [`FilterStep`] every [`STEP_STRIDE`] bytes.
     pub(super) fn filter_steps(&self, capacity: u32) -> Vec<u8> {
         let steps = self.levels.iter().filter_map(|level| {
             let (step, source) = (level.step?, &self.levels[level.source]);
@@ -255,7 +255,7 @@ impl<'a> FramePlan<'a> {
                 ..FilterStep::default()
             })
         });
-        // Of a base alone there is none, but bindings are never empty.
+        // A base alone has no steps, but bindings must not be empty.
         let mut bytes = vec![0; STEP_STRIDE as usize * self.levels.len()];
         for (bytes, step) in bytes.chunks_exact_mut(STEP_STRIDE as usize).zip(steps) {
             bytes[..size_of::<FilterStep>()].copy_from_slice(bytemuck::bytes_of(&step));
@@ -269,10 +269,10 @@ fn is_in_parts(params: &MultiLayerParams) -> bool {
     params.light_parts.count() > 1
 }
 
-/// The most that a texel is longer than wide: beyond this the long side blurs what the short one resolves.
+/// Maximum aspect ratio of a texel: beyond it the long side blurs detail that the short one resolves.
 const MAX_TEXEL_ASPECT: f32 = 16.0;
 
-/// How far the light reaches from its middle along its right or up.
+/// Returns the extent of the light from its centre along its right or up axis.
 fn reach(light: &Light) -> f32 {
     match &light.shape {
         LightShape::Rectangle { size_m } => 0.5 * size_m.max_element(),
@@ -280,14 +280,14 @@ fn reach(light: &Light) -> f32 {
     }
 }
 
-/// The most that a map is longer than wide. A map of 4096² texels then keeps within WebGPU's 8192 a side.
+/// Maximum aspect ratio of a map, which keeps a map of 4096² texels within WebGPU's 8192 per side.
 const MAX_MAP_ASPECT: f32 = 4.0;
 
-/// A map's sides are multiples of this part of `map_size`, so that a window that moves seldom changes them.
+/// Map sides are multiples of `map_size` divided by this, so that a moving window seldom changes them.
 const MAP_SIZE_STEPS: u32 = 64;
 
-/// The sides of a map of at most `map_size`² texels that has the window's shape, and the window, widened by what rounding
-/// asks. Texels' sides are to one another as the light's: square kernels of them are as long and wide as the light.
+/// Returns the sides of a map of at most `map_size`² texels with the window's aspect ratio, and the window, widened for
+/// rounding. Texels have the light's aspect ratio, so that square kernels of them have the light's proportions.
 fn shaped_as_light(view: LightView, extent: Vec2, map_size: u32) -> (LightView, UVec2) {
     let texel_aspect = if extent.min_element() > 0.0 { extent.x / extent.y } else { 1.0 };
     let texel = Vec2::new(texel_aspect.clamp(1.0 / MAX_TEXEL_ASPECT, MAX_TEXEL_ASPECT), 1.0);
@@ -301,16 +301,16 @@ fn shaped_as_light(view: LightView, extent: Vec2, map_size: u32) -> (LightView, 
     (LightView { window: Window { half_size: texel * sides.as_vec2(), ..view.window }, ..view }, sides)
 }
 
-/// The filter's width in texels for each unit of g.
+/// Returns the filter width per unit of g, in texels.
 fn filter_per_g(view: &LightView, extent: Vec2, map_size: UVec2) -> f32 {
     let texel = 2.0 * view.window.half_size / map_size.as_vec2();
-    // The geometric mean, where the light is longer than texels may be.
+    // The geometric mean matters where the light is more elongated than texels may be.
     let in_texels = (extent.max(Vec2::ZERO) / texel).max(Vec2::splat(1e-12));
     (in_texels.x * in_texels.y).sqrt()
 }
 
-/// Sides along right and up of the rectangle whose points vary as much about their mean as the light's do. Metres; tangents
-/// for a sun.
+/// Returns the sides, along right and up, of the rectangle whose points have the variance of the light's. Metres; tangents for
+/// a sun.
 pub(super) fn light_extent(light: &Light) -> Vec2 {
     match &light.shape {
         LightShape::Rectangle { size_m } => *size_m,
@@ -318,7 +318,7 @@ pub(super) fn light_extent(light: &Light) -> Vec2 {
     }
 }
 
-/// A light whose emission varies, as the uniform rectangle with its mean and variance; others as they are.
+/// Returns a light with varying emission as the uniform rectangle of its mean and variance; other lights unchanged.
 fn uniform(light: &Light) -> Cow<'_, Light> {
     let (LightShape::Rectangle { .. }, Some(_)) = (&light.shape, &light.emission) else { return Cow::Borrowed(light) };
     let moments = light.moments();

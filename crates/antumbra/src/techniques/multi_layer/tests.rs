@@ -1,4 +1,4 @@
-//! The filter against its CPU reference, and what the technique promises.
+//! Tests of the filter against its CPU reference, and of the technique's properties.
 
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
@@ -41,7 +41,7 @@ fn levels_cover_the_map() {
         let what = |i: usize| format!("level {i} of {map_size}, {stack_size}, {fine}");
         for (i, level) in levels.iter().enumerate() {
             let kernel = level.kernel();
-            // From the first texel's kernel to the last's there is no gap, and the map is covered.
+            // Consecutive kernels leave no gap, and cover the map.
             assert!(level.spacing <= kernel, "{}", what(i));
             let last = (level.size - 1).as_vec2() + level.offset;
             let end = last * level.spacing + 0.5 * kernel;
@@ -85,7 +85,7 @@ fn levels_end_with_what_receivers_look_up() {
         let filter = |z_m: f32, z_receiver_m: f32| {
             reach.filter_per_g * if perspective { 1.0 / z_m - 1.0 / z_receiver_m } else { z_receiver_m - z_m }
         };
-        // What any occluder of any receiver asks for lies between two levels, and each of them has the occluder.
+        // The filter width of any occluder and receiver lies between two levels, and both contain the occluder.
         let widest = filter(reach.near_m, reach.far_m);
         assert!(kept.len() == whole.len() || kept[kept.len() - 1].width >= widest, "{perspective}");
         for i in 0..=100 {
@@ -96,7 +96,7 @@ fn levels_end_with_what_receivers_look_up() {
             }
         }
         for level in &kept[1..] {
-            // A surface that the source ends before it is whole would be another.
+            // A surface that the source cuts off would become a different one.
             let source = &kept[level.source];
             let end = level.z_limit_m + epsilon.slope * level.z_limit_m + epsilon.m;
             assert!(level.source == 0 || source.z_limit_m >= end, "{level:?} of {source:?}");
@@ -111,7 +111,7 @@ fn what_levels_leave_out_is_not_missed() {
     for parts in ["1", "4"] {
         let mask =
             |footprint| case.run(gpu, TechniqueKind::MultiLayer, &[("light_parts", parts), ("footprint", footprint)]);
-        // With a footprint, here a negligible one, every level is whole, and where it is asked for.
+        // A footprint, here a negligible one, disables pruning, so every level is complete.
         let kept = mask("0");
         let unpruned = case.run(gpu, TechniqueKind::MultiLayer, &[("light_parts", parts), ("prune", "false")]);
         assert!(kept.iter().any(|v| *v > 0.1 && *v < 0.9), "there is a penumbra");
@@ -122,7 +122,7 @@ fn what_levels_leave_out_is_not_missed() {
     }
 }
 
-/// Without pruning there are as many levels as are asked for, and their lists hold what lies behind all receivers.
+/// Without pruning the requested number of levels is made, and their lists hold fragments behind all receivers.
 #[test]
 fn unpruned_levels_are_those_that_are_asked_for() {
     let Some(gpu) = gpu() else { return };
@@ -147,8 +147,8 @@ fn unpruned_levels_are_those_that_are_asked_for() {
     assert!(pruned.1 < whole.1 && five.1 < whole.1, "{pruned:?}, {whole:?}, {five:?}");
 }
 
-/// Section 5.2. Two opaque sheets, one just above the other, before all of the light, between two levels: each level holds two
-/// fragments of opacity 1, with weights w and 1 − w. By multiplication what is left of the light is
+/// Section 5.2. Two opaque sheets, one just above the other, cover all of the light between two levels: each level holds two
+/// fragments of opacity 1, with weights w and 1 − w. By multiplication the remaining light is
 ///
 /// - as published (1 − w)² w²: each of the four fragments is weighted, then accumulated. At most 1/16, at w = ½, where
 ///   1 − (½)⁴ = .94 is hidden;
@@ -174,7 +174,7 @@ fn hats_weight_fragments_before_they_accumulate() {
             ("light_parts", "1"),
             ("msaa", "1"),
         ];
-        // As the sheets rise w passes ½ between each two levels: so does the light that is left its greatest.
+        // As the sheets rise, w passes ½ between each two levels, where the remaining light has its maximum.
         let left = (0..24).map(|i| {
             let height = 0.8 + 0.05 * i as f32;
             let sheet = |height| Mesh::horizontal(gpu, Vec2::splat(-2.5), Vec2::splat(2.5), height);
@@ -197,7 +197,7 @@ fn hats_weight_fragments_before_they_accumulate() {
     assert!((0.48..=0.51).contains(&largest("fragments", "max")));
 }
 
-/// Records a frame on a technique whose parameters are at hand.
+/// Records a frame with a technique whose parameters are accessible.
 fn record(
     gpu: &Gpu,
     technique: &mut MultiLayer,
@@ -261,19 +261,19 @@ fn every_level_equals_its_twin() {
                 } else {
                     DepthTolerance { slope: widths, m: 0.0 }
                 };
-                // From the GPU's source, so that differences do not add up.
+                // Starts from the GPU's source, so that differences do not accumulate.
                 let source = levels[i].source;
                 let want = cpu::filter(&levels[source], &lists_of(source), &levels[i], epsilon, by_count);
                 let got = lists_of(i);
                 let differing = want.iter().zip(&got).filter(|(want, got)| !agree(want, got, 1e-3)).count();
-                // A fragment at ε's very edge may fall on either side of it.
+                // A fragment exactly at distance ε may fall on either side.
                 assert!(differing * 200 <= want.len(), "{name}, level {i}: {differing} of {} lists differ", want.len());
             }
         }
     }
 }
 
-/// What four texels hide beside one another adds up, and what they hide behind one another counts once, however deep it lies.
+/// Opacities in adjoining texels add up, and opacities behind one another count once, at any depth of the hierarchy.
 #[test]
 fn merged_lists_know_what_their_fragments_have_in_common() {
     let opaque = |z_m: f32| TwinFragment { z_m, opacity: 1.0, overlap: 1.0 };
@@ -378,7 +378,7 @@ fn umbrae_of_half_transparent_occluders_have_their_transmittance() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     let half = Opacity::Translucent { coverage: SurfaceCoverage::Alpha(0.5), transmitted: Vec3::ZERO, texture: None };
-    // A sheet lets half of the light through, a solid half at either face.
+    // A sheet transmits half of the light; each face of a solid stops half.
     let solid = TestMesh::boxed(Vec3::new(-4.0, 1.5, -4.0), Vec3::new(0.0, 1.6, 4.0), 0.5);
     let on_gpu = Mesh::new(gpu, &solid.positions, &solid.indices);
     let ground = case.meshes[0].caster();
@@ -387,7 +387,7 @@ fn umbrae_of_half_transparent_occluders_have_their_transmittance() {
     for (occluder, transmittance) in [(sheet, 0.5), (solid, 0.25)] {
         let casters = [ground, occluder];
         let mask = case.run_with(gpu, TechniqueKind::MultiLayer, &[], Casters::Meshes(&casters)).expect("a good frame");
-        // Away from the edge, where the solid's side, unseen from the light's centre, would count.
+        // Away from the edge, where the solid's side, unseen from the light's centre, would matter.
         let umbra = case.ground_pixels(|p| test_ground(p) && half_plane_visibility(p.x, 1.6) == 0.0);
         assert!(umbra.len() > 50);
         for (i, p) in umbra {
@@ -396,7 +396,7 @@ fn umbrae_of_half_transparent_occluders_have_their_transmittance() {
     }
 }
 
-/// A light of which one half is dark casts as its other half.
+/// A light with one dark half casts like its other half.
 #[test]
 fn emission_counts_by_its_mean_and_variance() {
     let Some(gpu) = gpu() else { return };

@@ -1,8 +1,8 @@
-//! CPU reference of a mesh's tree.
+//! CPU reference of a mesh's bounding volume hierarchy.
 
 use glam::Vec3;
 
-/// A box; nothing where it is the wrong way round.
+/// Axis-aligned box; empty if `low` exceeds `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Box3 {
     pub(super) low: Vec3,
@@ -29,22 +29,22 @@ impl Box3 {
     }
 }
 
-/// A node in the order in which rays come by them.
+/// Node, in depth-first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     pub(super) first: u32,
     pub(super) count: u32,
-    /// Of a leaf none; of others the node to go on with where the box is missed.
+    /// Index of the node to continue with if the box is missed; `None` for a leaf.
     pub(super) skip: Option<u32>,
     pub(super) bounds: Box3,
 }
 
-/// A tree, made by recursion.
+/// Bounding volume hierarchy, built by recursion.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    /// Of all.
+    /// Box of all items.
     pub(super) frame: Box3,
-    /// Items by their places.
+    /// Items by their position in the tree.
     pub(super) order: Vec<u32>,
     pub(super) nodes: Vec<Node>,
 }
@@ -81,7 +81,7 @@ impl Tree {
         unreachable!("the last size is taken whatever comes of it")
     }
 
-    /// Adds the nodes over the places from `first` to before `end`.
+    /// Adds the nodes over the positions `first..end`.
     fn add(&mut self, boxes: &[Box3], keys: &[u64], first: usize, end: usize, most: usize) {
         let place = self.nodes.len();
         let bounds = self.bounds_of(boxes, first, end);

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::gpu::{gpu_structs, shared_constants};
 
 gpu_structs! {
-    /// Items of a tree, and where it goes.
+    /// Items of one tree, and where the tree is stored.
     pub(crate) struct Segment {
         first_item: u32,
         item_count: u32,
@@ -17,7 +17,7 @@ gpu_structs! {
         padding: u32,
     }
 
-    /// What a pass that makes trees is over.
+    /// Input of a pass that builds trees.
     pub(crate) struct TreeShape {
         item_count: u32,
         segment_count: u32,
@@ -29,7 +29,7 @@ gpu_structs! {
         padding_2: u32,
     }
 
-    /// Items whose triangles lie in the same buffers.
+    /// Items whose triangles are in the same buffers.
     pub(crate) struct SourceRange {
         first_item: u32,
         end_item: u32,
@@ -37,7 +37,7 @@ gpu_structs! {
         padding_1: u32,
     }
 
-    /// A caster's instances.
+    /// Instances of a caster.
     pub(crate) struct InstanceRun {
         first_item: u32,
         first_instance: u32,
@@ -45,7 +45,7 @@ gpu_structs! {
         first_node: u32,
     }
 
-    /// Instances that lie in the same buffer.
+    /// Instances in the same buffer.
     pub(crate) struct InstanceRange {
         anchor_in_world: Vec3,
         first_item: u32,
@@ -73,12 +73,12 @@ gpu_structs! {
 }
 
 shared_constants! {
-    /// Vectors of an instance.
+    /// Number of vectors per instance.
     pub(crate) const INSTANCE_VECTORS: u32 = 7, as in RAY_TRACE;
-    /// Vectors of a caster in the table.
+    /// Number of vectors per caster in the table.
     pub(crate) const CASTER_VECTORS: u32 = 3, as in RAY_TRACE;
-    /// Its triangles bound a solid.
+    /// Flag: the triangles bound a solid.
     pub(crate) const FLAG_CLOSED: u32 = 1, as in RAY_TRACE;
-    /// Light may pass it.
+    /// Flag: light may pass the caster.
     pub(crate) const FLAG_OPEN: u32 = 2, as in RAY_TRACE;
 }

@@ -1,24 +1,24 @@
-//! `ray_traced`: rays from each receiver to points of the light, through trees over the casters' triangles.
+//! `ray_traced`: rays from each receiver to points of the light, through bounding volume hierarchies (trees) of the casters' triangles.
 //!
-//! Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980, has rays to lights; Cook, Porter, Carpenter,
-//! "Distributed Ray Tracing", SIGGRAPH 1984, rays to points over a light. A pixel's visibility is the part of its rays that pass, by weight
-//! and colour: the definition, so that with more rays it comes to the truth, and to the ray tracer's own figure where the points are the same.
+//! Whitted, "An Improved Illumination Model for Shaded Display", CACM 23(6), 1980, introduced rays to lights; Cook, Porter, Carpenter,
+//! "Distributed Ray Tracing", SIGGRAPH 1984, rays to points over a light. A pixel's visibility is the weighted mean of its rays'
+//! transmittance. This is the definition: more rays converge to the truth, and the same points give the ray tracer's own figure.
 //!
-//! It runs on any device of WebGPU, in compute, without an extension for rays. Trees are of two levels: one over each mesh's triangles in its
-//! own space, made once (`mesh/mod.rs`) and fitted anew where vertices move, and one over the frame's instances, made where
-//! casters may have moved. All of it is made on the device: the processor's work does not grow with the triangles. Source of the
-//! trees, and why not another: `tree/mod.rs`.
+//! It runs in compute shaders on any WebGPU device, without a ray tracing extension. Trees have two levels: one tree over each mesh's
+//! triangles in object space, built once (`mesh/mod.rs`) and refitted where vertices move, and one over the frame's instances, rebuilt
+//! where casters may have moved. All are built on the GPU: the CPU's work does not grow with the number of triangles. `tree/mod.rs` names
+//! the source of the trees, and why it was chosen.
 //!
-//! With `weights=irradiance` a ray counts what its point of the light gives the receiver: the mask is the part of the light's own
-//! irradiance that arrives, by which a host multiplies an area light (Heitz, Hill, McGuire, "Combining Analytic Direct Illumination and
-//! Stochastic Shadows", I3D 2018). An emission texture weighs by its luminance.
+//! With `weights=irradiance` a ray is weighted by the irradiance that its point of the light gives the receiver: the mask is the
+//! fraction of the light's own irradiance that arrives, by which a host multiplies an area light (Heitz, Hill, McGuire, "Combining
+//! Analytic Direct Illumination and Stochastic Shadows", I3D 2018). An emission texture weighs by its luminance.
 //!
-//! A ray has a place in each tree's order of nodes and nothing else: no stack. It ends where nothing of the light is left. Casters
-//! with textures are asked where a triangle is met, twelve textures a pass, with further passes where there are more; what passes several
-//! tinted surfaces is their product along each ray.
+//! Traversal is stackless: a ray's state is its position in each tree's order of nodes. It ends where no light is left. Textured casters
+//! are sampled at each hit, twelve textures per pass, with further passes if there are more; the transmittances of several tinted
+//! surfaces multiply along each ray.
 //!
-//! Where segments begin and end is as in `sample_based`: on the surface itself before closed casters, whose outside alone they meet; and off it
-//! before open ones, by what rounding and the rasteriser may have moved it.
+//! Segments begin and end as in `sample_based`: on the surface itself for closed casters, of which only the outside blocks; and at a ray
+//! offset for open ones, which covers rounding and vertex snapping by the rasteriser.
 //!
 //! ```text
 //! new meshes ──► boxes ──► codes ──► sort ──► links ──► fit ─┐
@@ -27,13 +27,13 @@
 //! ```
 //!
 //! # Memory
-//! 64 bytes a triangle of each mesh, however many instances it has (80 with a texture), and 245 an instance. Trees are each light's
-//! own. While meshes are made, 68 bytes a triangle more; while they are fitted, 45.
+//! 64 bytes per triangle of each mesh, however many instances it has (80 with a texture), and 245 per instance. Each light has its
+//! own trees. Building meshes takes 68 bytes per triangle more, refitting 45.
 //!
 //! # Limits
-//! Few rays show as noise, which [`Denoise`](crate::Denoise) takes out. Time grows with the rays, and with what lies about each: leaves
-//! near the light are dear. Meshes that tell no [version](crate::MeshCaster::version) are fitted in each frame, whether they move or
-//! not, and keep the order that they had at first. A mesh that says it is closed and is not leaks where it is open.
+//! Few rays show as noise, which [`Denoise`](crate::Denoise) removes. Time grows with the rays, and with the geometry around each:
+//! leaves near the light are expensive. Meshes without a [version](crate::MeshCaster::version) are refitted in each frame, whether they
+//! move or not, and keep their original order. A mesh that claims to be closed and is not leaks where it is open.
 
 use glam::{Vec3, Vec4};
 
@@ -80,14 +80,14 @@ bindings! {
     }
 }
 
-/// Rays of a pass: as many as leave each three thousand turns of the loops that software allows for.
+/// Number of rays per pass on software drivers; their limit allows each about three thousand loop iterations.
 const PASS_RAYS: u32 = 16;
-/// The same on graphics cards.
+/// Number of rays per pass on hardware GPUs.
 const PASS_RAYS_OF_CARDS: u32 = 64;
-/// Turns that tell a card: see [`most_turns`](crate::gpu).
+/// Least loop limit of hardware GPUs: see [`most_turns`](crate::gpu).
 const TURNS_OF_CARDS: u32 = 1_000_000;
 
-/// Rays to points of the light.
+/// Technique that traces rays to points of the light.
 #[derive(Debug)]
 pub struct RayTraced {
     inputs: FrameInputs,
@@ -100,21 +100,21 @@ pub struct RayTraced {
     no_texture: (wgpu::TextureView, wgpu::Sampler),
     tables: Option<wgpu::Buffer>,
     passed: Option<wgpu::Buffer>,
-    /// Of the tree over instances.
+    /// Cache key of the tree over instances.
     content: Content<(CastersKey, u64)>,
 }
 
-/// The passes of one frame.
+/// Passes of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedRays {
     inputs: PreparedInputs,
-    /// The tree over instances is to be built.
+    /// Whether the tree over instances has to be built.
     builds_top: bool,
     passes: Vec<Pass>,
 }
 
-/// Some rays, as far as one group of textures tells.
+/// Pass over some rays and one group of textures.
 #[derive(Debug)]
 struct Pass {
     rays: wgpu::BindGroup,
@@ -275,14 +275,14 @@ impl RayTraced {
     }
 }
 
-/// A point of the unit cube, which the shader takes to the light's, and how much of the light it stands for.
+/// Point of the unit cube, which the shader maps to the light, and the weight of the light that it represents.
 #[derive(Clone, Copy, Debug)]
 struct UnitPoint {
     at: Vec3,
     weight: f32,
 }
 
-/// The points that rays go to; of a list of points as many as it has.
+/// Returns the points that rays go to; for a list of points as many as it has.
 fn points_of(light: &Light, params: &RayTracedParams, run: u32) -> Vec<UnitPoint> {
     if let LightShape::Points { positions_m } = &light.shape {
         return vec![UnitPoint { at: Vec3::ZERO, weight: 1.0 }; positions_m.len()];
@@ -293,7 +293,7 @@ fn points_of(light: &Light, params: &RayTracedParams, run: u32) -> Vec<UnitPoint
     points.into_iter().map(|at| UnitPoint { at, weight: weight(at) }).collect()
 }
 
-/// Whether any shift of the points on the torus has the same light.
+/// Whether the light is the same under any shift of the points on the torus.
 fn is_even(light: &Light) -> bool {
     !matches!(light.shape, LightShape::Points { .. }) && light.emission.is_none()
 }
@@ -302,7 +302,7 @@ fn bits_of(vector: Vec4) -> [u32; 4] {
     vector.to_array().map(f32::to_bits)
 }
 
-/// A caster's entry in the table: see `top/instance.wesl`.
+/// Returns a caster's entry in the table: see `top/instance.wesl`.
 fn caster_words(
     caster: &MeshCaster<'_>,
     place: MeshPlace,

@@ -1,4 +1,4 @@
-//! Trees against their CPU reference, then masks against closed forms and brute force.
+//! Tests of trees against their CPU reference, then of masks against closed forms and brute force.
 
 mod irradiance;
 mod measure;
@@ -18,7 +18,7 @@ use crate::testing::{
     Case, Mesh, RECTANGLE, View, gpu, is_software, read_storage, run, test_ground, texture_of, view_of,
 };
 
-/// A number in [0, 1) of another.
+/// Returns a random number in [0, 1).
 fn random(seed: u32) -> f32 {
     (hash_u32(seed) >> 8) as f32 / 16_777_216.0
 }
@@ -35,7 +35,7 @@ struct Soup {
 }
 
 impl Soup {
-    /// Small ones, anywhere.
+    /// Small triangles at random positions.
     fn anywhere(count: u32, seed: u32) -> Self {
         let triangle = |i: u32| {
             let place = 10.0 * random_point(hash_u32(seed) ^ (4 * i)) - Vec3::new(3.0, 0.0, 40.0);
@@ -44,12 +44,12 @@ impl Soup {
         Self { name: "anywhere", corners: (0..count).map(triangle).collect() }
     }
 
-    /// All at one place: their codes are the same.
+    /// Triangles at one place, whose codes are equal.
     fn at_one_place(count: u32) -> Self {
         Self { name: "at one place", corners: vec![[Vec3::X, Vec3::Y, Vec3::Z]; count as usize] }
     }
 
-    /// Without area, and some that are no triangles at all.
+    /// Triangles without area, and some that are invalid.
     fn degenerate(count: u32) -> Self {
         let mut soup = Self::anywhere(count, 5);
         for (i, corners) in soup.corners.iter_mut().enumerate() {
@@ -64,7 +64,7 @@ impl Soup {
         Self { name: "degenerate", ..soup }
     }
 
-    /// Ever nearer to a corner: node after node splits off one.
+    /// Triangles ever nearer to a corner, so that each node splits off one.
     fn uneven(turns: u32) -> Self {
         let triangle = |i: u32| {
             let middle = Vec3::splat(0.5f32.powi((i % 10) as i32)) + Vec3::new(0.0, 0.0, 2.0 * (i / 10) as f32);
@@ -86,7 +86,7 @@ impl Soup {
         Mesh::new(gpu, &positions, &(0..positions.len() as u32).collect::<Vec<_>>())
     }
 
-    /// Moved about, each triangle by itself.
+    /// Returns the mesh with each triangle moved separately.
     fn moved(&self) -> Self {
         let move_one = |(i, corners): (usize, &[Vec3; 3])| {
             let by = 2.0 * random_point(77 + i as u32) - Vec3::Y;
@@ -118,7 +118,7 @@ impl<'a> Trees<'a> {
         places
     }
 
-    /// A mesh's box, nodes and order, as they are kept.
+    /// Returns a mesh's stored box, nodes and order.
     fn read(&self, place: MeshPlace, count: usize) -> Tree {
         let nodes: Vec<[u32; 4]> = read_storage(self.gpu, self.meshes.nodes());
         let triangles: Vec<[u32; 4]> = read_storage(self.gpu, self.meshes.triangles());
@@ -151,7 +151,7 @@ fn step_of(frame: Box3) -> Vec3 {
     (frame.high - frame.low).max(Vec3::splat((1e-6 * largest).max(1e-30))) / 65535.0
 }
 
-/// Whether a tree has each item once and leads past every node, and boxes hold what lies in them and little more.
+/// Checks that a tree has each item once, that skip links pass each subtree, and that boxes contain their items and little more.
 fn assert_is_right(soup: &Soup, tree: &Tree) {
     let (name, boxes) = (soup.name, soup.boxes());
     let mut order = tree.order.clone();
@@ -159,7 +159,7 @@ fn assert_is_right(soup: &Soup, tree: &Tree) {
     assert!(order.into_iter().eq(0..boxes.len() as u32), "{name}: each item once");
     let mut next = 0;
     let step = step_of(tree.frame);
-    // From the last to the first: where each node's items end.
+    // Ends of the nodes' item ranges, from the last node to the first.
     let mut runs = vec![(0, 0); tree.nodes.len()];
     for (i, node) in tree.nodes.iter().enumerate() {
         if node.skip.is_none() {
@@ -222,7 +222,7 @@ fn trees_are_those_of_their_twin() {
     for (soup, place) in soups.iter().zip(places) {
         let (had, want) = (trees.read(place, soup.corners.len()), Tree::new(&soup.boxes()));
         assert_is_right(soup, &had);
-        // Divisions of other devices round otherwise, and so may codes.
+        // Other devices round divisions differently, and hence codes.
         if is_software(gpu) {
             assert_eq!(had.order, want.order, "{} of {}", soup.name, soup.corners.len());
             let forms = |tree: &Tree| {
@@ -292,11 +292,11 @@ fn meshes_come_and_go() {
     }
 }
 
-/// What a mask is held against: every triangle in turn, in double precision.
+/// Reference for masks: brute force over all triangles, in double precision.
 struct Truth<'a> {
     light: &'a Light,
     points: Vec<Vec3>,
-    /// Corners in the world, and what passes.
+    /// Corners in the world, and transmittance.
     triangles: Vec<([DVec3; 3], f32)>,
 }
 
@@ -322,7 +322,7 @@ impl Truth<'_> {
     }
 }
 
-/// Matrices of all kinds: turned, of uneven scale, mirrored, flattened, without any extent.
+/// Returns matrices of all kinds: rotated, of uneven scale, mirrored, flattened, of zero extent.
 fn poses(count: u32) -> Vec<Mat4> {
     let pose = |i: u32| {
         let place =
@@ -342,7 +342,7 @@ fn poses(count: u32) -> Vec<Mat4> {
     (0..count).map(pose).collect()
 }
 
-/// A ground under instances of a mesh.
+/// Ground under instances of a mesh.
 struct Under<'a> {
     gpu: &'a Gpu,
     case: Case,
@@ -361,7 +361,7 @@ impl<'a> Under<'a> {
             usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        // The ground alone is seen.
+        // Only the ground is visible.
         Self { gpu, case: Case::new(gpu, light, view, vec![ground]), mesh }
     }
 
@@ -373,7 +373,7 @@ impl<'a> Under<'a> {
         technique
     }
 
-    /// How far a frame's mask is from brute force. `passes` the surface: how much of the light.
+    /// Returns the error of a frame's mask against brute force. `passes` is the surface's transmittance.
     fn error(
         &self,
         technique: &mut AnyShadow,
@@ -422,13 +422,13 @@ fn error_of(gpu: &Gpu, shape: LightShape, soup: &Soup, poses: &[Mat4], surface: 
 
 const OPAQUE: (Opacity<'_>, f32) = (Opacity::Opaque, 0.0);
 
-/// About its own origin.
+/// Returns the mesh centred on its origin.
 fn centred(soup: &Soup) -> Soup {
     let corners = soup.corners.iter().map(|corners| corners.map(|corner| corner + Vec3::new(-2.0, -5.0, 35.0)));
     Soup { name: soup.name, corners: corners.collect() }
 }
 
-/// The error of five rays of the 9248 that are held against brute force: by rounding a ray passes an edge on its other side.
+/// Error of five rays of the 9248 that are compared with brute force: rounding may move a ray across an edge.
 const ROUNDED_RAYS: f32 = 0.006;
 
 const DISK: LightShape = LightShape::Disk { radius_m: 0.4 };
@@ -462,7 +462,7 @@ fn masks_are_those_of_brute_force() {
     }
 }
 
-/// What passes several panes is their product along each ray.
+/// Transmittances of several panes multiply along each ray.
 #[test]
 fn panes_multiply_along_each_ray() {
     let Some(gpu) = gpu() else { return };
@@ -471,7 +471,7 @@ fn panes_multiply_along_each_ray() {
     assert!(error < ROUNDED_RAYS, "{error}");
 }
 
-/// Nothing casts; and what casts is nowhere.
+/// Everything is lit without casters, and with casters of zero extent.
 #[test]
 fn without_casters_all_is_lit() {
     let Some(gpu) = gpu() else { return };
@@ -487,7 +487,7 @@ fn without_casters_all_is_lit() {
     }
 }
 
-/// A mesh of ten kilometres beside one of a metre, and far from where it stands.
+/// A mesh of ten kilometres beside one of a metre, also far from its origin, casts the correct shadow.
 #[test]
 fn far_and_wide_casters_cast_as_near_ones() {
     let Some(gpu) = gpu() else { return };
@@ -503,7 +503,7 @@ fn far_and_wide_casters_cast_as_near_ones() {
     assert!(error < 0.02, "{error}");
 }
 
-/// Sheets one above another, each with a texture of its own: what passes all is their product, in however many passes.
+/// Sheets one above another, each with its own texture: transmittances multiply across any number of passes.
 #[test]
 fn more_textures_than_a_pass_binds() {
     let Some(gpu) = gpu() else { return };
@@ -522,7 +522,7 @@ fn more_textures_than_a_pass_binds() {
         .iter()
         .zip(&views)
         .map(|(sheet, view)| {
-            // Any coordinates do.
+            // Texture coordinates are arbitrary here.
             let texture = Some(SurfaceTexture { uvs: &sheet.positions, view, sampler: &sampler });
             let coverage = SurfaceCoverage::Alpha(1.0);
             let opacity = Opacity::Translucent { coverage, transmitted: Vec3::ZERO, texture };
@@ -537,7 +537,7 @@ fn more_textures_than_a_pass_binds() {
     }
 }
 
-/// Vertices bend and instances move from frame to frame, of a mesh that tells its version and of one that does not.
+/// Vertices deform and instances move between frames, for a mesh with a version and one without.
 #[test]
 fn bent_and_moved_casters_cast_as_they_are_now() {
     let Some(gpu) = gpu() else { return };

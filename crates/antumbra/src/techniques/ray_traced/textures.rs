@@ -1,10 +1,10 @@
-//! Textures of casters that light may pass, as many of them at a time as a pass binds.
+//! Textures of casters that light may pass, bound in groups.
 
 use crate::contract::MeshCaster;
 use crate::gpu::{Bindings, Gpu, Stage, bindings, samples, shared_constants, texels, white_texture};
 
 shared_constants! {
-    /// Textures of a pass.
+    /// Number of textures per pass.
     pub(super) const MOST_TEXTURES: u32 = 12, as in RAY_TRACE;
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Textures<'a> {
 }
 
 impl<'a> Textures<'a> {
-    /// The number of a caster's texture; `None` where it has none.
+    /// Returns the number of a caster's texture; `None` if it has none.
     pub(super) fn number_of(&mut self, caster: &MeshCaster<'a>) -> Option<u32> {
         let texture = caster.opacity.texture()?;
         let pair = (texture.view, texture.sampler);
@@ -55,12 +55,12 @@ impl<'a> Textures<'a> {
         Some(place as u32)
     }
 
-    /// How many groups there are; one at least.
+    /// Returns the number of groups; at least one.
     pub(super) fn group_count(&self) -> u32 {
         (self.all.len() as u32).div_ceil(MOST_TEXTURES).max(1)
     }
 
-    /// The groups of each [`MOST_TEXTURES`] of them.
+    /// Returns a bind group for each [`MOST_TEXTURES`] of them.
     pub(super) fn groups(
         &self,
         stage: &Stage<'_>,
@@ -109,12 +109,12 @@ impl<'a> Textures<'a> {
     }
 }
 
-/// The layout of [`Textures::groups`].
+/// Returns the layout of [`Textures::groups`].
 pub(super) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     Surfaces::layout(gpu)
 }
 
-/// What stands where there is no texture.
+/// Returns the texture and sampler bound to unused slots.
 pub(super) fn none(gpu: &Gpu) -> (wgpu::TextureView, wgpu::Sampler) {
     (white_texture(gpu), gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()))
 }

@@ -1,9 +1,9 @@
-//! Batches of triangles: as many as memory is set aside for, opaque ones first, then each surface that is
-//! there for some light points and not for others, whatever casters have it, then each caster of which a share passes.
-//!
-//! Masked surfaces are there or not at a place. Translucent ones that do not tint are there for as many of many light
-//! points as they stop light: what several of them let through then multiplies, as it does along each segment. Of tinted
-//! ones, and of one light point, a share passes.
+//! Batches of triangles, limited by the memory for them: opaque ones first, then a batch for each surface that blocks
+//! some light points and not others, shared by all casters with it, then one for each caster that transmits a fraction
+//! of the light.
+//! Masked surfaces are present or absent at a position. Translucent ones without tint block as many of many light points
+//! as they stop light: the transmittances of several then multiply, as they do along each segment. Tinted ones, and all
+//! with a single light point, transmit a fraction.
 
 use antumbra_light::Aabb;
 
@@ -12,20 +12,20 @@ use crate::light_map::caster_surface::SurfaceValues;
 
 use super::settings::{FLAG_CLOSED, FLAG_MASKED, FLAG_TINTED};
 
-/// Triangles of a batch: 48 MiB of corners and 8 of places.
+/// Largest number of triangles of a batch: 48 MiB of corners and 8 of positions in the order.
 pub(crate) const BATCH_TRIANGLES: u32 = 1 << 20;
 
-/// What the triangles of a batch do to light.
+/// Effect of a batch's triangles on light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surfaces {
     Opaque,
-    /// Those of the caster of this index and of all with its surface, which hide light points or not.
+    /// Triangles of the caster of this index, and of all with its surface, which hide a light point or not.
     Masked(usize),
-    /// Those of the caster of this index, which let a share of each colour pass.
+    /// Triangles of the caster of this index, which transmit a fraction of each colour.
     Tinted(usize),
 }
 
-/// A run of triangles and instances of one caster.
+/// Range of triangles and instances of one caster.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Run {
     pub(crate) caster: usize,
@@ -33,7 +33,7 @@ pub(crate) struct Run {
     pub(crate) triangle_count: u32,
     pub(crate) first_instance: u32,
     pub(crate) instance_count: u32,
-    /// Of the batch's triangles, the run's first.
+    /// Index of the run's first triangle in the batch.
     pub(crate) first_place: u32,
     pub(crate) flags: u32,
 }
@@ -49,7 +49,7 @@ impl Run {
 pub(crate) struct Batch {
     pub(crate) surfaces: Surfaces,
     pub(crate) runs: Vec<Run>,
-    /// Of all runs.
+    /// Number of triangles in all runs.
     triangles: u32,
 }
 
@@ -68,11 +68,11 @@ impl Batch {
     }
 }
 
-/// Every triangle of the casters once, in batches of at most `most` triangles; one empty batch where there is none, so
-/// that there is always an opaque one. `by_bits`: there are light points enough for translucent surfaces to hide some.
+/// Returns every triangle of the casters once, in batches of at most `most` triangles. The first batch is opaque, and
+/// empty if no caster is. `by_bits`: there are enough light points for translucent surfaces to hide some of them.
 ///
-/// `sees_within` tells of a caster's box whether the camera may see the caster from within while the light is outside. Closed
-/// casters then count as open: light reaches what is seen there through faces that segments leave.
+/// `sees_within` returns for a caster's box whether the camera may see the caster from within while the light is outside.
+/// Closed casters then count as open, because light reaches the visible surfaces through faces that segments leave.
 pub(crate) fn batches_of(
     casters: &[MeshCaster<'_>],
     sees_within: impl Fn(&Aabb) -> bool,
@@ -97,7 +97,7 @@ pub(crate) fn batches_of(
             };
             let first_place = batch.triangles();
             let room = most - first_place;
-            // Whole instances where any fits, else a part of one.
+            // Whole instances if one fits, otherwise part of one.
             let (triangle_count, instance_count) = if triangle == 0 && room >= per_instance {
                 (per_instance, (room / per_instance).min(caster.instance_count - instance))
             } else {
@@ -151,7 +151,7 @@ pub(crate) fn batches_of(
     batches
 }
 
-/// Whether two surfaces do the same to light, where their texture coordinates are the same.
+/// Whether two surfaces have the same effect on light at the same texture coordinates.
 fn has_surface_of(a: &Opacity<'_>, b: &Opacity<'_>) -> bool {
     let is_same_texture = match (a.texture(), b.texture()) {
         (Some(a), Some(b)) => a.view == b.view && a.sampler == b.sampler,

@@ -6,7 +6,7 @@ use super::region::HULL_BYTES;
 use super::settings::{CELL_COUNT, FIRST_GROUP, SHAFT_LENGTH, STATE_LENGTH};
 use crate::gpu::{Stage, sized_buffer, upload_storage};
 
-/// Each is made anew where a frame needs another size.
+/// Buffers of a light, reallocated when a frame needs another size.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
     state: Option<wgpu::Buffer>,
@@ -29,18 +29,18 @@ pub(super) struct Buffers {
     pub(super) bits: Option<wgpu::Buffer>,
 }
 
-/// The buffers of a frame.
+/// Buffers of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BufferSet<'a> {
     pub(super) state: &'a wgpu::Buffer,
     pub(super) counts: &'a wgpu::Buffer,
     pub(super) places: &'a wgpu::Buffer,
     pub(super) list: &'a wgpu::Buffer,
-    /// Of every listed receiver two, where the lists have them.
+    /// Two positions per listed receiver, if lists store positions.
     pub(super) positions: &'a wgpu::Buffer,
-    /// A word for each list, where silhouettes are drawn.
+    /// A word per list, if silhouettes are drawn.
     pub(super) penumbrae: &'a wgpu::Buffer,
-    /// Corners of each triangle's region, where these are made beforehand.
+    /// Corners of each triangle's region, if regions are computed before drawing.
     pub(super) hulls: &'a wgpu::Buffer,
     pub(super) shaft: &'a wgpu::Buffer,
     pub(super) whole_light: &'a wgpu::Buffer,
@@ -56,7 +56,7 @@ pub(super) struct BufferSet<'a> {
 }
 
 impl Buffers {
-    /// Allocates what the frame needs, and uploads the light's points that every pass asks for.
+    /// Allocates the buffers of the frame, and uploads the light's points that every pass reads.
     pub(super) fn prepare(&mut self, stage: &Stage<'_>, plan: &FramePlan, points: &[LocalPoint]) -> BufferSet<'_> {
         let storage = wgpu::BufferUsages::STORAGE;
         let FramePlan { pixels, most_triangles, .. } = *plan;

@@ -1,4 +1,4 @@
-//! The casters' buffers and surfaces as the passes take them.
+//! Bind groups of the casters' buffers and surfaces.
 
 use crate::contract::{MeshCaster, SurfaceTexture};
 use crate::gpu::{Bindings, Stage, dispatch_threads};
@@ -9,14 +9,14 @@ use super::batches::{Run, Surfaces};
 use super::gpu_types::SampleSurface;
 use super::groups::{Layouts, Meshes, Surface};
 
-/// Group 1 of some runs of triangles, and how many triangles there are.
+/// Group 1 of some runs of triangles, and their number of triangles.
 #[derive(Debug)]
 pub(super) struct RunGroup {
     pub(super) group: wgpu::BindGroup,
     pub(super) triangles: u32,
 }
 
-/// What the passes over some runs read: a group for all that lie in the same buffers.
+/// Returns the groups of the passes over some runs: one for all runs in the same buffers.
 pub(super) fn run_groups<'a>(
     stage: &Stage<'_>,
     layouts: &Layouts,
@@ -30,7 +30,7 @@ pub(super) fn run_groups<'a>(
         .collect()
 }
 
-/// Positions, indices, instances and, where there are any, texture coordinates.
+/// Returns positions, indices, instances and, if there are any, texture coordinates.
 fn buffers_of<'a>(
     mesh: &MeshCaster<'a>,
 ) -> (&'a wgpu::Buffer, &'a wgpu::Buffer, &'a wgpu::Buffer, Option<&'a wgpu::Buffer>) {
@@ -52,14 +52,14 @@ fn run_group(stage: &Stage<'_>, layouts: &Layouts, meshes: &[MeshCaster<'_>], ru
         (of_table, run.triangles())
     };
     let (table, triangles) = upload_runs(stage, runs.iter().map(of_table));
-    // Where there are no coordinates nothing reads them.
+    // A placeholder that no shader reads.
     let mesh_uvs = uvs.unwrap_or(mesh_positions);
     let anchor_in_world = &anchor_uniform(stage);
     let runs = RunBindings { runs: &table, mesh_positions, mesh_indices, mesh_instances, anchor_in_world };
     RunGroup { group: Meshes { runs, mesh_uvs }.group(stage, &layouts.mesh), triangles }
 }
 
-/// What a batch's triangles do to light.
+/// Returns the group of a batch's surface.
 pub(super) fn surface_group(
     stage: &Stage<'_>,
     layouts: &Layouts,
@@ -82,7 +82,7 @@ pub(super) fn surface_group(
     Surface { surface: &uniform, surface_texture, surface_sampler }.group(stage, &layouts.surface)
 }
 
-/// A thread for each triangle of some runs.
+/// Dispatches a thread per triangle of some runs.
 pub(super) fn over_runs(pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline, runs: &[RunGroup]) {
     pass.set_pipeline(pipeline);
     for run in runs {

@@ -1,4 +1,4 @@
-//! The lists as a host may look at them.
+//! Lists of a frame, for inspection by a host.
 
 use glam::UVec2;
 
@@ -8,25 +8,25 @@ use crate::contract::{DrawnLists, ListLengths, ListLevel, ListOrder};
 /// Layout of a frame's lists.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ListWindows {
-    /// `None` where receivers are sorted into cells: see [`FramePlan`].
+    /// Number of windows; `None` if receivers are sorted into cells: see [`FramePlan`].
     pub(super) count: Option<u32>,
     pub(super) side: u32,
-    /// The device chooses between windows and cells.
+    /// Whether the device chooses between windows and cells.
     pub(super) are_chosen: bool,
 }
 
 impl ViewSamples {
-    /// The lists of each window that receivers are seen through, or those of the cells that they are sorted into.
+    /// Returns the lists of each window, or those of the cells into which receivers are sorted.
     pub(crate) fn drawn_lists(&self) -> Vec<DrawnLists> {
         let (Some(windows), Some(counts)) = (self.windows, &self.buffers.counts) else { return Vec::new() };
         let side = windows.side;
         let of_window = |window: u32| DrawnLists {
             words: counts.clone(),
-            // The scan has made places of counts.
+            // The prefix sum has turned counts into positions.
             lengths: ListLengths::Between,
             listed: "receivers",
             order: match windows.count {
-                // Behind the total of all windows' lists.
+                // After the total of all windows' lists.
                 Some(_) if windows.are_chosen => ListOrder::Told { word: side * side + 1 },
                 Some(_) => ListOrder::Rows,
                 None => ListOrder::Halvings,

@@ -19,10 +19,10 @@ use crate::gpu::{Bindings, Stage, shared_constants};
 use crate::receivers::inputs::FrameInputs;
 
 shared_constants! {
-    /// Triangles that are tested together, at most.
+    /// Largest number of triangles that are tested together.
     const MOST_WAITING: u32 = 128, as in VIEW_SAMPLES_EVALUATE;
 
-    /// Rows of cells that a shadow touches whose light points are tested one by one.
+    /// Largest number of rows of cells in a shadow whose light points are tested one by one.
     const MOST_ROWS: u32 = 4, as in VIEW_SAMPLES_EVALUATE;
 }
 
@@ -30,12 +30,12 @@ shared_constants! {
 pub(super) enum Evaluation {
     Groups(OverGroups),
     Raster {
-        /// In place of all else, where the device may choose that.
+        /// Passes that replace all others if the device chooses so.
         walked: Option<OverGroups>,
-        /// Before the first batch: the light points in front of each receiver's own surface.
+        /// Before the first batch: opens the light points in front of each receiver's own surface.
         before: Option<OverGroups>,
         draw: Box<Draw>,
-        /// After the last batch: what the bits that are left weigh.
+        /// After the last batch: sums the weights of the remaining bits.
         after: Option<OverGroups>,
     },
 }
@@ -46,14 +46,14 @@ pub(super) struct OverGroups {
     pub(super) way: Way,
     pub(super) pipeline: wgpu::ComputePipeline,
     pub(super) group: wgpu::BindGroup,
-    /// After so many every group is done, whatever the scene; those after the last that has work find none.
+    /// Number of passes after which every group is done in any scene; passes without work find an empty queue.
     pub(super) passes: u32,
 }
 
-/// A batch of light points.
+/// Batch of light points.
 #[derive(Clone, Debug)]
 pub(super) struct PointBatch<'a> {
-    /// Among the batches.
+    /// Index among the batches.
     pub(super) index: usize,
     pub(super) points: &'a [LocalPoint],
     /// See [`most_cells`].
@@ -71,23 +71,23 @@ impl<'a> PointBatch<'a> {
     }
 }
 
-/// What all evaluations of a frame have in common.
+/// Inputs that all evaluations of a frame share.
 #[derive(Debug)]
 pub(super) struct Evaluations<'a> {
     pub(super) groups: FrameGroups<'a>,
     pub(super) inputs: &'a FrameInputs,
-    /// Those of every batch of the frame.
+    /// Pipelines for every batch of the frame.
     pub(super) evaluators: &'a HashMap<Evaluator, wgpu::ComputePipeline>,
     pub(super) plan: &'a FramePlan,
     pub(super) options: &'a Options,
     pub(super) base: &'a SampleSettings,
     pub(super) table: &'a wgpu::TextureView,
-    /// Where triangles are drawn.
+    /// Render targets; `None` if triangles are not drawn.
     pub(super) raster_targets: Option<&'a RasterTargets>,
 }
 
 impl Evaluations<'_> {
-    /// Of the plan's batch `index` of triangles with a batch of light points.
+    /// Returns the evaluation of the plan's triangle batch `index` with a batch of light points.
     pub(super) fn of(&self, raster: Option<&mut Raster>, index: usize, light: &PointBatch<'_>) -> Evaluation {
         let (plan, FrameGroups { stage, layouts, buffers }) = (self.plan, self.groups);
         let batch = &plan.batches[index];
@@ -164,9 +164,9 @@ impl Evaluations<'_> {
         switch(KEEP_BITS, plan.batches.len() > 1 || options.keep_bits);
         let word_count = light.points.len().div_ceil(WORD) as u32;
         let turns_per_triangle = turns_per_triangle(batch, word_count, light.most_cells);
-        // A turn a receiver, its words twice, are any open and which are hidden, and the ends of these loops.
+        // Iterations per receiver: itself, its words twice (any open, which are hidden), and the ends of these loops.
         let turns_per_receiver = 3 + word_count * (1 + turns_per_word(batch));
-        // No pass runs long, whatever the scene.
+        // No pass runs long in any scene.
         let most_turns = self.groups.stage.device.most_turns();
         SampleSettings {
             triangle_stride: stride_of(batch),
@@ -214,20 +214,20 @@ impl Evaluations<'_> {
     }
 }
 
-/// Turns of loops that a triangle takes at most: its shadow's box, then words, or rows of cells and light points in them.
+/// Returns the largest number of loop iterations for a triangle: its shadow's box, then words, or rows of cells and their light points.
 fn turns_per_triangle(batch: &Batch, word_count: u32, most_cells: u32) -> u32 {
-    // Two light points a turn, and those may have turns of their own.
+    // Two light points per iteration, each of which may loop.
     let singled_out = if most_cells == 0 { 0 } else { 2 * MOST_ROWS + MOST_SINGLED_OUT / 2 };
     let of_points = if batch.surfaces == Surfaces::Opaque { 0 } else { MOST_SINGLED_OUT };
     2 + (word_count * turns_per_word(batch)).max(singled_out + of_points)
 }
 
-/// Turns of loops that a word of a triangle's light points takes at most: a look at its box, and its points.
+/// Returns the largest number of loop iterations for a word of light points: its box, and its points.
 fn turns_per_word(batch: &Batch) -> u32 {
     match batch.surfaces {
         Surfaces::Opaque => 2,
         Surfaces::Masked(_) => 2 + WORD as u32,
-        // Four light points a turn.
+        // Four light points per iteration.
         Surfaces::Tinted(_) => 2 + WORD as u32 / 4,
     }
 }

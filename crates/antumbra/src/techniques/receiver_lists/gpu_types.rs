@@ -3,7 +3,7 @@ use glam::{Vec3, Vec4};
 use crate::gpu::gpu_structs;
 
 gpu_structs! {
-    /// What every pass shares; see `settings.wesl`.
+    /// Settings that every pass shares; see `settings.wesl`.
     pub(crate) struct SampleSettings {
         light_min: Vec3,
         point_count: u32,
@@ -51,7 +51,7 @@ gpu_structs! {
         clip_w_row: Vec4,
     }
 
-    /// What a batch's triangles do to light where they are not opaque:
+    /// Effect on light of a batch's triangles that are not opaque:
     /// [`SurfaceValues`](crate::light_map::caster_surface::SurfaceValues).
     pub(crate) struct SampleSurface {
         factor: Vec4,

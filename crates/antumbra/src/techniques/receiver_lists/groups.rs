@@ -4,7 +4,7 @@ use super::buffers::BufferSet;
 use crate::gpu::{Bindings, Gpu, Stage, bindings, samples, texels};
 use crate::light_map::caster_triangles::runs::RunBindings;
 
-/// The format of the lookup table.
+/// Format of the lookup table.
 pub(super) const TABLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 bindings! {
@@ -21,7 +21,7 @@ bindings! {
         3 places: ReadWrite,
         4 list: ReadWrite,
         5 shaft: ReadWrite,
-        /// The box of all.
+        /// Box of all points.
         6 light_points: Storage,
         7 positions: ReadWrite,
         14 snapped_texels: Uniform,
@@ -51,7 +51,7 @@ bindings! {
         5 edges: ReadWrite,
     }
 
-    /// Runs of triangles that lie in the same buffers.
+    /// Runs of triangles in the same buffers.
     pub(super) struct Meshes = "view-sample mesh", COMPUTE,
         group 1 of [VIEW_SAMPLES_TRIANGLE_COUNT, VIEW_SAMPLES_TRIANGLE_SCATTER, VIEW_SAMPLES_EDGE_FACES],
         with runs: RunBindings
@@ -84,7 +84,7 @@ bindings! {
         14 snapped_texels: Uniform,
     }
 
-    /// Triangles are also rasterised.
+    /// Surface of a batch, also for rasterised triangles.
     pub(super) struct Surface = "view-sample surface", COMPUTE | FRAGMENT,
         group 2 of [VIEW_SAMPLES_EVALUATE, VIEW_SAMPLES_RASTER, VIEW_SAMPLES_RASTER_LIGHT_PLANES]
     {
@@ -114,7 +114,7 @@ bindings! {
         3 state: Storage,
         9 totals: Storage,
         12 hulls: ReadWrite,
-        /// Holds the light: centre and semi-axes.
+        /// Ellipsoid that contains the light: centre and semi-axes.
         13 ellipsoid: Storage,
     }
 
@@ -129,16 +129,16 @@ bindings! {
         3 state: Storage in VERTEX,
         4 light_words: Uniform,
         5 bits: ReadWrite,
-        /// Where each list begins.
+        /// Start of each list.
         6 firsts: Storage,
         7 lookup: Texture3d(texels::UINT),
         8 work: ReadWrite,
         9 totals: Storage in VERTEX,
-        /// Of the listed receivers, where the lists have them.
+        /// Positions of the listed receivers, if lists store them.
         10 positions: Storage,
-        /// Texels that they can fall in.
+        /// Texels that penumbrae can reach.
         11 penumbrae: ReadWrite,
-        /// Of hexagons, where regions are made of these.
+        /// Hulls of hexagons, if regions are made of these.
         12 hulls: Storage in VERTEX,
         14 snapped_texels: Uniform,
     }
@@ -175,7 +175,7 @@ impl Layouts {
     }
 }
 
-/// Binds a frame's buffers.
+/// Creates the bind groups of a frame's buffers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrameGroups<'a> {
     pub(super) stage: &'a Stage<'a>,
@@ -184,7 +184,7 @@ pub(super) struct FrameGroups<'a> {
 }
 
 impl FrameGroups<'_> {
-    /// For zeroing a buffer.
+    /// Returns the group that clears a buffer.
     pub(super) fn clear(&self, items: &wgpu::Buffer) -> wgpu::BindGroup {
         Cleared { items }.group(self.stage, &self.layouts.clear)
     }

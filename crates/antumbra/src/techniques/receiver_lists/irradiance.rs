@@ -1,4 +1,4 @@
-//! Irradiance from the bits, by equation 1: emission by sample and channel, both cosines, and the distance.
+//! Irradiance from the bits by equation 1: emission by sample and channel, both cosines, and the distance.
 
 use glam::Vec4;
 
@@ -13,12 +13,12 @@ bindings! {
         0 settings: Uniform,
         1 bits: Storage,
         2 places: Storage,
-        /// Two vectors each.
+        /// Two vectors per light point.
         3 emitters: Storage,
     }
 }
 
-/// The pass.
+/// Irradiance pass.
 #[derive(Debug)]
 pub(super) struct Irradiance {
     layout: wgpu::BindGroupLayout,
@@ -26,7 +26,7 @@ pub(super) struct Irradiance {
     emitters: Option<wgpu::Buffer>,
 }
 
-/// The pass of one frame.
+/// Irradiance pass of one frame.
 #[derive(Debug)]
 pub(super) struct PreparedIrradiance {
     pipeline: wgpu::ComputePipeline,
@@ -41,7 +41,7 @@ impl Irradiance {
         Self { layout, pipeline, emitters: None }
     }
 
-    /// Uploads the light's points. The settings are those that count all of them, and every pixel's bits are kept.
+    /// Uploads the light's points. The settings must count all of them, and every pixel's bits must be kept.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,

@@ -1,45 +1,45 @@
-//! The light as the shaders test it: points in the light's frame, in groups of 32 that are near each other.
+//! Light points as the shaders test them: in the light's frame, in groups of 32 that are near each other.
 
 use antumbra_light::{Aabb, Light, LightFrame, LightShape};
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use crate::gpu::shared_constants;
 
-/// Light points of a word of bits.
+/// Number of light points per word of bits.
 pub(crate) const WORD: usize = 32;
-/// Words that a pass holds for each receiver.
+/// Largest number of words that a pass holds for each receiver.
 pub(crate) const MAX_WORDS: usize = 32;
 
-/// Light points that are tested one by one for a triangle, at most.
+/// Largest number of light points that are tested one by one for a triangle.
 pub(crate) const MOST_SINGLED_OUT: u32 = 20;
 
 shared_constants! {
-    /// Vectors before the points in [`packed_words`].
+    /// Number of vectors before the points in [`packed_words`].
     const FIRST_POINT: u32 = 2 + 2 * MAX_WORDS as u32, as in VIEW_SAMPLES_EVALUATE;
-    /// Vectors of [`packed_words`], of however many points.
+    /// Number of vectors of [`packed_words`], independent of the number of points.
     const LIGHT_WORDS_LENGTH: u32 = FIRST_POINT + (MAX_WORDS * WORD) as u32, as in VIEW_SAMPLES_EVALUATE;
 }
 
-/// A point in the light's frame about its centre: right, up, axis, metres (tangents for a sun), and its weight.
+/// Point in the light's frame about its centre: right, up, axis, metres (tangents for a sun), and its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LocalPoint {
     pub(crate) at: Vec3,
     pub(crate) weight: f32,
     /// Linear RGB emission, of which `weight` is the luminance.
     pub(crate) emission: Vec3,
-    /// In the order of the sample set, or of the light's own list.
+    /// Index in the sample set, or in the light's own list.
     pub(crate) index: u32,
 }
 
 impl LocalPoint {
-    /// The first point of a light that emits the same everywhere.
+    /// Returns a point of a light of uniform emission, with index 0.
     pub(crate) fn white(at: Vec3) -> Self {
         Self { at, weight: 1.0, emission: Vec3::ONE, index: 0 }
     }
 }
 
-/// The light's points for points of the unit cube, sorted so that each 32 of them lie close together. A light that is a
-/// list of points has its own.
+/// Returns the light's points for points of the unit cube, sorted so that each 32 of them are close together. A light
+/// that is a list of points has its own.
 pub(crate) fn local_points(light: &Light, unit_points: &[Vec3]) -> Vec<LocalPoint> {
     let mut points: Vec<LocalPoint> = if let LightShape::Points { positions_m } = &light.shape {
         let frame = light.frame();
@@ -50,7 +50,7 @@ pub(crate) fn local_points(light: &Light, unit_points: &[Vec3]) -> Vec<LocalPoin
         };
         (0..).zip(positions_m).map(|(index, p)| LocalPoint { index, ..LocalPoint::white(local(p)) }).collect()
     } else {
-        // With the identity for a frame a light point is its own coordinates. A sphere's disc faces the receiver: seen
+        // With the identity as frame, a light point is its own coordinates. A sphere's disc faces the receiver: seen
         // from +z its right is −x.
         let identity = LightFrame { center: Vec3::ZERO, right: Vec3::X, up: Vec3::Y, axis: Vec3::Z };
         let flip = if matches!(light.shape, LightShape::Sphere { .. }) { -1.0 } else { 1.0 };
@@ -71,7 +71,7 @@ pub(crate) fn local_points(light: &Light, unit_points: &[Vec3]) -> Vec<LocalPoin
     points
 }
 
-/// Halves the set at a multiple of 32 across its longer side, again and again.
+/// Halves the set recursively across its longer side, at multiples of 32.
 fn sort_into_words(points: &mut [LocalPoint]) {
     if points.len() <= WORD {
         return;
@@ -85,19 +85,19 @@ fn sort_into_words(points: &mut [LocalPoint]) {
     sort_into_words(right);
 }
 
-/// Middle and half of the box of some points.
+/// Returns the centre and half size of the box of some points.
 pub(crate) fn box_of(points: &[LocalPoint]) -> (Vec3, Vec3) {
     let b = Aabb::of(points.iter().map(|p| p.at));
     (0.5 * (b.min + b.max), 0.5 * (b.max - b.min))
 }
 
-/// Cells along a side of a grid over the points: about one for each.
+/// Returns the number of cells along a side of a grid over the points: about one cell per point.
 pub(crate) fn cells_across(points: &[LocalPoint]) -> u32 {
     (points.len() as f32).sqrt().ceil().clamp(1.0, 32.0) as u32
 }
 
-/// As many cells as never hold more than [`MOST_SINGLED_OUT`] points between them; none where a word holds all points, which
-/// is tested in a turn.
+/// Returns the largest number of cells that cannot contain more than [`MOST_SINGLED_OUT`] points in total; 0 if one word
+/// holds all points, which takes one iteration.
 pub(crate) fn most_cells(points: &[LocalPoint]) -> u32 {
     if points.len() <= WORD {
         return 0;
@@ -107,14 +107,14 @@ pub(crate) fn most_cells(points: &[LocalPoint]) -> u32 {
     MOST_SINGLED_OUT / fullest
 }
 
-/// Cells for a metre along each side; as `evaluation/` has it.
+/// Returns the number of cells per metre along each side, as in `evaluation/`.
 fn cells_per_m(points: &[LocalPoint]) -> Vec2 {
     let half = box_of(points).1.truncate();
     cells_across(points) as f32 / (2.0 * half).max(Vec2::splat(1e-20))
 }
 
-/// The first place in the order of each cell, row after row, and at last the number of points; and the points' slots in
-/// that order.
+/// Returns the index in the order of each cell's first point, row after row, followed by the number of points; and the
+/// points' indices in that order.
 fn by_cells(points: &[LocalPoint]) -> (Vec<u32>, Vec<usize>) {
     let across = cells_across(points);
     let (middle, half) = box_of(points);
@@ -134,15 +134,15 @@ fn by_cells(points: &[LocalPoint]) -> (Vec<u32>, Vec<usize>) {
     (starts, order)
 }
 
-/// The first two vectors of [`packed_words`]: middle and half of the box of all, with the cells for a metre.
+/// Returns the first two vectors of [`packed_words`]: centre and half size of the box of all, with the cells per metre.
 pub(crate) fn packed_box(points: &[LocalPoint]) -> [Vec4; 2] {
     let (middle, half) = box_of(points);
     let scale = cells_per_m(points);
     [middle.extend(scale.x), half.extend(scale.y)]
 }
 
-/// As `evaluation/` reads them: middle and half of the box of all, with the cells for a metre, then of each word's, then
-/// the points, four at a time: x, y, z, weights.
+/// Returns the layout that `evaluation/` reads: centre and half size of the box of all, with the cells per metre, then
+/// those of each word, then the points, four at a time: x, y, z, weights.
 pub(crate) fn packed_words(points: &[LocalPoint]) -> Vec<Vec4> {
     let entry = |(middle, half): (Vec3, Vec3)| [middle.extend(0.0), half.extend(0.0)];
     let mut packed = packed_box(points).to_vec();
@@ -161,8 +161,8 @@ pub(crate) fn packed_words(points: &[LocalPoint]) -> Vec<Vec4> {
     packed
 }
 
-/// As `evaluation/` reads them: the points in the order of cells, each with its bit's number, then the first of each cell,
-/// four at a time.
+/// Returns the layout that `evaluation/` reads: the points in the order of cells, each with its bit's index, then the
+/// first of each cell, four at a time.
 pub(crate) fn packed_cells(points: &[LocalPoint]) -> Vec<Vec4> {
     let (starts, order) = by_cells(points);
     let mut packed: Vec<Vec4> = order.iter().map(|i| points[*i].at.extend(*i as f32)).collect();
@@ -171,12 +171,12 @@ pub(crate) fn packed_cells(points: &[LocalPoint]) -> Vec<Vec4> {
     packed
 }
 
-/// The box of all points in the world; of a sun's directions towards it.
+/// Returns the box of all points in the world; for a sun, of the directions towards it.
 pub(crate) fn world_box(light: &Light, points: &[LocalPoint], is_turned: bool) -> Aabb {
     box_along(light, points, is_turned, [Vec3::X, Vec3::Y, Vec3::Z], Vec3::ZERO)
 }
 
-/// The same along other axes, about an origin in the world.
+/// Returns the box along other axes, about an origin in the world.
 pub(crate) fn box_along(
     light: &Light,
     points: &[LocalPoint],
@@ -189,7 +189,7 @@ pub(crate) fn box_along(
     let (middle, mut half) = box_of(points);
     let center = if light.is_distant() { -frame.axis } else { frame.center } - origin_in_world;
     if matches!(light.shape, LightShape::Sphere { .. }) {
-        // Its disc may face any way.
+        // The disc may face any direction.
         let radius = points.iter().map(|p| p.at.length()).fold(0.0, f32::max);
         let center = along(center);
         return Aabb { min: center - radius, max: center + radius };
@@ -200,7 +200,7 @@ pub(crate) fn box_along(
     }
     let middle = along(center + frame.right * middle.x + frame.up * middle.y + frame.axis * middle.z);
     let reach = along(frame.right).abs() * half.x + along(frame.up).abs() * half.y + along(frame.axis).abs() * half.z;
-    // What single precision may have moved the points.
+    // Margin for the points' single-precision rounding.
     let reach = reach + 1e-6 * (middle.abs() + reach);
     Aabb { min: middle - reach, max: middle + reach }
 }

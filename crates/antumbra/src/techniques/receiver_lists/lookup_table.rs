@@ -1,4 +1,4 @@
-//! The lookup table of section 4.2: the bits of 128 light points behind each of a grid of planes.
+//! Lookup table of section 4.2: the bits of 128 light points behind each of a grid of planes.
 
 use crate::contract::Error;
 use crate::gpu::{Bindings, Stage};
@@ -7,20 +7,20 @@ use super::Options;
 use super::groups::{MadeTable, TABLE_FORMAT};
 use super::light_points::{LocalPoint, MAX_WORDS, WORD};
 
-/// The lookup table of section 4.2, and what it was made for.
+/// Lookup table of section 4.2, and the points for which it was computed.
 #[derive(Debug)]
 pub(super) struct Table {
     pub(super) view: wgpu::TextureView,
     size: u32,
     points: Vec<LocalPoint>,
     pub(super) bytes: u64,
-    /// Made in the frame at hand.
+    /// Bind group if the table is filled in the current frame.
     pub(super) bind_group: Option<wgpu::BindGroup>,
     pub(super) groups: [u32; 3],
 }
 
 impl Table {
-    /// Makes room for the lookup table, unless the one at hand is for the same points.
+    /// Allocates the lookup table, unless the present one is for the same points.
     pub(super) fn prepare(
         table: &mut Option<Self>,
         stage: &Stage<'_>,
@@ -43,7 +43,7 @@ impl Table {
             && table.size == size
             && table.points == options.points
         {
-            // Once is enough.
+            // The table is filled only once.
             table.groups = [0; 3];
             table.bind_group = None;
             return Ok(());
@@ -69,7 +69,7 @@ impl Table {
         Ok(())
     }
 
-    /// Makes ready to fill a new table.
+    /// Prepares the filling of a new table.
     pub(super) fn bind(
         &mut self,
         stage: &Stage<'_>,

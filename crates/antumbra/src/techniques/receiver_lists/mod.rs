@@ -1,5 +1,5 @@
-//! View-samples in lists by where they lie as seen from the light, triangles sorted by place, and one bit for each view-sample and
-//! light point: the passes of `alias_free` and `sample_based`.
+//! Passes of `alias_free` and `sample_based`: view-samples (receivers) in lists by their position as seen from the light,
+//! triangles sorted by position, and one bit for each view-sample and light point.
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
 //! EGSR 2008.
@@ -20,46 +20,46 @@
 //! | `raster` | regions of influence, drawn over the windows: `traversal=raster`, as published | 3.2, 4.1 |
 //!
 //! # Groups of receivers
-//! The paper rasterises each triangle's region of influence, and its fragments walk the lists. The time of that has no bound that follows
-//! from a scene's size: in a street under a sun the receivers of the first metres share a few texels of a map of two kilometres, and each
-//! triangle over these texels walks them all. `traversal=groups` exchanges the loops. Sixty-four receivers that are neighbours in the lists
-//! share a workgroup, and its *shaft*, the hull of their box and the light's, takes the part of the regions of influence. Lists may be
-//! of any length, triangles may be any number, nothing is stored per pair of the two, and a bit never leaves its thread.
+//! The paper rasterises each triangle's region of influence, and its fragments walk the lists. Its time has no bound that follows from a
+//! scene's size: in a street under a sun the receivers of the first metres share a few texels of a map of two kilometres, and each triangle
+//! over these texels walks them all. `traversal=groups` exchanges the loops. Sixty-four receivers that are neighbours in the lists share a
+//! workgroup, and its *shaft*, the hull of their box and the light's, replaces the regions of influence. Lists may be of any length and
+//! triangles of any number, nothing is stored per pair of the two, and a bit never leaves its thread.
 //!
 //! Three things keep the tests few:
 //! 1. Lists are sorted by direction *and distance* from the light, so that a group holds neighbours in space.
-//! 2. Of the triangles that the group's shaft meets, each thread asks which matter to eight blocks of eight receivers
-//!    (`evaluation/block_shafts.wesl`).
-//! 3. Each receiver projects a triangle onto the light first (`light_bits/shadow_window.wesl`), and tests the light points only in the cells
-//!    of a grid that the projection touches.
+//! 2. For each triangle that the group's shaft meets, a thread determines which of eight blocks of eight receivers it
+//!    can affect (`evaluation/block_shafts.wesl`).
+//! 3. Each receiver projects a triangle onto the light first (`light_bits/shadow_window.wesl`), and tests only the light points in the
+//!    cells of a grid that the projection touches.
 //!
-//! For a single light point drawing is faster where lists are short. `alias_free` lets the device choose once the lists are counted
-//! (`lists/choose.wesl`), and sorts them anew by cells of space where many receivers share a texel. For hundreds of light points groups are
-//! faster on every scene that was measured, and the default of `sample_based`. `bench/measurements.md` has the figures.
+//! For a single light point drawing is faster if lists are short. `alias_free` lets the device choose after the lists are counted
+//! (`lists/choose.wesl`), and sorts them again by cells of space if many receivers share a texel. For hundreds of light points groups are
+//! faster on every measured scene, and the default of `sample_based`. `bench/measurements.md` has the figures.
 //!
 //! # Drawn regions
-//! Every triangle is drawn over the texels whose receivers it can shade (`raster/region.wesl`): the convex hull of three boxes,
-//! each of a corner and of its shadows from the whole light on the farthest receivers, half a texel wider, so that plain rasterisation is
-//! conservative. The paper's own regions are options: six vertices for a single light point (`raster/six_vertices.wesl`), else
-//! the hull of hexagons about an ellipsoid's shadows (`raster/hulls.wesl`). Neither misses a bit.
+//! Every triangle is drawn over the texels whose receivers it can shade (`raster/region.wesl`): the convex hull of three boxes, each of a
+//! corner and of its shadows from the whole light on the farthest receivers, enlarged by half a texel, so that plain rasterisation is
+//! conservative. The paper's own regions are options: six vertices for a single light point (`raster/six_vertices.wesl`), otherwise the
+//! hull of hexagons about an ellipsoid's shadows (`raster/hulls.wesl`). Neither misses a bit.
 //!
-//! - The map is one window fitted to the receivers, or the six of a cube where receivers are all around the light. What comes
-//!   beside the light is drawn over the whole window.
-//! - WebGPU's fragments have no bitwise blending, so atomics clear bits. Long lists are walked in parts, an instance each.
-//! - Tinted casters go to the groups: no atomic multiplies their transmittances.
-//! - The regions of silhouettes are drawn first, into a word for each texel (`raster/silhouettes.wesl`): elsewhere one light point
-//!   stands for all. A triangle's plane cuts its region off where fragments begin (`raster/supporting_plane.wesl`).
-//! - Lists may hold positions, and a depth test in place of the paper's stencil may drop fragments over empty lists
+//! - The map is one window fitted to the receivers, or the six of a cube if receivers surround the light. A triangle beside
+//!   the light is drawn over the whole window.
+//! - WebGPU's fragments have no bitwise blending, so atomics clear bits. Long lists are split, one instance per part.
+//! - Groups evaluate tinted casters, because no atomic multiplies their transmittances.
+//! - The regions of silhouettes are drawn first, into a word per texel (`raster/silhouettes.wesl`): elsewhere one light point
+//!   represents all. A triangle's plane clips its region at the start of a fragment (`raster/supporting_plane.wesl`).
+//! - Lists may store positions, and a depth test in place of the paper's stencil may discard fragments over empty lists
 //!   (`raster/stencil.wesl`).
-//! - A pass before the first batch opens the light points in front of each receiver's own surface, and one after the last weighs
-//!   those that are still open (`raster/open_points.wesl`, `raster/sum_visible.wesl`).
+//! - A pass before the first batch opens the light points in front of each receiver's own surface, and one after the last sums
+//!   the weights of those that are still open (`raster/open_points.wesl`, `raster/sum_visible.wesl`).
 //!
-//! The bits are those of the groups, except where planes are made once a triangle (`light_bits/planes.wesl`), which round otherwise.
+//! The bits equal those of the groups, except with planes computed once per triangle (`light_bits/planes.wesl`): they round differently.
 //!
 //! # Departures from the paper
-//! *Section 4.3.* Groups are made of listed receivers alone, so empty lists cost nothing. Its other four savings are switches, and
-//! change no bit: `cull_facing`, `cut_by_plane`, `stop_when_occluded`, `penumbra_only`. The last is on in `sample_based:paper` alone: no
-//! built-in scene that was tried is faster with it.
+//! *Section 4.3.* Groups contain listed receivers alone, so empty lists cost nothing. Its other four savings are switches, and change no
+//! bit: `cull_facing`, `cut_by_plane`, `stop_when_occluded`, `penumbra_only`. The last is on in `sample_based:paper` alone: no built-in
+//! scene that was tried is faster with it.
 
 use std::collections::HashMap;
 
@@ -116,59 +116,59 @@ pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OC
 use subset::{PreparedSubset, Subset};
 
 param_choice! {
-    /// How triangles find the receivers that they may hide the light from.
+    /// Method by which triangles find the receivers that they may shadow.
     pub enum Traversal {
-        /// Sixty-four receivers that lie together walk the triangles between them and the light.
+        /// Groups of 64 neighbouring receivers walk the triangles between them and the light.
         Groups = "groups",
-        /// Triangles are drawn over the light's map, and fragments walk the lists of its texels: the paper's way.
+        /// Triangles are drawn over the light's map, and fragments walk the lists of its texels, as published.
         Raster = "raster",
-        /// Raster where one window holds the receivers and few of them share a texel, groups elsewhere. The device chooses, in
-        /// each frame anew.
+        /// Raster if one window holds the receivers and few of them share a texel, otherwise groups. The device chooses in
+        /// each frame.
         Chosen = "chosen",
     }
 }
 
-/// What a frame asks for.
+/// Options of a frame.
 #[derive(Clone, Debug)]
 pub(crate) struct Options {
     /// The light's points.
     pub(crate) points: Vec<LocalPoint>,
-    /// Texels along a side of a map with as many texels as there are lists; a power of two, or taken up to one.
+    /// Width of a map with as many texels as there are lists; rounded up to a power of two.
     pub(crate) map_size: u32,
-    /// How triangles find receivers.
+    /// Method by which triangles find receivers.
     pub(crate) traversal: Traversal,
-    /// How they are drawn.
+    /// Options of drawn triangles.
     pub(crate) drawn: Drawn,
-    /// The switches of section 4.3.
+    /// Switches of section 4.3.
     pub(crate) switches: u32,
-    /// Side of the lookup table; 0 tests each light point.
+    /// Width of the lookup table; 0 tests each light point.
     pub(crate) lookup_size: u32,
-    /// Turns about the light's axis that leave it the same, 1 for any; 0: pixels are not turned.
+    /// Number of rotations about the light's axis that leave it unchanged, 1 for any; 0: pixels are not rotated.
     pub(crate) rotations: u32,
-    /// Added to every pixel's turn, as a part of a whole one.
+    /// Offset of every pixel's rotation, as a fraction of a whole turn.
     pub(crate) turn: f32,
     /// Scale of the ray offset at open meshes.
     pub(crate) hair_scale: f32,
-    /// Keeps every pixel's bits.
+    /// Whether every pixel's bits are kept.
     pub(crate) keep_bits: bool,
-    /// Counts tests.
+    /// Whether tests are counted.
     pub(crate) counts: bool,
-    /// Lists every other pixel in both directions, and interpolates.
+    /// Whether only every other pixel in both directions is listed, and the rest interpolated.
     pub(crate) is_sparse: bool,
-    /// Weights light points by what they give each receiver; every pixel's bits are kept.
+    /// Whether light points are weighted by the irradiance that they give each receiver; every pixel's bits are then kept.
     pub(crate) weighs_irradiance: bool,
 }
 
-/// The passes, and what they keep.
+/// Passes, and their retained state.
 #[derive(Debug)]
 pub(crate) struct ViewSamples {
     technique: &'static str,
     inputs: FrameInputs,
     layouts: Layouts,
     pipelines: Pipelines,
-    /// Made when a frame first needs them.
+    /// Pipelines, created when a frame first needs them.
     evaluators: HashMap<Evaluator, wgpu::ComputePipeline>,
-    /// Made when a frame first needs it.
+    /// Created when a frame first needs it.
     raster: Option<Raster>,
     list_scan: PrefixScan,
     cell_scan: PrefixScan,
@@ -176,15 +176,15 @@ pub(crate) struct ViewSamples {
     no_texture: (wgpu::TextureView, wgpu::Sampler),
     table: Option<Table>,
     no_table: wgpu::TextureView,
-    /// Made when a frame first needs it.
+    /// Created when a frame first needs it.
     irradiance: Option<Irradiance>,
-    /// Made when a frame first needs it.
+    /// Created when a frame first needs it.
     subset: Option<Subset>,
-    /// Of the frame prepared last.
+    /// Lists of the frame prepared last.
     windows: Option<ListWindows>,
 }
 
-/// The passes of one frame.
+/// Passes of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedSamples {
@@ -194,7 +194,7 @@ pub struct PreparedSamples {
     lists: wgpu::BindGroup,
     stores_positions: bool,
     chooses: bool,
-    /// Where silhouettes are asked for: the runs of closed meshes.
+    /// Runs of closed meshes; empty unless silhouettes are needed.
     edge_runs: Vec<RunGroup>,
     edges: wgpu::BindGroup,
     passes: wgpu::BindGroup,
@@ -230,7 +230,7 @@ struct PreparedBatch {
     surface: wgpu::BindGroup,
     runs: Vec<RunGroup>,
     clusters: u32,
-    /// One for each batch of light points.
+    /// One evaluation per batch of light points.
     evaluate: Vec<Evaluation>,
 }
 
@@ -268,7 +268,7 @@ impl ViewSamples {
         }
     }
 
-    /// Allocates and uploads all that a frame needs.
+    /// Allocates and uploads a frame's data.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -277,7 +277,7 @@ impl ViewSamples {
     ) -> Result<PreparedSamples, Error> {
         let technique = self.technique;
         let meshes = readable_meshes(technique, frame, None)?;
-        // Nothing can be interpolated between points in any order.
+        // Points are in any order, so that nothing can be interpolated between them.
         let is_sparse = options.is_sparse && frame.receivers.have_neighbours();
         let inputs = self.inputs.prepare_known(stage, frame, if is_sparse { SparseUpsample::STRIDE_PX } else { 1 });
         let plan =
@@ -327,7 +327,7 @@ impl ViewSamples {
                 boxes: groups.boxes(&settings),
                 surface: surface_group(stage, layouts, &self.no_texture, meshes, batch.surfaces),
                 runs: run_groups(stage, layouts, meshes, &batch.runs),
-                // Regions of influence look for no boxes.
+                // Drawn triangles need no boxes.
                 clusters: if plan.is_drawn(batch) && !plan.chooses() { 0 } else { batch.triangles().div_ceil(64) },
             }
         };
@@ -365,7 +365,7 @@ impl ViewSamples {
         Ok(prepared)
     }
 
-    /// Makes the pipelines that the frame's batches ask for and that are not there.
+    /// Creates missing pipelines of the frame's batches.
     fn make_programs(&mut self, gpu: &Gpu, plan: &FramePlan, options: &Options) {
         for batch in &plan.batches {
             let evaluator = Evaluator::of(batch.surfaces, options);
@@ -385,22 +385,22 @@ impl ViewSamples {
         }
     }
 
-    /// Group 0 of every pass over the receivers.
+    /// Bind group 0 of every pass over the receivers.
     pub(crate) fn inputs(&self) -> &FrameInputs {
         &self.inputs
     }
 
-    /// The bits of every pixel, where they are kept: words of pixel after pixel, row after row.
+    /// Bits of every pixel, if they are kept: the words of pixel after pixel, row after row.
     pub(crate) fn bits(&self) -> Option<&wgpu::Buffer> {
         self.buffers.bits.as_ref()
     }
 
-    /// What was counted, from the buffer's third word on; see `work.wesl`.
+    /// Counters, from the buffer's third word on; see `work.wesl`.
     pub(crate) fn counters(&self) -> Option<&wgpu::Buffer> {
         self.buffers.work.as_ref()
     }
 
-    /// Bytes of lists, triangles, bits and table.
+    /// Size of lists, triangles, bits and table, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.buffers.bytes()
             + self.list_scan.memory_bytes()
@@ -412,13 +412,13 @@ impl ViewSamples {
 }
 
 impl PreparedSamples {
-    /// Group 0 of every pass over the receivers.
+    /// Bind group 0 of every pass over the receivers.
     pub(crate) fn inputs(&self) -> &PreparedInputs {
         &self.inputs
     }
 }
 
-/// Vectors of a triangle in its list: corners, and texture coordinates where the surface has holes or tint.
+/// Returns the number of vectors of a triangle in its list: corners, and texture coordinates if the surface has holes or tint.
 fn stride_of(batch: &Batch) -> u32 {
     if batch.surfaces == Surfaces::Opaque { 3 } else { 5 }
 }

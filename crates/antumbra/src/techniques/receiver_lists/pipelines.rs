@@ -9,7 +9,7 @@ use super::batches::Surfaces;
 use super::groups::Layouts;
 use super::settings::{DRAWN, EITHER, WALKED};
 
-/// By which way of the device's choice passes have something to do.
+/// Condition under which a pass has work, if the device chooses between drawn and walked triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub(super) enum Way {
@@ -19,7 +19,7 @@ pub(super) enum Way {
 }
 
 impl Way {
-    /// In the order of their numbers.
+    /// All values, in the order of their numbers.
     pub(super) const ALL: [Self; 3] = [Self::Either, Self::Drawn, Self::Walked];
 }
 
@@ -29,12 +29,12 @@ pub(super) struct Pipelines {
     pub(super) bounds: wgpu::ComputePipeline,
     pub(super) count: wgpu::ComputePipeline,
     pub(super) scatter: wgpu::ComputePipeline,
-    /// The same where lists have positions; made when a frame first needs it.
+    /// `scatter` for lists with positions; created when a frame first needs it.
     pub(super) storing_scatter: Option<wgpu::ComputePipeline>,
-    /// Where the device chooses; made when a frame first needs it.
+    /// Pipelines of the device's choice; created when a frame first needs them.
     pub(super) choice: Option<Choice>,
     pub(super) arguments: wgpu::ComputePipeline,
-    /// By [`Way`].
+    /// Pipelines by [`Way`].
     begin: [wgpu::ComputePipeline; Way::ALL.len()],
     pub(super) advance: wgpu::ComputePipeline,
     pub(super) edge_faces: wgpu::ComputePipeline,
@@ -45,15 +45,15 @@ pub(super) struct Pipelines {
     pub(super) make_lookup: wgpu::ComputePipeline,
 }
 
-/// Between drawing triangles over a window and groups that walk them.
+/// Pipelines that choose between drawing triangles over a window and groups that walk them.
 #[derive(Debug)]
 pub(super) struct Choice {
     pub(super) choose: wgpu::ComputePipeline,
-    /// Receivers by cells of space, where groups are chosen.
+    /// Counts receivers by cells of space, if groups are chosen.
     pub(super) count_again: wgpu::ComputePipeline,
 }
 
-/// What an evaluating pipeline is for; see the shader's `override` constants.
+/// Key of an evaluating pipeline; see the shader's `override` constants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Evaluator {
     uses_table: bool,
@@ -85,7 +85,7 @@ impl Evaluator {
         )
     }
 
-    /// The shader's `override` constants.
+    /// Returns the shader's `override` constants.
     pub(super) fn constants(self) -> [(&'static str, f64); 5] {
         let value = |is_on: bool| f64::from(u8::from(is_on));
         [
@@ -128,12 +128,12 @@ impl Pipelines {
         }
     }
 
-    /// Makes ready for passes by that way.
+    /// Returns the pipeline that prepares the first pass.
     pub(super) fn begin(&self, way: Way) -> &wgpu::ComputePipeline {
         &self.begin[way as usize]
     }
 
-    /// Makes what chooses between drawn and walked triangles.
+    /// Creates the pipelines that choose between drawn and walked triangles.
     pub(super) fn prepare_choice(&mut self, gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) {
         let lists = [&inputs.layout, &layouts.lists];
         self.choice.get_or_insert_with(|| Choice {
@@ -149,7 +149,7 @@ impl Pipelines {
         });
     }
 
-    /// Makes what stores positions in the lists too.
+    /// Creates the pipeline that stores positions in the lists.
     pub(super) fn prepare_storing(&mut self, gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) {
         self.storing_scatter.get_or_insert_with(|| {
             compute_entry(

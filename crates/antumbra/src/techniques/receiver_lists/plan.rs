@@ -1,4 +1,4 @@
-//! Plan of a frame before anything is allocated: batches of triangles and light points, and their numbers.
+//! Plan of a frame, computed before allocation: batches of triangles and light points, and their sizes.
 
 use antumbra_light::Aabb;
 use glam::Vec3;
@@ -13,44 +13,44 @@ use super::{Options, Traversal, is_weighted, stride_of};
 use crate::contract::{Error, MeshCaster, PreparedFrame};
 use crate::light_map::occluding_bounds::Between;
 
-/// The bits of all pixels take at most this; more light points are taken in turn.
+/// Largest size of the bits of all pixels, bytes; more light points are taken in turn.
 const BITS_BUDGET_BYTES: u64 = 120 << 20;
 
-/// Words of light points that are tested together where casters have holes or tint: each bit costs a look at a texture,
-/// and no pass may run long.
+/// Number of words of light points that are tested together if casters have holes or tint: each bit costs a texture
+/// sample, and no pass may run long.
 const TEXTURED_WORDS: usize = 8;
 
-/// Of a receiver's positions in the lists: on its surface and a hair off it.
+/// Size of a receiver's positions in the lists, bytes: on its surface, and at the ray offset.
 pub(super) const POSITIONS_BYTES: u64 = 32;
 
-/// The sizes of a frame.
+/// Sizes of a frame.
 #[derive(Clone, Debug)]
 pub(super) struct FramePlan {
     pub(super) pixels: u64,
-    /// Of triangles; the first is opaque.
+    /// Batches of triangles; the first is opaque.
     pub(super) batches: Vec<Batch>,
-    /// Of light points that are tested together.
+    /// Number of words of light points that are tested together.
     pub(super) words: usize,
-    /// Words that are kept of each pixel's bits.
+    /// Number of words kept of each pixel's bits.
     pub(super) pixel_words: u32,
-    /// Where triangles are drawn.
+    /// Windows; `None` if triangles are not drawn.
     pub(super) windows: Option<Windows>,
-    /// Texels along a side of a window, or of the one map of groups.
+    /// Width of a window, or of the one map of groups, texels.
     pub(super) window_side: u32,
     pub(super) list_count: u32,
-    /// Of a batch.
+    /// Largest number of triangles in a batch.
     pub(super) most_triangles: u32,
     pub(super) most_stride: u32,
-    /// The options that have an effect.
+    /// Options that have an effect.
     pub(super) switches: u32,
-    /// Of the listed receivers, where triangles are drawn.
+    /// Whether lists store positions; only if triangles are drawn.
     pub(super) stores_positions: bool,
-    /// Regions of influence are made before they are drawn.
+    /// Whether regions of influence are computed before they are drawn.
     pub(super) makes_hulls: bool,
 }
 
 impl FramePlan {
-    /// Refuses what a binding of `binding_limit` bytes cannot hold.
+    /// Returns the plan, or an error if a binding of `binding_limit` bytes cannot hold its data.
     pub(super) fn new(
         technique: &'static str,
         frame: &PreparedFrame<'_>,
@@ -77,10 +77,10 @@ impl FramePlan {
             });
         }
 
-        // Light points in batches of which a thread holds the bits, and a buffer those of all pixels where they must
-        // outlast a batch of triangles.
+        // A thread holds the bits of a batch of light points, and a buffer those of all pixels if they must outlast a
+        // batch of triangles.
         let makes_hulls = windows.is_some() && options.drawn.region == Region::Hexagons;
-        // Of hulls that makes 44 MiB.
+        // This makes 44 MiB of hulls.
         let most = if makes_hulls { BATCH_TRIANGLES / 4 } else { BATCH_TRIANGLES };
         let batches = batches_of(meshes, frame.sees_within(), most, options.points.len() > 1);
         let is_textured = batches.iter().any(|batch| batch.surfaces != Surfaces::Opaque);
@@ -112,14 +112,14 @@ impl FramePlan {
             makes_hulls,
             batches,
         };
-        // A mesh that batches share is open in each of them where it is cut.
+        // A mesh split over several batches counts as open along the cuts.
         if plan.batches.iter().filter(|batch| batch.surfaces == Surfaces::Opaque).count() > 1 {
             plan.switches &= !PENUMBRA_ONLY;
         }
         Ok(plan)
     }
 
-    /// Whether a batch's triangles are drawn over the windows; groups of receivers walk them otherwise.
+    /// Whether a batch's triangles are drawn over the windows; otherwise groups of receivers walk them.
     pub(super) fn is_drawn(&self, batch: &Batch) -> bool {
         self.windows.is_some() && !matches!(batch.surfaces, Surfaces::Tinted(_))
     }
@@ -129,41 +129,41 @@ impl FramePlan {
         self.switches & CHOOSES != 0
     }
 
-    /// Whether triangles with silhouettes tell drawn ones where penumbrae can fall.
+    /// Whether triangles with silhouettes are drawn to mark the texels that penumbrae can reach.
     pub(super) fn draws_silhouettes(&self) -> bool {
         self.windows.is_some() && self.switches & PENUMBRA_ONLY != 0
     }
 
-    /// The first so many batches are opaque or have holes; the rest are tinted.
+    /// Number of leading batches that are opaque or alpha-tested; the remaining ones are tinted.
     pub(super) fn opaque_batches(&self) -> usize {
         self.batches.iter().filter(|batch| !matches!(batch.surfaces, Surfaces::Tinted(_))).count()
     }
 
-    /// The runs of closed meshes, where it is asked which of their triangles have silhouettes.
+    /// Returns the runs of closed meshes if triangles with silhouettes are needed; otherwise none.
     pub(super) fn silhouette_runs(&self) -> impl Iterator<Item = &Run> {
         let is_asked = self.switches & PENUMBRA_ONLY != 0;
         let runs = self.batches.iter().flat_map(|batch| &batch.runs);
         runs.filter(move |run| is_asked && run.flags & FLAG_CLOSED != 0)
     }
 
-    /// A power of two.
+    /// Number of slots of the edge table, a power of two.
     pub(super) fn edge_slots(&self) -> u32 {
         let closed_triangles: u32 = self.silhouette_runs().map(Run::triangles).sum();
-        // Three edges for two triangles; twice as many slots as edges keep most apart.
+        // Two triangles have three edges; twice as many slots as edges keep most apart.
         (3 * closed_triangles.min(1 << 23)).next_power_of_two().max(64)
     }
 
-    /// Boxes of 64 triangles each.
+    /// Largest number of boxes of 64 triangles each.
     pub(super) fn most_clusters(&self) -> u32 {
         self.most_triangles.div_ceil(64)
     }
 
-    /// Boxes of 32 clusters each.
+    /// Largest number of boxes of 32 clusters each.
     pub(super) fn most_supers(&self) -> u32 {
         self.most_clusters().div_ceil(32)
     }
 
-    /// Groups of receivers.
+    /// Largest number of groups of receivers.
     pub(super) fn most_groups(&self) -> u32 {
         self.pixels.div_ceil(64) as u32
     }
@@ -172,12 +172,12 @@ impl FramePlan {
         self.batches.iter().any(|batch| matches!(batch.surfaces, Surfaces::Tinted(_)))
     }
 
-    /// Of every pixel, and of what tinted casters let through.
+    /// Size of every pixel's bits, and of the light that tinted casters transmit, bytes.
     pub(super) fn bits_bytes(&self) -> u64 {
         self.pixels * u64::from(self.pixel_words + if self.is_tinted() { 3 } else { 0 }) * 4
     }
 
-    /// The settings that all passes of the frame share.
+    /// Returns the settings that all passes of the frame share.
     pub(super) fn settings(
         &self,
         frame: &PreparedFrame<'_>,

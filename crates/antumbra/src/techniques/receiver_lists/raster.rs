@@ -1,4 +1,4 @@
-//! Regions of influence by the rasteriser: the paper's own way for triangles to find their receivers.
+//! Regions of influence drawn by the rasteriser: the published way for triangles to find their receivers.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -16,28 +16,28 @@ use super::groups::{DrawArguments, Layouts, RegionHulls, Window};
 use super::pipelines::Evaluator;
 use super::region::Region;
 
-/// What the paper does to drawn triangles and their receivers, of what ours leaves out.
+/// Options of drawn triangles that the paper uses and the default leaves out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Drawn {
     pub(crate) region: Region,
-    /// Planes of the triangle and the light, for a light of one point; else of the triangle and each receiver.
+    /// Whether planes are those of the triangle and the light, for a light of one point; otherwise of the triangle and each receiver.
     pub(crate) light_planes: bool,
-    /// Lists with the receivers' positions.
+    /// Whether lists store the receivers' positions.
     pub(crate) stored_positions: bool,
-    /// A depth test that drops fragments over empty lists, where the device tests before the fragment stage.
+    /// Whether a depth test discards fragments over empty lists, if the device supports an early depth test.
     pub(crate) stencil: bool,
 }
 
-/// What draws triangles into the windows of the light's map.
+/// Pipelines and targets that draw triangles into the windows of the light's map.
 #[derive(Debug)]
 pub(super) struct Raster {
     pub(super) layout: wgpu::BindGroupLayout,
     pub(super) arguments_layout: wgpu::BindGroupLayout,
     pub(super) arguments: wgpu::ComputePipeline,
-    /// Over the listed receivers before all draws, and after them.
+    /// Passes over the listed receivers before all draws, and after them.
     pub(super) before: wgpu::ComputePipeline,
     pub(super) after: wgpu::ComputePipeline,
-    /// Made when a frame first needs them.
+    /// Pipelines, created when a frame first needs them.
     pipelines: HashMap<(Evaluator, Drawn), wgpu::RenderPipeline>,
     silhouettes: Option<wgpu::RenderPipeline>,
     stencil: Option<wgpu::RenderPipeline>,
@@ -51,40 +51,40 @@ pub(super) struct Raster {
 #[derive(Clone, Debug)]
 pub(super) struct RasterTargets {
     no_depth: wgpu::TextureView,
-    /// Where lists' stencils are drawn.
+    /// Depth map of the lists' stencil; `None` if the stencil is off.
     stencil_map: Option<wgpu::TextureView>,
     pub(super) arguments: wgpu::Buffer,
 }
 
-/// A batch's triangles over all windows.
+/// Draws of a batch's triangles over all windows.
 #[derive(Debug)]
 pub(super) struct Draw {
     pub(super) targets: RasterTargets,
-    /// Writes the arguments.
+    /// Writes the indirect arguments.
     pub(super) make_arguments: wgpu::ComputePipeline,
     pub(super) pipeline: wgpu::RenderPipeline,
-    /// Tells where penumbrae can fall.
+    /// Marks the texels that penumbrae can reach.
     pub(super) silhouettes: Option<wgpu::RenderPipeline>,
-    /// Tells where lists hold receivers.
+    /// Marks the texels whose lists contain receivers.
     pub(super) stencil: Option<wgpu::RenderPipeline>,
     pub(super) arguments: wgpu::BindGroup,
-    /// Makes the triangles' regions, where they are hulls of hexagons.
+    /// Computes the triangles' regions, if they are hulls of hexagons.
     pub(super) hulls: Option<Hulls>,
-    /// Group 1, for each window.
+    /// Group 1 of each window.
     pub(super) windows: Vec<wgpu::BindGroup>,
 }
 
-/// Hulls of a batch's triangles.
+/// Computation of the hulls of a batch's triangles.
 #[derive(Debug)]
 pub(super) struct Hulls {
     pub(super) pipeline: wgpu::ComputePipeline,
-    /// Group 1, for each window.
+    /// Group 1 of each window.
     pub(super) windows: Vec<wgpu::BindGroup>,
-    /// At most.
+    /// Largest number of triangles.
     pub(super) triangles: u32,
 }
 
-/// The depth map that stands for the paper's stencil: farthest where a list holds receivers, else nearest.
+/// Depth map in place of the paper's stencil: farthest where a list contains receivers, nearest elsewhere.
 #[derive(Debug)]
 struct StencilMap {
     size: UVec2,
@@ -92,7 +92,7 @@ struct StencilMap {
 }
 
 impl StencilMap {
-    /// Two values are all that it must tell apart: of the fewest bytes that every device can render to.
+    /// Smallest depth format that every device can render to; the map has only two values.
     const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 
     fn new(gpu: &Gpu, size: UVec2) -> Self {
@@ -139,7 +139,7 @@ impl Raster {
         }
     }
 
-    /// Makes room for windows of so many texels a side.
+    /// Prepares targets for windows of a given width, texels.
     pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32, drawn: Drawn) -> RasterTargets {
         let size = UVec2::splat(window_side);
         let made = self.no_depth.take().filter(|no_depth| no_depth.size() == size);
@@ -154,7 +154,7 @@ impl Raster {
         }
     }
 
-    /// The pipeline for such casters.
+    /// Returns the pipeline for casters of the given kind.
     pub(super) fn pipeline(
         &mut self,
         gpu: &Gpu,
@@ -168,7 +168,7 @@ impl Raster {
         self.pipelines.entry((evaluator, drawn)).or_insert_with(make).clone()
     }
 
-    /// The pipeline that tells where penumbrae can fall.
+    /// Returns the pipeline that marks the texels that penumbrae can reach.
     pub(super) fn silhouettes(&mut self, gpu: &Gpu, inputs: &FrameInputs) -> wgpu::RenderPipeline {
         let layout = &self.layout;
         let make = || {
@@ -185,7 +185,7 @@ impl Raster {
         self.silhouettes.get_or_insert_with(make).clone()
     }
 
-    /// The pipeline that tells where lists hold receivers.
+    /// Returns the pipeline that marks the texels whose lists contain receivers.
     pub(super) fn stencil(&mut self, gpu: &Gpu) -> wgpu::RenderPipeline {
         let layout = &self.layout;
         let make = || {
@@ -201,7 +201,7 @@ impl Raster {
         self.stencil.get_or_insert_with(make).clone()
     }
 
-    /// The pipeline that makes hulls, and the layout of its group 1.
+    /// Returns the pipeline that computes hulls, and the layout of its group 1.
     pub(super) fn hulls(&mut self, gpu: &Gpu, inputs: &FrameInputs) -> &(wgpu::BindGroupLayout, wgpu::ComputePipeline) {
         self.hulls.get_or_insert_with(|| {
             let layout = RegionHulls::layout(gpu);
@@ -263,7 +263,7 @@ impl Draw {
     }
 }
 
-/// Regions seen through a mirrored window turn the other way: nothing is culled.
+/// Triangle strip without culling, because mirrored windows reverse the regions' orientation.
 const STRIP: wgpu::PrimitiveState = wgpu::PrimitiveState {
     topology: wgpu::PrimitiveTopology::TriangleStrip,
     strip_index_format: None,
@@ -289,7 +289,7 @@ fn pipeline(
     };
     let has = |name: &str| match name {
         "HAS_TINT" => false,
-        // Of one light point nothing is counted or looked up.
+        // A single light point has no counters and no lookup table.
         "USES_TABLE" | "COUNTS" | "IS_FLAT" => !drawn.light_planes,
         _ => true,
     };
@@ -311,7 +311,7 @@ fn pipeline(
     .create(gpu)
 }
 
-/// The shaders with the depth test before the fragment stage.
+/// Shaders with the depth test before the fragment stage.
 static EARLY_RASTER: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::VIEW_SAMPLES_RASTER));
 static EARLY_LIGHT_PLANES: LazyLock<String> =
     LazyLock::new(|| with_early_depth_test(shaders::VIEW_SAMPLES_RASTER_LIGHT_PLANES));

@@ -1,4 +1,4 @@
-//! Recording of a frame's passes: lists, then for each batch its triangles and their evaluation.
+//! Recording of a frame's passes: lists, then the triangles and evaluation of each batch.
 
 use super::caster_groups::over_runs;
 use super::evaluation::{Evaluation, OverGroups};
@@ -6,10 +6,10 @@ use super::pipelines::Pipelines;
 use super::{PreparedBatch, PreparedSamples, ViewSamples};
 use crate::gpu::{Recorder, Span};
 
-/// Workgroups that clear a buffer between them.
+/// Number of workgroups that clear a buffer.
 const CLEAR_GROUPS: u32 = 64;
 
-/// What a round lists: group 1 of the passes that do, and whether it is the frame's first.
+/// Group 1 of the passes that build a round's lists, and whether it is the frame's first round.
 type Listed<'a> = (&'a wgpu::BindGroup, bool);
 
 impl ViewSamples {
@@ -23,7 +23,7 @@ impl ViewSamples {
         }
     }
 
-    /// Records the passes for the receivers that these lists take.
+    /// Records the passes for the receivers of these lists.
     fn record_round(&self, recorder: &mut Recorder<'_>, frame: &PreparedSamples, listed: Listed<'_>) {
         self.record_lists(recorder, frame, listed);
         if !frame.edge_runs.is_empty() {
@@ -35,7 +35,7 @@ impl ViewSamples {
         }
         for step in 0..frame.batches[0].evaluate.len() {
             for batch in &frame.batches {
-                // One batch stays sorted.
+                // A single batch stays sorted.
                 if step == 0 || frame.batches.len() > 1 {
                     self.record_sort(recorder, batch, frame);
                 }
@@ -47,7 +47,7 @@ impl ViewSamples {
         }
     }
 
-    /// Makes the table of section 4.2.
+    /// Records the computation of the table of section 4.2.
     fn record_table(&self, recorder: &mut Recorder<'_>) {
         if let Some(table) = &self.table
             && let Some(group) = &table.bind_group
@@ -60,7 +60,7 @@ impl ViewSamples {
         }
     }
 
-    /// Sorts receivers into lists (section 3.1).
+    /// Records the sort of receivers into lists (section 3.1).
     fn record_lists(&self, recorder: &mut Recorder<'_>, frame: &PreparedSamples, (lists, is_first): Listed<'_>) {
         let pipelines = &self.pipelines;
         let over_pixels = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline| {
@@ -73,7 +73,7 @@ impl ViewSamples {
             clear(pass, pipelines, &frame.clears.state);
             clear(pass, pipelines, &frame.clears.counts);
             if is_first {
-                // Counts of tests go on from round to round.
+                // Counters continue from round to round.
                 clear(pass, pipelines, &frame.clears.work);
             }
             over_pixels(pass, &pipelines.bounds);
@@ -90,7 +90,7 @@ impl ViewSamples {
         recorder.compute("view-sample lists", Span::Only, |pass| over_pixels(pass, scatter));
     }
 
-    /// Tests a batch of triangles against a batch of light points.
+    /// Records the tests of a batch of triangles against a batch of light points.
     fn record_evaluation(
         &self,
         recorder: &mut Recorder<'_>,
@@ -117,7 +117,7 @@ impl ViewSamples {
         }
     }
 
-    /// Passes over the groups of receivers until each is done.
+    /// Records passes over the groups of receivers until each group is done.
     fn record_groups(
         &self,
         recorder: &mut Recorder<'_>,
@@ -139,7 +139,7 @@ impl ViewSamples {
         });
     }
 
-    /// Sorts a batch's triangles.
+    /// Records the sort of a batch's triangles.
     fn record_sort(&self, recorder: &mut Recorder<'_>, batch: &PreparedBatch, frame: &PreparedSamples) {
         let pipelines = &self.pipelines;
         recorder.compute("triangles", Span::Only, |pass| {
@@ -165,7 +165,7 @@ impl ViewSamples {
     }
 }
 
-/// Zeroes a buffer.
+/// Clears a buffer to zero.
 fn clear(pass: &mut wgpu::ComputePass<'_>, pipelines: &Pipelines, group: &wgpu::BindGroup) {
     pass.set_pipeline(&pipelines.clear);
     pass.set_bind_group(0, group, &[]);

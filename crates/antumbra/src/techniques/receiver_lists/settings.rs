@@ -1,4 +1,4 @@
-//! Numbers that the shaders share.
+//! Constants that Rust and the shaders share.
 
 use crate::gpu::shared_constants;
 
@@ -28,13 +28,13 @@ shared_constants! {
     pub(crate) const DRAWN: u32 = 1, as in VIEW_SAMPLES_BEGIN;
     pub(crate) const WALKED: u32 = 2, as in VIEW_SAMPLES_BEGIN;
 
-    /// Entries of the state that `lists/bounds.wesl` gathers.
+    /// Number of entries of the state that `lists/bounds.wesl` computes.
     pub(crate) const STATE_LENGTH: u64 = 51, as in VIEW_SAMPLES_BOUNDS;
-    /// Words of the work buffer before the groups'.
+    /// Number of words of the work buffer before the groups' words.
     pub(crate) const FIRST_GROUP: u32 = 8, as in VIEW_SAMPLES_EVALUATE;
 }
 
-/// Planes and boxes that `lists/count.wesl` leaves.
+/// Number of planes and boxes that `lists/count.wesl` writes.
 pub(crate) const SHAFT_LENGTH: u64 = 22;
-/// Cells of the sort of triangles: 64³.
+/// Number of cells of the sort of triangles: 64³.
 pub(crate) const CELL_COUNT: u32 = 1 << 18;

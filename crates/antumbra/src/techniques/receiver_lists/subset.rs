@@ -1,5 +1,5 @@
-//! A subset of the view-samples with reconstruction (section 4.3): every other pixel in both directions, interpolation within a
-//! surface, and a second round of the same passes for the pixels that it would get wrong.
+//! Subset of the view-samples with reconstruction (section 4.3): every other pixel in both directions, interpolation within a
+//! surface, and a second round of the same passes for the pixels that interpolation would get wrong.
 
 use super::buffers::BufferSet;
 use crate::contract::PreparedFrame;
@@ -10,12 +10,12 @@ use crate::shaders;
 
 bindings! {
     struct Marked = "view-sample missing", COMPUTE, group 1 of [VIEW_SAMPLES_MARK_MISSING] {
-        /// As the lists have them.
+        /// List and position of each pixel, as in the lists' passes.
         3 places: ReadWrite,
     }
 }
 
-/// What reconstructs.
+/// Reconstruction passes.
 #[derive(Debug)]
 pub(super) struct Subset {
     upsample: SparseUpsample,
@@ -23,7 +23,7 @@ pub(super) struct Subset {
     mark: wgpu::ComputePipeline,
 }
 
-/// The passes of one frame.
+/// Reconstruction passes of one frame.
 #[derive(Debug)]
 pub(super) struct PreparedSubset {
     upsample: PreparedUpsample,
@@ -56,7 +56,7 @@ impl Subset {
 }
 
 impl PreparedSubset {
-    /// Reconstructs what is between the listed pixels, and marks those that the second round lists.
+    /// Records the interpolation between the listed pixels, and marks those for the second round.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, inputs: &PreparedInputs) {
         self.upsample.record(recorder, inputs);
         recorder.compute("missing view-samples", Span::Only, |pass| {

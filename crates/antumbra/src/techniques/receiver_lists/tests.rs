@@ -1,5 +1,5 @@
-//! Batches of triangles, what a triangle's planes say of a box of light points, against double precision, and what regions of
-//! influence are made of, against closed forms; the rest is tested through the techniques.
+//! Tests of triangle batches, of a triangle's planes over a box of light points against double precision, and of regions of
+//! influence against closed forms. The rest is tested through the techniques.
 
 use antumbra_light::{hash_u32, unit_f32};
 use glam::{DVec3, Vec2, Vec3, Vec4};
@@ -32,7 +32,7 @@ fn casters_that_hide_by_the_same_surface_share_a_batch() {
     let found: Vec<_> = (batches.iter())
         .map(|batch| (batch.surfaces, batch.runs.iter().map(|run| run.caster).collect::<Vec<_>>()))
         .collect();
-    // What several panes let through multiplies, so that each is alone.
+    // Transmittances of several panes multiply, so each is a batch of its own.
     let want = [
         (Surfaces::Opaque, vec![1]),
         (Surfaces::Masked(0), vec![0, 4]),
@@ -43,7 +43,7 @@ fn casters_that_hide_by_the_same_surface_share_a_batch() {
     assert_eq!(found, want);
 }
 
-/// A triangle, seen from the origin, and a box of light points about a centre.
+/// Triangle as seen from the origin, and a box of light points about a centre.
 #[derive(Clone, Copy, Debug)]
 struct TriangleCase {
     corners: [Vec3; 3],
@@ -55,7 +55,7 @@ struct TriangleCase {
 }
 
 impl TriangleCase {
-    /// A triangle about half way to a light 4 m away.
+    /// Returns a triangle about half way to a light 4 m away.
     fn random(i: u32, half_size_m: f32) -> Self {
         let random = |k: u32| 2.0 * unit_f32(hash_u32(i.wrapping_mul(193).wrapping_add(k * 7919))) - 1.0;
         let vector = |k: u32| Vec3::new(random(k), random(k + 1), random(k + 2));
@@ -83,8 +83,8 @@ impl TriangleCase {
         ]
     }
 
-    /// The edges' planes and the supporting one at a light point, all positive where the triangle hides it, and how large
-    /// their terms are.
+    /// Returns the values of the edges' planes and the supporting plane at a light point, all positive if the triangle
+    /// hides it, and the size of their terms.
     fn values(&self, point: DVec3) -> [(f64, f64); 4] {
         let [a, b, c] = self.corners.map(Vec3::as_dvec3);
         let d = self.to_center.as_dvec3() + point;
@@ -98,15 +98,15 @@ impl TriangleCase {
         [edge(b, c), edge(c, a), edge(a, b), (support, n.length() * d.length())]
     }
 
-    /// The first corner along the triangle's normal, which is as long as its edges make it.
+    /// Returns the first corner's product with the triangle's normal, which is not normalised.
     fn height(&self) -> f64 {
         let [a, b, c] = self.corners.map(Vec3::as_dvec3);
         (b - a).cross(c - a).dot(a)
     }
 
-    /// As the shader's `box_cover`: planes are affine, so that corners tell of the whole box. `None` where rounding decides.
+    /// Returns the shader's `box_cover`: planes are affine, so that corners decide for the whole box. `None` where rounding decides.
     fn cover(&self) -> Option<u32> {
-        // Out of a closed mesh.
+        // The segment leaves a closed mesh.
         if self.is_closed && self.height() > 0.0 {
             return Some(0);
         }
@@ -134,7 +134,7 @@ bindings! {
     }
 }
 
-/// A buffer of so many vectors.
+/// Returns a buffer of `count` vectors.
 fn vectors(gpu: &Gpu, count: usize) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("test triangles"),
@@ -144,7 +144,7 @@ fn vectors(gpu: &Gpu, count: usize) -> wgpu::Buffer {
     })
 }
 
-/// What the shader says of each: (missed, cover, the supporting plane at the middle, its slack).
+/// Returns the shader's result for each case: (missed, cover, the supporting plane at the centre, its slack).
 fn probe(gpu: &Gpu, cases: &[TriangleCase]) -> Vec<[f32; 4]> {
     let packed: Vec<Vec4> = cases.iter().flat_map(TriangleCase::packed).collect();
     let (input, output) = (vectors(gpu, packed.len()), vectors(gpu, cases.len()));
@@ -179,8 +179,8 @@ fn boxes_of_light_points_are_covered_as_planes_say() {
     assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
 }
 
-/// Of a plane through a small light its terms all but cancel, and what is left is rounding: of each term's size, not of the
-/// sum's.
+/// The terms of a plane through a small light almost cancel; what is left is rounding in proportion to each term, not to
+/// the sum.
 #[test]
 fn planes_through_the_light_are_no_farther_off_than_their_slack() {
     let Some(gpu) = gpu() else { return };
@@ -189,11 +189,11 @@ fn planes_through_the_light_are_no_farther_off_than_their_slack() {
             let case = TriangleCase::random(i, 1e-5);
             let [a, b, _] = case.corners;
             let along = 0.5 + unit_f32(hash_u32(i ^ 0x51ac));
-            // The third corner in the plane of two and the light's centre.
+            // The third corner is in the plane of the other two and the light's centre.
             let corners = [a, b, a + along * (case.to_center - a) + 0.3 * (b - a)];
             TriangleCase { corners, is_closed: false, ..case }
         })
-        // No slivers, nor any seen all but edge-on: there the normal itself is rounding.
+        // Slivers and triangles seen almost edge-on are excluded: their normal itself is rounding error.
         .filter(|case| {
             let [a, b, c] = case.corners;
             let n = (b - a).cross(c - a);
@@ -204,11 +204,11 @@ fn planes_through_the_light_are_no_farther_off_than_their_slack() {
     let mut worst = 0.0f64;
     for (case, [_, _, support, slack]) in cases.iter().zip(probe(gpu, &cases)) {
         let [_, _, _, (exact, _)] = case.values(case.middle.as_dvec3());
-        // The shader's is negative where the plane lies within the segment.
+        // The shader's value is negative if the plane is within the segment.
         let off = (f64::from(support) + exact).abs();
         worst = worst.max(off / f64::from(slack));
         assert!(off <= f64::from(slack), "off by {off}, slack {slack}: {case:?}");
-        // The ray tracer's 2⁻²⁰ of the height; the light's own terms are as small as it.
+        // The ray tracer's 2⁻²⁰ of the height; the light's own terms are as small.
         let height = case.height().abs();
         assert!(f64::from(slack) <= 1.1 * height / 1_048_576.0, "slack {slack}, height {height}: {case:?}");
     }
@@ -216,21 +216,21 @@ fn planes_through_the_light_are_no_farther_off_than_their_slack() {
     assert!(worst > 0.02, "nothing is rounded");
 }
 
-/// What a region of influence is made of.
+/// Input of a region of influence.
 #[derive(Clone, Copy, Debug)]
 struct RegionCase {
-    /// Middles of the corners' boxes, which are a texel wide.
+    /// Centres of the corners' boxes, which are a texel wide.
     corners_texels: [Vec2; 3],
-    /// The window's ends, as directions.
+    /// Ends of the window, as directions.
     low: Vec2,
     high: Vec2,
     depth_m: f32,
     hair: f32,
     is_sun: bool,
-    /// Of a triangle of a closed mesh: a corner, and the normal.
+    /// A corner and the normal of a triangle of a closed mesh.
     corner: Vec3,
     normal: Vec3,
-    /// Where the direction's shadow is asked for, and at which depth.
+    /// Position whose shadow along the direction is computed, and the depth of the shadow.
     place: Vec3,
     shadow_depth_m: f32,
     direction: Vec3,
@@ -279,7 +279,7 @@ bindings! {
     }
 }
 
-/// What the shader makes of a case.
+/// Result of the shader for a case.
 #[derive(Debug)]
 struct ProbedRegion {
     six_vertices: [Vec2; 6],
@@ -313,13 +313,13 @@ fn probe_region(gpu: &Gpu, case: &RegionCase) -> ProbedRegion {
     }
 }
 
-/// Figure 4 of the 2008 paper, case by case, of a triangle with edges along the axes: of a normal along an axis the corner counts
-/// that the edge goes on to.
+/// Figure 4 of the 2008 paper, case by case, for a triangle with edges along the axes. For a normal along an axis, the corner
+/// that the edge continues to counts.
 #[test]
 fn six_vertices_are_figure_4_s() {
     let Some(gpu) = gpu() else { return };
     let at = Vec2::new(4.0, 4.0);
-    // Two corners, two, and three of which the middle one is left out.
+    // Two corners, two, and three without the middle one.
     let expected = |legs: f32| {
         let slanted = std::f32::consts::SQRT_2 * Vec2::new(-1.0, 1.0);
         let [right, up] = [at + Vec2::new(legs, 0.0), at + Vec2::new(0.0, legs)];
@@ -336,13 +336,13 @@ fn six_vertices_are_figure_4_s() {
         let corners_texels = [at, at + Vec2::new(legs, 0.0), at + Vec2::new(0.0, legs)];
         probe_region(gpu, &RegionCase { corners_texels, ..REGION }).six_vertices
     };
-    // Down to a 256th of a texel edges have a direction.
+    // Edges have a direction down to a 256th of a texel.
     for legs in [10.0, 1.0, 0.006] {
         for (got, want) in of(legs).into_iter().zip(expected(legs)) {
             assert!(got.distance(want) < 1e-3, "legs of {legs}: {:?}, figure 4 has {:?}", of(legs), expected(legs));
         }
     }
-    // Shorter, and the boxes are one.
+    // For shorter edges the boxes are merged.
     let [low, high] = [at - 0.5, at + 0.503];
     let of_box = [high, Vec2::new(low.x, high.y), low, Vec2::new(high.x, low.y)];
     let tiny = of(0.003);
@@ -351,7 +351,7 @@ fn six_vertices_are_figure_4_s() {
     }
 }
 
-/// From a sun a shadow goes straight on.
+/// A sun's shadow continues along its direction.
 #[test]
 fn a_sun_s_shadow_is_the_place_carried_along() {
     let Some(gpu) = gpu() else { return };
@@ -361,8 +361,8 @@ fn a_sun_s_shadow_is_the_place_carried_along() {
     assert!(got.distance(want.truncate()) < 1e-5, "{got}, carried along {want}");
 }
 
-/// A window has a size even where all receivers lie in one direction, or in a row of them: a ten-thousandth of how far off its
-/// middle they are.
+/// A window has a size even if all receivers are in one direction, or in a row: a ten-thousandth of their distance from its
+/// centre.
 #[test]
 fn a_window_of_one_receiver_has_a_size() {
     let Some(gpu) = gpu() else { return };
@@ -374,8 +374,8 @@ fn a_window_of_one_receiver_has_a_size() {
     }
 }
 
-/// Segments start up to a hair, of directions, off where receivers are: on both sides of a triangle's plane by as much as that is
-/// at the farthest of them, along the normal; under a sun directions are places.
+/// The cut leaves a margin for the ray offset, a direction, on both sides of the triangle's plane: its size at the farthest
+/// receiver, along the normal; under a sun directions are positions.
 #[test]
 fn what_a_plane_cuts_off_leaves_room_for_the_hair() {
     let Some(gpu) = gpu() else { return };

@@ -1,5 +1,5 @@
-//! Where the light's map has straight edges, as rasterised triangles need: one window towards the receivers, or a cube
-//! about the light.
+//! Windows of the light's map with straight edges, as rasterisation needs: one towards the receivers, or a cube about
+//! the light.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -10,23 +10,23 @@ use crate::contract::PreparedReceivers;
 
 use super::light_points::{LocalPoint, box_along, box_of};
 
-/// Windows from the light's centre; see `windows.wesl`.
+/// Windows as seen from the light's centre; see `windows.wesl`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Windows {
-    /// 1, or the 6 of a cube.
+    /// Number of windows: 1, or the 6 of a cube.
     pub(crate) count: u32,
-    /// Right, up and depth of the first, in the world.
+    /// Right, up and depth axis of the first window, in the world.
     pub(crate) axes: [Vec3; 3],
-    /// Box of the light's points along these, about the light's centre; of a sun's directions.
+    /// Box of the light's points along these axes, about the light's centre; for a sun, of directions.
     pub(crate) light: Aabb,
-    /// Centre and semi-axes along these, about the light's centre, of an ellipsoid that holds it; of a sun's directions.
+    /// Centre and semi-axes of an ellipsoid that contains the light, along these axes about its centre; for a sun, of directions.
     pub(crate) ellipsoid: [Vec4; 4],
 }
 
-/// The least semi-axis of a light's ellipsoid, as a part of the largest.
+/// Least semi-axis of a light's ellipsoid, relative to the largest.
 const FLATTEST: f32 = 1e-3;
 
-/// What one window holds, as the tangent off its middle: beyond, texels on its edge are far smaller than in its middle.
+/// Largest tangent off its centre that one window covers: beyond, texels at its edge are far smaller than at its centre.
 const MOST_TANGENT: f32 = 2.0;
 
 impl Windows {
@@ -54,8 +54,8 @@ impl Windows {
     }
 }
 
-/// What the paper takes for a light: an ellipsoid that holds it. That of least volume about a box has √3 times its halves for
-/// semi-axes, that of least area about a rectangle √2 times.
+/// Returns an ellipsoid that contains the light, which the paper takes for the light. The one of least volume about a box has
+/// semi-axes of √3 times its half sides, the one of least area about a rectangle √2 times.
 fn ellipsoid_along(light: &Light, points: &[LocalPoint], axes: [Vec3; 3]) -> [Vec4; 4] {
     let frame = light.frame();
     let along = |v: Vec3| Vec3::from(axes.map(|axis| axis.dot(v)));
@@ -71,14 +71,14 @@ fn ellipsoid_along(light: &Light, points: &[LocalPoint], axes: [Vec3; 3]) -> [Ve
             (middle, 3f32.sqrt() * half)
         }
     };
-    // Scaled to a sphere it must not be flat; and what single precision may have moved the points.
+    // It must not be flat, because it is scaled to a sphere; the margin covers the points' single-precision rounding.
     let least = (FLATTEST * semi_axes_m.max_element()).max(f32::MIN_POSITIVE.sqrt());
     let semi_axes_m = (1.0 + 1e-5) * semi_axes_m.max(Vec3::splat(least));
     let frame_axes = [frame.right * semi_axes_m.x, frame.up * semi_axes_m.y, frame.axis * semi_axes_m.z];
     [center, frame_axes[0], frame_axes[1], frame_axes[2]].map(|v| along(v).extend(0.0))
 }
 
-/// The middle of the directions from a point to all receivers, where one window holds them.
+/// Returns the mean direction from a point to all receivers, if one window can cover them.
 fn axis_to(receivers: &PreparedReceivers<'_>, from: Vec3) -> Option<Vec3> {
     let corners = match receivers.bounds {
         _ if !receivers.hull.is_empty() => receivers.hull.to_vec(),

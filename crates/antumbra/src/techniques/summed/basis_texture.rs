@@ -1,4 +1,4 @@
-//! The basis as a texture, and its mips, for tables that do not encode what they read.
+//! Texture of the basis, and its mips, for tables that do not encode depth when they read it.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use crate::shaders;
 use crate::techniques::summed::summed_area_table::Sums;
 
 bindings! {
-    /// Of integers, see [`Sums::adapt`].
+    /// Target of the encode pass, declared for integers; see [`Sums::adapt`].
     struct BasisBindings = "depth basis", COMPUTE, group 3 of [SOFT_ENCODE] {
         0 basis: WrittenTexture(wgpu::TextureFormat::Rgba32Uint),
     }
 
-    /// Where tiles have planes of their own.
+    /// Targets of the encode pass for tiles with planes of their own.
     struct TileBasisBindings = "depth basis of tiles", COMPUTE, group 3 of [SOFT_ENCODE_TILES] {
         0 basis: WrittenTexture(wgpu::TextureFormat::Rgba32Uint),
         7 tiles: WrittenTexture(wgpu::TextureFormat::Rgba32Float),
@@ -28,31 +28,31 @@ bindings! {
     }
 }
 
-/// Writes the basis to a texture.
+/// Pass that writes the basis to a texture, and its mips.
 #[derive(Debug)]
 pub(super) struct BasisPass {
     sums: Sums,
     layout: wgpu::BindGroupLayout,
     encode: wgpu::ComputePipeline,
-    /// Where there are mips.
+    /// Layout and pipeline of the mip passes, if the basis is filtered by mips.
     halve: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
 }
 
-/// What is made for one size of map.
+/// Basis texture for one map size, and its bind groups.
 #[derive(Debug)]
 pub(super) struct BasisTexture {
-    /// All lights share it.
+    /// Texture that all lights share.
     texture: Arc<wgpu::Texture>,
-    /// Of all levels.
+    /// View of all levels.
     pub(super) view: wgpu::TextureView,
     encode_group: wgpu::BindGroup,
     halve_groups: Vec<wgpu::BindGroup>,
-    /// Texels along a side of what a workgroup encodes.
+    /// Texels along a side of the area that a workgroup encodes.
     group_side: u32,
 }
 
 impl BasisPass {
-    /// Passes of a design; `groups` are the layouts of its shaders' groups 0 to 2.
+    /// Creates the passes of a design; `groups` are the layouts of its shaders' groups 0 to 2.
     pub(super) fn new(gpu: &Gpu, design: SoftDesign, groups: [&wgpu::BindGroupLayout; 3]) -> Self {
         let sums = design.sums();
         let adapt = |ty: &mut wgpu::BindingType| sums.adapt(ty);
@@ -73,8 +73,8 @@ impl BasisPass {
         Self { sums, layout, encode, halve }
     }
 
-    /// The texture for a map of `size`, and what binds it: `made` for the same before, where there is one. `tiles` are the
-    /// planes of tiles of `tile_side`.
+    /// Returns the texture for a map of `size` and its bind groups. `made` is an earlier result for the same size. `tiles` are
+    /// the planes of tiles and their side.
     pub(super) fn prepare(
         &self,
         stage: &Stage<'_>,
@@ -107,7 +107,7 @@ impl BasisPass {
         }
     }
 
-    /// The basis, and its mips: a pass for each, since each reads what the one before wrote. `bind` binds groups 0 to 2.
+    /// Records the basis and its mips, one pass per level because each reads the level before. `bind` binds groups 0 to 2.
     pub(super) fn record(
         &self,
         recorder: &mut Recorder<'_>,

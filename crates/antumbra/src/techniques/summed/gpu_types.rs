@@ -3,7 +3,7 @@ use glam::{Vec2, Vec3};
 use crate::gpu::gpu_structs;
 
 gpu_structs! {
-    /// Parameters of every pass; `uniform.wesl` says what each is.
+    /// Parameters of every pass; `uniform.wesl` describes each field.
     pub(crate) struct SoftUniform {
         light_extent: Vec2,
         light_extent_axis: f32,

@@ -1,48 +1,48 @@
-//! Shared passes of `essm`, `savsm`, `vssm`, `cssm`, `evssm` and `mssm`: percentage-closer soft shadows whose sums over the map
-//! come from summed-area tables of a depth basis, in a time that does not depend on the light's size.
+//! Shared passes of `essm`, `savsm`, `vssm`, `cssm`, `evssm` and `mssm`: percentage-closer soft shadows that sum the map with
+//! summed-area tables of a depth basis. Their time does not depend on the light's size.
 //!
-//! 1. *Table*: sums (`summed_area_table`) of the map's depth, encoded where it is read (`source.wesl`,
-//!    `encode.wesl`, `tile_basis.wesl`; the bases' own functions lie in `primitives/depth_basis/`), so that no texture holds the
-//!    basis itself. Recursive doubling and mips do need one: there a pass *basis* comes first.
-//! 2. *Resolve*: as in `pcss`, a search for blockers at every scale, the light's shape at their mean depth, and a filter
-//!    of that shape. Search windows and filter kernels are cut into `n × n` pieces and at the borders of tiles
-//!    (`pieces.wesl`); a piece takes a few table lookups (`sums.wesl`) and is compared with the receiver's plane at its own
-//!    centre (`answer.wesl`). Where the basis cannot tell 2 × 2 comparisons with the map stand in; kernels so narrow that
-//!    their pieces are cheaper to read from the map are filtered by it, by comparisons about a texel apart.
+//! 1. *Table*: summed-area tables (`summed_area_table`) of the map's depth. Shaders encode depth when they read it
+//!    (`source.wesl`, `encode.wesl`, `tile_basis.wesl`; the bases' own functions are in `primitives/depth_basis/`), so no
+//!    texture stores the basis itself. Recursive doubling and mips need one; a pass *basis* writes it first.
+//! 2. *Resolve*: as in `pcss`, a search for blockers at every scale, the light's shape at their mean depth, and a filter of
+//!    that shape. Search windows and filter kernels are cut into `n × n` pieces, and at the borders of tiles (`pieces.wesl`). A
+//!    piece takes a few table lookups (`sums.wesl`) and is compared with the receiver's plane at the piece's centre
+//!    (`basis_visibility.wesl`). Where the basis cannot resolve a piece, 2 × 2 comparisons with the map replace it. Narrow
+//!    kernels, whose pieces are cheaper to read from the map, are filtered with comparisons about a texel apart.
 //!
-//! The techniques differ in the basis, and in which of these steps they have: each one's folder holds its parameters and
-//! what they mean here (`SoftParams`); prepare and record are `SoftTechnique`'s.
+//! The techniques differ in the basis and in the steps they use. Each technique's folder holds its parameters and their mapping
+//! to these steps (`SoftParams`); `SoftTechnique` implements prepare and record.
 //!
-//! # Work that does not grow with the light
-//! However large a kernel is, it is cut into `n × n` pieces, an ellipse as well as a parallelogram, and the search into so many
-//! at each scale. Cuts move to the borders of tiles, so that what lies in two tiles has seldom more pieces than what lies in
-//! one. What a pixel reads grows while kernels are narrow, and stays from about 15 texels on (`tests.rs` counts, over eight
-//! times the light). Windows of the search near the receiver, which stay narrow longest, have fewer pieces than the widest.
+//! # Cost and the light's size
+//! A kernel of any size is cut into `n × n` pieces, whether ellipse or parallelogram, and so is the search window of each
+//! scale. Cuts move to the borders of tiles, so that a rectangle in two tiles seldom has more pieces than one in a single tile.
+//! Reads per pixel grow while kernels are narrow, and are constant from about 15 texels on (`tests.rs` counts them for lights
+//! up to eight times as large). Narrow search windows, near the receiver, have fewer pieces than wide ones.
 //!
-//! A piece is one turn of a loop whose body is the same for all: the table's corners at its far end, since the piece before it in
-//! its row ended where it begins, two more for a column that the kernel's outline cuts through and one for a row, and its
-//! tile's plane. No pixel keeps anything by an index.
+//! A piece is one iteration of a loop with the same body for all pieces. It reads the table's corners at its far end, because
+//! the previous piece of the row ended where it begins; two more for a column that the kernel's outline cuts through, one for a
+//! row; and its tile's plane. No pixel uses an indexed array.
 //!
-//! # Two looks
-//! The widest window of the search is as wide as the light is seen at the nearest caster's depth, wherever that caster lies in it. Where
-//! what hides the light in the mean lies much nearer the receiver, as under a texel or two of something right before a
-//! large light, nearly all of that window hides nothing, and its pieces are too wide to tell: a second look (`second_look`) is
-//! through windows as wide as the light is seen at that mean. In `hall` under a panel of 2.5 × 2 m, with casters an arm's length
-//! before it, that takes `essm` from .087 to .042 at 573², .053 with the fewer pieces that narrow windows have; by itself it lowers
-//! the error on eleven of twelve scenes tried, by up to a fifteenth, and leaves the other's. `cssm` gains nothing by it, and
-//! `mssm` loses on `columns`.
+//! # Second look
+//! The widest search window is as wide as the light appears at the nearest caster's depth, wherever in the window that caster
+//! lies. If the mean blocker lies much nearer to the receiver, as it does within a texel or two of an object right in front of
+//! a large light, most of that window hides nothing and its pieces are too wide. A second search (`second_look`) therefore uses
+//! windows as wide as the light appears at that mean depth. In `hall` under a panel of 2.5 × 2 m, with casters an arm's length
+//! in front of it, this lowers the error of `essm` from .087 to .042 at 573² (.053 with the fewer pieces of narrow windows). By
+//! itself it lowers the error on eleven of twelve tested scenes, by up to a fifteenth, and does not change the twelfth. `cssm`
+//! gains nothing, and `mssm` loses on `columns`.
 //!
 //! # Covers
-//! Casters nearer to the light than it is large hide its rim where they lie beyond any window of the map. What the map shows at its edge
-//! goes on there, as in `pcss` (`edge_goes_on`): a piece beyond the map is answered by a texel's width along the edge, where the
-//! blockers that are asked for are nearer than the map holds them, and so is what is found there; for lights that a caster comes within the
-//! radius of. A sheet 1 cm before a panel of 60 cm, `cover_0.01`: .99 without and .00 with it.
+//! A caster nearer to the light than its size hides its rim from beyond any window of the map. For lights with a caster within
+//! their radius the map's edge extends beyond it, as in `pcss` (`edge_goes_on`): a strip one texel wide along the edge replaces
+//! a piece beyond the map. The blockers searched for and those found must be nearer to the light than where the map holds
+//! everything. A sheet 1 cm in front of a panel of 60 cm, `cover_0.01`, has .99 without it and .00 with it.
 //!
-//! # Sums that hold
-//! Table entries are integers. Differences of integers are exact however often the sums have wrapped, if the part's own
-//! sum is below 2³², so each value may have as many bits as the largest part leaves; a part that cuts through texels takes
-//! the cut texels' sums by themselves, so that every difference is one of integers. Floats keep what 24 bits hold of sums
-//! over the whole map, which at 1024² leaves 4 bits: noise (`essm`'s `table = float` and `vssm`'s show it).
+//! # Integer sums
+//! Table entries are integers. Differences of integers are exact however often the sums have wrapped, if the piece's own sum is
+//! below 2³²; so each value may have as many bits as the largest piece leaves. A piece that cuts through texels adds the sums
+//! of the cut texels separately, so that every difference is one of integers. Floats keep only 24 bits of sums over the whole
+//! map, which at 1024² leaves 4 bits per value: noise (`essm`'s `table = float` and `vssm`'s show it).
 
 use std::marker::PhantomData;
 
@@ -74,12 +74,12 @@ pub use params::TableSums;
 pub(crate) use params::{shared_settings, table_params};
 pub(crate) use soft_filter::{PreparedSoft, SoftFilter};
 
-/// What the tables hold.
+/// Depth basis that the tables store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Basis {
-    /// Exponentials of depth before each tile's own plane.
+    /// Exponentials of depth in front of each tile's own plane.
     Tiles = 0,
-    /// Exponentials of one range of depth.
+    /// Exponentials over one depth range.
     Exponential = 1,
     Variance = 2,
     ExponentialVariance = 3,
@@ -87,16 +87,16 @@ pub(crate) enum Basis {
     Convolution = 5,
 }
 
-/// How the basis is filtered.
+/// Filter of the basis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Filter {
-    /// By a summed-area table.
+    /// Summed-area table.
     Table(TableDesign),
-    /// By mips of floats.
+    /// Mip chain of floats.
     Mips,
 }
 
-/// What pipelines are made for.
+/// Key of the pipelines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SoftDesign {
     pub(crate) basis: Basis,
@@ -104,7 +104,7 @@ pub(crate) struct SoftDesign {
 }
 
 impl SoftDesign {
-    /// One table for the whole map.
+    /// Returns the design with one table for the whole map.
     pub(crate) fn one_table(basis: Basis, sums: Sums) -> Self {
         Self { basis, filter: Filter::Table(TableDesign { sums, scan: Scan::Blocks, tiling: Tiling::Whole }) }
     }
@@ -123,55 +123,55 @@ impl SoftDesign {
         }
     }
 
-    /// Whether tables encode what they read, so that no texture holds the basis.
+    /// Whether tables encode depth when they read it, so that no texture stores the basis.
     fn is_encoded(self) -> bool {
         matches!(self.filter, Filter::Table(TableDesign { scan: Scan::Blocks, .. }))
     }
 }
 
-/// What changes from frame to frame.
+/// Settings that may change from frame to frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SoftSettings {
     pub(crate) map_size: MapSize,
     pub(crate) window: MapWindow,
     pub(crate) bias_scale: f32,
-    /// For [`Basis::Tiles`] in units a texel's width.
+    /// Exponent of the basis; for [`Basis::Tiles`] per texel width.
     pub(crate) exponent: f32,
     pub(crate) negative_exponent: f32,
-    /// Bits of a value; `None` for as many as parts leave.
+    /// Bits of a value; `None` for as many as pieces allow.
     pub(crate) value_bits: Option<u32>,
-    /// The range of depth is that of the map, or that of the light's view.
+    /// Whether the depth range is that of the map's contents; otherwise that of the light's view.
     pub(crate) range_from_map: bool,
     pub(crate) non_planar: f32,
     pub(crate) subdivisions: u32,
     pub(crate) search_scales: u32,
-    /// Taps of a search in the map; 0 to search the tables.
+    /// Number of taps of a blocker search in the map; 0 searches the tables.
     pub(crate) search_taps: u32,
-    /// Whether blockers are searched again about their mean, where that lies much nearer than the windows were wide.
+    /// Whether blockers are searched again in windows fitted to their mean, if it lies much nearer to the receiver.
     pub(crate) second_look: bool,
-    /// One window of search, and all that is in it, in the place of scales.
+    /// Whether the search uses one window and counts all that is in it, instead of several scales.
     pub(crate) one_window: bool,
-    /// Squares of parts of each row of a kernel, in the place of columns.
+    /// Whether each row of a kernel is cut into n × n pieces instead of n columns.
     pub(crate) cuts_squares: bool,
     pub(crate) row_height: f32,
     pub(crate) refinements: u32,
-    /// `None`: as the light's shape is.
+    /// Whether the kernel is an ellipse; `None` follows the light's shape.
     pub(crate) is_ellipse: Option<bool>,
     pub(crate) with_footprint: bool,
     /// Whether the footprint ends where a neighbouring pixel shows another surface.
     pub(crate) footprint_ends: bool,
-    /// Whether the mean of blockers is of their depth, not of g.
+    /// Whether the mean over blockers is of their depth instead of g.
     pub(crate) averages_depth: bool,
-    /// Whether the light's part below the receiver's plane is hidden.
+    /// Whether the light's part below the receiver's plane counts as hidden.
     pub(crate) horizon: bool,
-    /// Whether what the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.
+    /// Whether the map's edge extends beyond it, for blockers nearer to the light than the map holds.
     pub(crate) edge_goes_on: bool,
-    /// Parts up to this many texels wide are read from the map.
+    /// Largest width of pieces that are read from the map, texels.
     pub(crate) direct_texels: f32,
     pub(crate) bleeding_reduction: f32,
-    /// Whether 2 × 2 comparisons stand in where the basis cannot tell.
+    /// Whether 2 × 2 comparisons replace pieces that the basis cannot resolve.
     pub(crate) may_read_map: bool,
-    /// Whether every other pixel is looked up, and what interpolation would get wrong.
+    /// Whether only every other pixel is resolved, plus those that interpolation would get wrong.
     pub(crate) is_sparse: bool,
 }
 
@@ -200,7 +200,7 @@ impl Default for SoftSettings {
             averages_depth: false,
             horizon: true,
             edge_goes_on: false,
-            // A part that is hardly a texel wide is one comparison.
+            // A piece barely wider than a texel is one comparison.
             direct_texels: 1.5,
             bleeding_reduction: 0.0,
             may_read_map: true,
@@ -209,7 +209,7 @@ impl Default for SoftSettings {
     }
 }
 
-/// What the resolve shader is specialised to, besides the design.
+/// Specialisation of the resolve shader beyond the design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Specialisation {
     has_search_taps: bool,
@@ -228,7 +228,7 @@ impl Specialisation {
     fn of(design: SoftDesign, settings: &SoftSettings) -> Self {
         Self {
             has_search_taps: settings.search_taps > 0,
-            // Tiles cut even such kernels.
+            // With tiles even a kernel of one piece is cut at borders.
             is_one_piece: settings.subdivisions == 1 && design.tiling() == Tiling::Whole,
             refinements: settings.refinements,
             second_look: settings.second_look,
@@ -242,14 +242,14 @@ impl Specialisation {
     }
 }
 
-/// What a technique of the family is: its parameters, and what they ask of the passes.
+/// Parameters of a technique of the family, and their mapping to passes.
 pub(crate) trait SoftParams: Params {
     const NAME: &'static str;
     fn design(&self) -> SoftDesign;
     fn settings(&self) -> SoftSettings;
 }
 
-/// A technique of the family, by its parameters.
+/// Technique of the family, defined by its parameters `P`.
 #[derive(Debug)]
 pub struct SoftTechnique<P> {
     filter: SoftFilter,

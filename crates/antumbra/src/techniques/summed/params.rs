@@ -2,9 +2,9 @@ use crate::contract::param_choice;
 use crate::techniques::summed::summed_area_table::Sums;
 
 param_choice! {
-    /// What a summed-area table is made of.
+    /// Number format of a summed-area table.
     pub enum TableSums {
-        /// 32-bit integers that wrap: exact differences.
+        /// 32-bit integers that wrap: differences are exact.
         Integer = "integer",
         /// 32-bit floats.
         Float = "float",
@@ -20,7 +20,7 @@ impl TableSums {
     }
 }
 
-/// The settings of parameters that have what all of `vssm`, `cssm`, `evssm` and `mssm` have, or all but `subdivisions`.
+/// Maps the parameters that `vssm`, `cssm`, `evssm` and `mssm` share to settings; `subdivisions` may be given.
 macro_rules! shared_settings {
     ($params:expr) => {
         $crate::techniques::summed::shared_settings!($params, subdivisions = $params.subdivisions)
@@ -41,7 +41,7 @@ macro_rules! shared_settings {
 }
 pub(crate) use shared_settings;
 
-/// Declares the parameters of a technique that is one table of a basis, and what they ask of the passes.
+/// Declares the parameters of a technique with one table of a basis, and their mapping to passes.
 macro_rules! table_params {
     ($(#[$outer:meta])* pub struct $name:ident: $technique:literal of $basis:ident, subdivisions = $subdivisions:literal, search_scales = $search_scales:literal,
      second_look = $second_look:literal $(; $($paper:tt)+ )?) => {
@@ -49,19 +49,19 @@ macro_rules! table_params {
             $(#[$outer])*
             pub struct $name {
                 shared map_size, more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
-                /// Parts along each side of a kernel.
+                /// Number of parts along each side of a kernel.
                 subdivisions: u32 = $subdivisions, in 1..=16,
                     more "Each part holds fewer depths, which the basis tells apart better; time grows with the square.";
-                /// Scales at which blockers are searched.
+                /// Number of scales at which blockers are searched.
                 search_scales: u32 = $search_scales, in 1..=16,
                     more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
-                /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster.
+                /// Search blockers once more if their mean lies much nearer to the receiver than the nearest caster.
                 second_look: bool = $second_look,
                     more "Truer penumbrae under occluders of many depths; there the search takes twice the time.";
-                /// What the summed-area table is made of.
+                /// Number format of the summed-area table.
                 table: $crate::techniques::summed::TableSums = $crate::techniques::summed::TableSums::Integer,
                     more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";
-                /// Visibility up to this is taken for none, and the rest is stretched.
+                /// Visibility up to this value becomes 0; the rest is rescaled to [0, 1].
                 bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
                     more "Less light bleeding, and thinner penumbrae.";
                 shared edge_goes_on;

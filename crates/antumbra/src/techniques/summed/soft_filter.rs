@@ -1,6 +1,6 @@
-//! The family's passes: map, pyramid, tables, resolve.
+//! Passes of the family: map, pyramid, tables, resolve.
 //!
-//! A frame makes its tables anew from the map, so all lights share their memory.
+//! Every frame rebuilds its tables from the map, so all lights share their memory.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ bindings! {
         0 soft: Uniform,
     }
 
-    /// Of integers, see [`Sums::adapt`].
+    /// Summed-area tables and tile planes of the resolve pass, declared for integers; [`Sums::adapt`] converts them for floats.
     struct SoftTables = "soft tables", COMPUTE, group 3 of [SOFT_RESOLVE] {
         0 table: Texture(texels::UINT),
         1 tiles: Texture(texels::FLOAT),
@@ -38,10 +38,10 @@ bindings! {
     }
 }
 
-/// Tables of the convolution basis; the others have one.
+/// Number of tables of the convolution basis; every other basis has one.
 const CONVOLUTION_TABLES: u8 = 5;
 
-/// The passes.
+/// Passes of the family.
 #[derive(Debug)]
 pub(crate) struct SoftFilter {
     technique: &'static str,
@@ -50,10 +50,10 @@ pub(crate) struct SoftFilter {
     params_layout: wgpu::BindGroupLayout,
     uniform: wgpu::Buffer,
     params_group: wgpu::BindGroup,
-    /// Stands where a design has no such binding.
+    /// Placeholders for bindings that a design does not use.
     no_tiles: wgpu::TextureView,
     no_buffer: wgpu::Buffer,
-    /// A resolve shader for integers in the technique's own place.
+    /// Resolve shader for integer sums that replaces the technique's own in tests.
     #[cfg(test)]
     pub(crate) test_shader: Option<&'static str>,
     resolve: Resolve,
@@ -74,18 +74,18 @@ pub struct PreparedSoft {
 #[derive(Debug)]
 struct Passes {
     design: SoftDesign,
-    /// Of the basis' own pass, where there is one.
+    /// Pass that writes the basis to a texture; `None` if tables encode depth themselves.
     basis: Option<BasisPass>,
-    /// None for mips.
+    /// Summed-area tables; empty when mips are used.
     tables: Vec<SummedAreaTable>,
     table_layout: wgpu::BindGroupLayout,
 }
 
-/// What is made for one size of map.
+/// Textures for one map size.
 #[derive(Debug)]
 struct Made {
     size: UVec2,
-    /// Planes of as many tiles as the map can have.
+    /// Tile planes, for the largest number of tiles that the map can have.
     tiles: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
     basis: Option<BasisTexture>,
 }
@@ -145,7 +145,7 @@ impl SoftFilter {
         }
     }
 
-    /// The resolve pass of a frame, compiled where it is not compiled for this.
+    /// Prepares the resolve pass of a frame, and compiles it if its constants changed.
     fn prepare_resolve(
         &mut self,
         stage: &Stage<'_>,
@@ -278,18 +278,18 @@ impl SoftFilter {
         });
     }
 
-    /// The map that the technique has drawn, for pictures of it.
+    /// Returns the map that the technique has drawn, for visualisation.
     pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
         self.map.drawn()
     }
 
-    /// Bytes of map and pyramid, where they are the light's own.
+    /// Returns the size of the light's own map and pyramid, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.map.memory_bytes()
     }
 }
 
-/// Planes of the tiles of a map of `size`, with room for the smallest tiles: lamps that move have smaller and larger ones.
+/// Creates the tile planes of a map of `size`, enough for the smallest tiles: tile sizes change while a light moves.
 fn tile_planes(stage: &Stage<'_>, size: UVec2) -> (Arc<wgpu::Texture>, wgpu::TextureView) {
     let count = size.map(|n| n.div_ceil(LEAST_TILE));
     let descriptor = written("antumbra tile planes", wgpu::TextureFormat::Rgba32Float, count, 1);
@@ -298,15 +298,15 @@ fn tile_planes(stage: &Stage<'_>, size: UVec2) -> (Arc<wgpu::Texture>, wgpu::Tex
     (planes, view)
 }
 
-/// Of tables, and of the basis where no table encodes what it reads.
+/// Returns the memory of the tables per texel of the map, bytes, including the basis texture if there is one.
 fn bytes_per_texel(design: SoftDesign) -> u32 {
-    /// `Rgba32Float` and `Rgba32Uint`.
+    /// Bytes per texel of `Rgba32Float` and `Rgba32Uint`.
     const BYTES: u32 = 16;
     let tables = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
     BYTES * (u32::from(tables) + u32::from(!design.is_encoded()))
 }
 
-/// Whether a caster may hide the light's rim from beyond the map: one that comes within the light's own radius of its middle.
+/// Whether a caster may hide the light's rim from beyond the map: one within the light's radius of its centre.
 fn may_be_covered(frame: &PreparedFrame<'_>) -> bool {
     let PreparedCasters::Draws(meshes) = &frame.casters else { return false };
     let (center, radius_m) = (frame.light.center, frame.light.bounding_radius());

@@ -1,4 +1,4 @@
-//! Size of tiles and bits of their values, by the widest piece of a kernel that light and casters allow.
+//! Size of tiles and bits of their values, from the widest piece of a kernel that light and casters allow.
 
 use super::{Basis, SoftDesign, SoftSettings};
 use crate::gpu::shared_constants;
@@ -7,35 +7,35 @@ use crate::light_map::map::PreparedMap;
 use crate::techniques::summed::summed_area_table::{BLOCK, MAX_TILE, Sums, Tiling};
 
 shared_constants! {
-    /// How far beyond the light's rim the search reaches.
+    /// Factor by which the search extends beyond the light's rim.
     pub(super) const RIM: f32 = 1.25, as in SOFT_RESOLVE;
 }
 
-/// The smallest tile with a range of its own, texels: smaller ones would cut most parts.
+/// Smallest tile with a plane of its own, texels: smaller ones would cut most pieces.
 pub(super) const LEAST_TILE: u32 = 32;
 
-/// A map has so many tiles along a side at the least, so that there are workgroups enough to sum them.
+/// Minimum number of tiles along a side of a map, so that enough workgroups sum them.
 const LEAST_TILES: u32 = 8;
 
-/// The fewest bits of a value in a table over the whole map, where kernels are cut: one too wide for so many has more parts. With
-/// two bits fewer `evssm` has an error half as large again on `builtin:hall`.
+/// Minimum bits of a value in a table over the whole map, for kernels that are cut: a kernel too wide for them gets more
+/// pieces. With two bits fewer the error of `evssm` is half as large again on `builtin:hall`.
 const LEAST_BITS: u32 = 16;
 
-/// The largest value of which a tile of [`BLOCK`]² texels sums to less than 2³².
+/// Largest value for which a tile of [`BLOCK`]² texels sums to less than 2³².
 const MOST_OF_A_TILE: u32 = u32::MAX / (BLOCK * BLOCK);
 
-/// What a frame's tables are made with.
+/// Parameters of a frame's tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TableFit {
-    /// Texels along the side of [`Tiling::Tiles`]; 0 for others.
+    /// Side of the tiles of [`Tiling::Tiles`], texels; 0 for other tilings.
     pub(super) tile_side: u32,
-    /// As `SoftUniform` has it.
+    /// Log2 of the tile side, as in `SoftUniform`.
     pub(super) tile_log2: u32,
-    /// What a stored 1 is.
+    /// Stored value that represents 1.
     pub(super) value_scale: f32,
-    /// In units of what the basis takes.
+    /// Exponent, in the units that the basis takes.
     pub(super) exponent: f32,
-    /// The most texels that a part may have for its sum to fit.
+    /// Maximum number of texels of a piece whose sum fits.
     pub(super) max_part_texels: f32,
 }
 
@@ -52,7 +52,7 @@ impl TableFit {
         };
         let (tile_log2, summed_log2) = match tiling {
             Tiling::Tiles => (tile_side.ilog2(), 2 * tile_side.ilog2()),
-            // Shifts by 31 would reach the sign.
+            // Shifts by 31 would reach the sign bit.
             Tiling::Whole => (30, (part_texels * part_texels).log2().ceil() as u32),
             Tiling::Chosen => (0, (part_texels * part_texels).log2().ceil() as u32),
         };
@@ -60,8 +60,8 @@ impl TableFit {
         let least_bits = if is_cut { LEAST_BITS } else { 8 };
         let bits = settings.value_bits.unwrap_or(32u32.saturating_sub(summed_log2).max(least_bits)).clamp(8, 24);
         let is_float = design.sums() == Sums::Float;
-        // As printed a value of 1 is 2^μ; a part of nothing but ones must still fit where sums wrap, and the smallest tile
-        // of nothing but ones be below 2³².
+        // As published, 1 is stored as 2^μ. A piece of nothing but ones must still fit when sums wrap, and the smallest tile of
+        // nothing but ones must sum to less than 2³².
         let value_scale = match (is_float, settings.value_bits) {
             (true, _) => 1.0,
             (false, Some(_)) => (1u32 << bits).min(MOST_OF_A_TILE) as f32,
@@ -69,7 +69,7 @@ impl TableFit {
         };
         let is_per_texel = design.basis == Basis::Tiles;
         let exponent = if is_per_texel { settings.exponent / map.view.texel_in_plane } else { settings.exponent };
-        // Wrapped sums can be told apart up to this; tiles do not wrap, floats do not either.
+        // Wrapped sums are unambiguous up to this; tiles and floats do not wrap.
         let max_part_texels = match (is_float, tiling) {
             (false, Tiling::Whole) => (1u64 << (32 - bits)) as f32,
             _ => f32::MAX,
@@ -78,7 +78,7 @@ impl TableFit {
     }
 }
 
-/// Texels along the side of the widest part: of the light's shape at the nearest depth, as the farthest receiver sees it.
+/// Returns the side of the widest piece, texels: of the light's shape at the nearest depth, as the farthest receiver sees it.
 fn widest_part_texels(settings: &SoftSettings, light: &LightSpread, map: &PreparedMap) -> f32 {
     let view = &map.view;
     let g =

@@ -1,4 +1,4 @@
-//! What a pixel reads, counted, and the blocker search against a CPU reference that looks at every texel.
+//! Tests of the number of reads per pixel, and of the blocker search against a CPU reference that reads every texel.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::path::Path;
@@ -26,7 +26,7 @@ use crate::testing::{Mesh, draw_depth, gpu, read_layer, read_texture, view_of};
 
 const SIZE: UVec2 = UVec2::new(96, 54);
 
-/// A built-in scene on the GPU, without its surfaces.
+/// Built-in scene on the GPU, without materials.
 struct Staged {
     mesh: Mesh,
     setup: Setup,
@@ -49,7 +49,7 @@ impl Staged {
         Self { mesh, setup, depth }
     }
 
-    /// The mask of a technique of the family, a layer for each channel.
+    /// Returns the mask of a technique of the family, one layer per channel.
     fn run(
         &self,
         gpu: &Gpu,
@@ -84,14 +84,14 @@ impl Staged {
     }
 }
 
-/// A technique of the family with a resolve shader of its own or another.
+/// Creates a technique of the family with its own resolve shader or another one.
 fn filter_of<P: SoftParams>(gpu: &Gpu, resolve: Option<&'static str>) -> SoftFilter {
     let mut filter = SoftFilter::new(gpu, P::NAME);
     filter.test_shader = resolve;
     filter
 }
 
-/// What a pixel in the penumbra reads, and how wide its kernel is, in the mean.
+/// Counter of the mean reads of penumbra pixels, and of the mean width of their kernels.
 struct Counter {
     plain: SoftFilter,
     counting: SoftFilter,
@@ -142,9 +142,9 @@ fn mean(values: impl Iterator<Item = f32>) -> f32 {
     sum / count.max(1.0)
 }
 
-/// However large the light, a pixel in the penumbra reads less than three times what `pcss` takes taps, and hardly more than under a
-/// light an eighth as large, from where kernels are some 15 texels wide: pieces that are all as wide as tiles hold more that
-/// their tables cannot tell.
+/// For any light, a penumbra pixel reads less than three times as often as `pcss` takes taps, and hardly more than under a
+/// light an eighth as large, once kernels are some 15 texels wide. Pieces as wide as tiles contain more that their tables
+/// cannot resolve.
 #[test]
 fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
     let Some(gpu) = gpu() else { return };
@@ -170,11 +170,11 @@ fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
     }
 }
 
-/// With one look; a second is another 150 of the search at the most, and as much again of the kernel.
+/// Maximum number of reads with one search. A second adds at most 150 to the search, and as many again to the kernel.
 const MOST_READS: f32 = 270.0;
 
-/// Nor under what is round, where the picture is penumbra all over; and an ellipse's kernel has no more than that of the rectangle
-/// around it. By one technique of exponentials and one of variances; the others read tables by the same shader.
+/// Reads do not grow under round lights either, where every pixel is penumbra. An ellipse's kernel reads no more than the
+/// enclosing rectangle's. Covers one technique of exponentials and one of variances; the others use the same shader.
 #[test]
 fn nor_does_it_under_a_disk_or_a_sphere() {
     let Some(gpu) = gpu() else { return };
@@ -195,7 +195,7 @@ fn nor_does_it_by_the_rest_of_the_family() {
     reads_do_not_grow(gpu, &staged, &EvssmParams { map_size, ..EvssmParams::default() });
 }
 
-/// A side of maps, texels, by which kernels have 30 and more.
+/// Side of maps, texels, at which kernels have at least 30 texels.
 const KERNELS_FROM_30: MapSize = MapSize::Texels(1024);
 
 fn all_penumbra(gpu: &Gpu) -> Staged {
@@ -224,7 +224,7 @@ fn reads_do_not_grow<P: SoftParams>(gpu: &Gpu, staged: &Staged, params: &P) {
     }
 }
 
-/// Rows of an ellipse, as `kernel_rows.wesl` has them, against the ellipse: its variances, and its penumbra of a straight edge.
+/// Compares the rows of an ellipse in `kernel_rows.wesl` with the ellipse: variances, and the penumbra of a straight edge.
 #[test]
 fn rows_of_an_ellipse_have_its_spread_and_its_penumbra() {
     for count in 1..=16 {
@@ -232,7 +232,7 @@ fn rows_of_an_ellipse_have_its_spread_and_its_penumbra() {
         let area: f32 = rows.iter().map(EllipseRow::area).sum();
         let across = rows.iter().map(|row| row.area() * row.half * row.half / 3.0).sum::<f32>() / area;
         let along = rows.iter().map(|row| row.area() * row.mean_square()).sum::<f32>() / area;
-        // Of a disk of radius 1: a quarter.
+        // The variance of a disk of radius 1 is a quarter.
         for (variance, name) in [(across, "across"), (along, "along")] {
             let spread = (4.0 * variance).sqrt();
             let bound = if count < 4 { 0.03 } else { 0.01 };
@@ -256,8 +256,8 @@ shared_constants! {
     const GAUSS: f32 = 0.288_675_13, as in SOFT_RESOLVE;
 }
 
-/// The walk over them, as `wide_lit` has it, is over after as many rows as there are, and one for each border of a tile: cuts lie
-/// between texels, and what rounding leaves nothing of is passed over.
+/// The loop over rows in `wide_lit` ends after as many iterations as there are rows, and one for each tile border: cuts lie
+/// between texels, and rows that rounding makes empty are skipped.
 #[test]
 fn rows_of_an_ellipse_come_to_an_end() {
     for i in 0..200_000 {
@@ -284,7 +284,7 @@ fn rows_of_an_ellipse_come_to_an_end() {
     }
 }
 
-/// CPU reference of the walk: where the next row begins, and how many there are to come.
+/// CPU reference of the loop: start of the next row, and number of rows left.
 struct EllipseWalk {
     at: f32,
     left: f32,
@@ -305,7 +305,7 @@ impl EllipseWalk {
     }
 }
 
-/// A rectangle about x = 0.
+/// Rectangle centred on x = 0.
 struct EllipseRow {
     low: f32,
     high: f32,
@@ -313,7 +313,7 @@ struct EllipseRow {
 }
 
 impl EllipseRow {
-    /// The rows of a disk of radius 1.
+    /// Returns the rows of a disk of radius 1.
     fn all(count: u32) -> Vec<Self> {
         let per_square = 1.0 / (count * count) as f32;
         let wide = (1.0 + ROW_WIDER * per_square).min(ROW_WIDEST);
@@ -332,12 +332,12 @@ impl EllipseRow {
         2.0 * self.half * (self.high - self.low)
     }
 
-    /// Of y.
+    /// Returns the mean of y².
     fn mean_square(&self) -> f32 {
         (self.low * self.low + self.low * self.high + self.high * self.high) / 3.0
     }
 
-    /// How much of it lies where x cos + y sin < d.
+    /// Returns the area where x cos + y sin < d.
     fn area_before(&self, normal: Vec2, d: f32) -> f32 {
         const STEPS: u32 = 64;
         let height = (self.high - self.low) / STEPS as f32;
@@ -352,7 +352,7 @@ impl EllipseRow {
     }
 }
 
-/// The rms difference between what of the rows and what of a disk of radius 1 lies before an edge that moves across.
+/// Returns the rms difference between rows and disk of radius 1 in the fraction before a moving edge.
 fn penumbra_error(rows: &[EllipseRow], turn_rad: f32) -> f32 {
     const STEPS: u32 = 80;
     let normal = Vec2::from_angle(turn_rad);
@@ -366,14 +366,14 @@ fn penumbra_error(rows: &[EllipseRow], turn_rad: f32) -> f32 {
     ((0..STEPS).map(off).sum::<f32>() / STEPS as f32).sqrt()
 }
 
-/// The search over every texel: what its parts stand for.
+/// CPU reference of the search, which reads every texel.
 struct Twin<'a> {
     view: LightViewGpu,
     stored: &'a [f32],
     size: u32,
     extent: Vec2,
     scales: u32,
-    /// Whether means are of depths, not of g.
+    /// Whether the mean is of depth instead of g.
     averages_depth: bool,
 }
 
@@ -382,7 +382,7 @@ fn columns_of(m: [f32; 4]) -> [Vec2; 2] {
 }
 
 impl Twin<'_> {
-    /// The mean g of what hides the light from a point of the ground, and how much does; `search_g` is the widest window's.
+    /// Returns the blockers' mean g at a point of the ground, and the blocked fraction; `search_g` is the widest window's.
     fn blockers(&self, point: Vec3, search_g: f32) -> (f32, f32) {
         let view = &self.view;
         let p = point - view.origin_in_world;
@@ -392,7 +392,7 @@ impl Twin<'_> {
         let texels = self.size as f32;
         let center = texels * (view.uv_origin + right * (x / z) + up * (y / z));
         let half_at_1 = texels * (right.abs() * self.extent.x + up.abs() * self.extent.y);
-        // 1/Z over the map, of the ground's plane y = 0: n · P = k.
+        // 1/Z over the map for the ground plane y = 0: n · P = k.
         let n = Vec3::new(view.right_in_world.y, view.up_in_world.y, view.axis_in_world.y);
         let bias = 0.5 * view.texel_in_plane * z / p.length();
         let k = -view.origin_in_world.y * (1.0 - bias);
@@ -430,7 +430,7 @@ impl Twin<'_> {
     }
 }
 
-/// The mean blocker's depth by ESM-Z on tables against every texel of the same windows, on the ground of built-in scenes.
+/// Compares mean blocker depths by ESM-Z on tables with those of every texel of the same windows, on the ground of scenes.
 #[test]
 fn mean_blocker_depths_are_those_of_every_texel() {
     let Some(gpu) = gpu() else { return };

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-/// A texture that one pass writes and another reads.
+/// Returns the descriptor of a texture that one pass writes and another reads.
 pub(super) fn written(
     label: &'static str,
     format: wgpu::TextureFormat,

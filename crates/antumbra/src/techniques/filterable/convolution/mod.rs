@@ -1,15 +1,15 @@
 //! `convolution`: convolution shadow maps.
 //!
-//! Thomas Annen, Tom Mertens, Philippe Bekaert, Hans-Peter Seidel, Jan Kautz, "Convolution Shadow Maps", EGSR 2007. The
-//! comparison with a depth is written as a Fourier series, whose M pairs of terms are functions of the stored depth alone
-//! and can be filtered; a receiver reads all of them. They are kept in 8-bit fixed point.
+//! Thomas Annen, Tom Mertens, Philippe Bekaert, Hans-Peter Seidel, Jan Kautz, "Convolution Shadow Maps", EGSR 2007. The depth
+//! comparison is written as a Fourier series. Its M pairs of terms are functions of the stored depth alone and can be filtered;
+//! a receiver reads all of them. They are stored in 8-bit fixed point.
 //!
-//! Where we depart: the receiver is moved towards the light to the series' first maximum, which needs no scale to be tuned;
-//! depths are held to 1 − 1/M of the half period, so that the far end of the range does not wrap around.
+//! Differences from the paper: the receiver is moved towards the light to the series' first maximum, which needs no tuned
+//! scale. Depths are limited to 1 − 1/M of the half period, so that the far end of the range does not wrap around.
 //!
 //! # Limits
-//! The series takes 1/(2M) of the light's range to fall: within that of every contact light leaks, under every occluder.
-//! Elsewhere it rings by a few percent. All terms are read for every pixel. The width is in texels, the same for every
+//! The series takes 1/(2M) of the light's range to fall, so light leaks within that distance of every contact, under every
+//! occluder. Elsewhere it rings by a few percent. Every pixel reads all terms. The width is in texels, the same for every
 //! occluder.
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};

@@ -1,14 +1,13 @@
 //! `esm`: exponential shadow maps.
 //!
 //! Thomas Annen, Tom Mertens, Hans-Peter Seidel, Eddy Flerackers, Jan Kautz, "Exponential Shadow Maps", Graphics Interface
-//! 2008; Marco Salvi, "Rendering Filtered Shadows with Exponential Shadow Maps", ShaderX6, 2008. The comparison of a
-//! receiver at t with a depth z is replaced by e^{−c(t − z)} = e^{−ct} · e^{cz}: one channel, filtered as a colour is.
-//! Stored is e^{c(z − 1)}, which a 32-bit float holds up to c = 80.
-//!
+//! 2008; Marco Salvi, "Rendering Filtered Shadows with Exponential Shadow Maps", ShaderX6, 2008. The comparison of a receiver
+//! at t with a depth z is replaced by e^{−c(t − z)} = e^{−ct} · e^{cz}: one channel that can be filtered like a colour. The map
+//! stores e^{c(z − 1)}, which a 32-bit float holds up to c = 80.
 //! # Limits
-//! Close to contacts, within 1/c of the light's range, shadows are too bright. Where part of a kernel lies beyond the
-//! receiver, e^{−c(t − z)} exceeds 1 and has no bound: clamped to lit, it eats into shadows at silhouettes and on receivers
-//! that are not planar or tilt away. The width is in texels, the same for every occluder.
+//! Shadows are too bright near contacts, within 1/c of the light's range. Where part of a kernel lies beyond the receiver,
+//! e^{−c(t − z)} exceeds 1 without bound. It is clamped to lit, which eats into shadows at silhouettes and on receivers that
+//! are not planar or tilt away. The width is in texels, the same for every occluder.
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -52,7 +51,7 @@ impl Technique for Esm {
         let packing = Packing::Float32;
         let uniform = EsmUniform { exponent: params.exponent, ..EsmUniform::default() };
         let map = self.map.prepare_map(stage, frame, &params.settings())?;
-        // Floats are exact to a fraction of e^{cz}, whose derivative is c e^{cz}.
+        // Floats have a constant relative error of e^{cz}, whose derivative is c e^{cz}.
         Ok(self.map.prepare_basis(stage, &map, 1, packing, packing.step() / params.exponent, &uniform, None))
     }
 

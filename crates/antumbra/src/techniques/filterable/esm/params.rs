@@ -3,7 +3,7 @@ use crate::techniques::filterable::filterable_params;
 filterable_params! {
     /// Parameters of [`Esm`](super::Esm).
     pub struct EsmParams {
-        /// Exponent c of e^{−c(t − z)}, over the light's range of depth.
+        /// Exponent c of e^{−c(t − z)}, over the light's depth range.
         exponent: f32 = 40.0, in 1.0..=80.0, scale Log,
             more "Less light near contacts, and more failures where receivers are not planar.";
     }

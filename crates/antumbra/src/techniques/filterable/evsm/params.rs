@@ -4,9 +4,9 @@ use crate::techniques::filterable::{DepthAxis, FloatStorage, filterable_params};
 param_choice! {
     /// Warps of [`Evsm`](super::Evsm).
     pub enum EvsmComponents {
-        /// The positive warp's two moments.
+        /// Two moments of the positive warp.
         Two = "two",
-        /// Both warps' moments.
+        /// Two moments of each warp.
         Four = "four",
     }
 }
@@ -17,8 +17,8 @@ filterable_params! {
         /// Warps in use.
         components: EvsmComponents = EvsmComponents::Four,
             more "four also works on receivers that are not planar, for twice the memory.";
-        /// Exponent c of the positive warp e^{cu}, u from −1 at the near plane to 1 at the far; 42 in float32 and 5.5 in
-        /// float16 at the most.
+        /// Exponent c of the positive warp e^{cu}, u from −1 at the near plane to 1 at the far plane; at most 42 in float32,
+        /// 5.5 in float16.
         exponent: f32 = 5.0, in 0.5..=42.0, scale Log,
             more "Less light bleeding, and more failures in foliage.";
         /// Exponent of the negative warp −e^{−cu}, with the same bounds.

@@ -13,7 +13,7 @@ gpu_structs! {
         padding_z: u32,
     }
 
-    /// Of a draw by `targets.wesl`.
+    /// Parameters of a draw with `targets.wesl`.
     pub(crate) struct LayerDraw {
         first_word: u32,
         padding_x: u32,

@@ -1,47 +1,47 @@
 //! `lvsm`: layered variance shadow maps.
 //!
-//! Andrew Lauritzen, Michael McCool, "Layered Variance Shadow Maps", Graphics Interface 2008. The light's range of depth is
-//! cut into layers, each a variance shadow map of depths clamped to it: what lies nearer than the layer becomes one occluder
-//! at its near end, and two moments describe that exactly. So light no longer bleeds from layer to layer, and since a
-//! layer covers little depth, 16-bit fixed point suffices. A receiver reads its own layer alone, and two where they overlap.
+//! Andrew Lauritzen, Michael McCool, "Layered Variance Shadow Maps", Graphics Interface 2008. The light's depth range is cut
+//! into layers. Each layer is a variance shadow map of depths clamped to it: geometry nearer than the layer becomes one
+//! occluder at its near end, which two moments describe exactly, so light does not bleed between layers. A layer covers little
+//! depth, so 16-bit fixed point suffices. A receiver reads only its own layer, or two where they overlap.
 //!
-//! Layers are placed at equal steps, by hand, or by Lloyd's relaxation (section 4) on a histogram, all on the GPU from the
-//! one depth map. The first frame converges at once; later frames go on from its splits, which glide to where they belong.
-//! The histogram is of where receivers in view want a split, weighted by the bleeding that it takes from them, or, by
-//! `relax_over = map`, of the map's second occluders, weighted by their variance, as in the paper.
+//! Layers are placed at equal steps, by hand, or by Lloyd's relaxation (section 4) on a histogram, all on the GPU from the one
+//! depth map. The first frame converges at once; later frames start from its splits, which move gradually to their new places.
+//! The histogram counts where visible receivers need a split, weighted by the bleeding that it removes. With `relax_over = map`
+//! it counts the map's second occluders, weighted by their variance, as in the paper.
 //!
-//! Where we depart from the paper, and why; `lvsm:paper` turns off what a parameter names:
-//! - A layer's two moments are a word of their own (16-bit) rather than half of a four-channel texel: the memory is the
-//!   same, and a receiver reads half as much.
-//! - Layers are encoded from the light map's depths, after it, as the paper proposes beside its own multiple targets
-//!   (`layers_by = targets`).
-//! - The overlap δ follows from the kernel: what a plane at 45° spans under it.
-//! - Depth is measured along the world's axis nearest to the light's, along which a floor has one depth; the paper has the
-//!   distance to the light (`depth_axis = distance`), by which a floor is curved.
-//! - A layer's bound is that of depths in [0, 1] (`primitives/depth_basis/variance`), which is Chebyshev's or less: what a layer holds at
-//!   its near end is black whatever the least variance, and light far behind the receiver counts no more than it is. One
-//!   layer alone is `vsm`.
-//! - Where layers overlap both bounds are valid. A receiver on the split takes the lesser, one at δ from it its own layer's,
-//!   and between them it is blended; the paper blends both bounds, which lets the worse one in
+//! Differences from the paper; `lvsm:paper` restores the paper's choice wherever a parameter names it:
+//! - A layer's two moments have a word of their own (16-bit) rather than half of a four-channel texel: the memory is the same,
+//!   and a receiver reads half as much.
+//! - Layers are encoded from the light map's depths in a pass after it, which the paper proposes beside its own multiple
+//!   targets (`layers_by = targets`).
+//! - The overlap δ follows from the kernel: the depth that a plane at 45° spans under it.
+//! - Depth is measured along the world axis nearest to the light's, along which a floor has one depth. The paper uses the
+//!   distance to the light (`depth_axis = distance`), which curves a floor.
+//! - A layer's bound is that of depths in [0, 1] (`primitives/depth_basis/variance`), at most Chebyshev's: occluders at the
+//!   layer's near end are black whatever the least variance, and surfaces far behind the receiver are not overrated. A single
+//!   layer is `vsm`.
+//! - Where layers overlap, both bounds are valid. A receiver on the split takes the smaller one, a receiver at distance δ that
+//!   of its own layer, with a blend in between. The paper blends both bounds, which admits the worse one
 //!   (`transition = mixed`).
-//! - The relaxation asks what receivers see, which the paper's conclusion proposes: for each of up to 128² of them, 25 taps
-//!   of the map under its kernel tell what bleeds, and that a split behind the last occluder ends it. On `overlap` with
-//!   four layers and a kernel of 9 of 384 texels `umbra_leak` is .0007, of which all is the exact truth's own; `vsm` has
-//!   .052. The bound and the world's axis of depth have as much part in it (.0012 without either).
-//! - The least variance is that of each receiver's own plane (eq. 7 scales it to the layer); the paper has one σ²min for all
+//! - The relaxation considers what receivers see, as the paper's conclusion proposes. For each of up to 128² receivers, 25 taps
+//!   of the map under its kernel give the bleeding, and a split behind the last occluder ends it. On `overlap` with four layers
+//!   and a kernel of 9 of 384 texels, `umbra_leak` is .0007, all of which is in the exact truth too; `vsm` has .052. The bound
+//!   and the world axis of depth contribute as much (.0012 without either).
+//! - The least variance is that of each receiver's own plane (eq. 7 scales it to the layer). The paper has one σ²min for all
 //!   (`least_variance = global`).
-//! - Over the map, as published, the relaxation places means *on* second occluders; the split must lie behind one to
-//!   clamp it. Splits are shifted by 1.5 δ (`relax_over = map_as_printed` does not). The paper does not say whether background
-//!   is an occluder: it is left out (`relax_background` counts it), and so is the optional clamp of weights (`relax_from`,
-//!   `relax_up_to`).
-//! - Splits keep gaps of 3 δ, and clusters teleport by inertia rather than for want of any weight (see `primitives/lloyd`;
-//!   `teleport = weight`).
+//! - Over the map, as published, the relaxation places means *on* second occluders, but a split must lie behind one to clamp
+//!   it. Splits are therefore shifted by 1.5 δ (not with `relax_over = map_as_printed`). The paper does not say whether
+//!   background is an occluder: here it is ignored (`relax_background` counts it), and so is the optional clamp of weights
+//!   (`relax_from`, `relax_up_to`).
+//! - Splits keep gaps of 3 δ, and clusters teleport by inertia rather than only when they have no weight (see
+//!   `primitives/lloyd`; `teleport = weight`).
 //!
 //! # Limits
-//! Light still bleeds among occluders of one layer: in foliage, whose depths have no gaps, more layers help slowly. Receivers
-//! steeper than 45° to the light may show faint lines where layers meet. Narrow layers raise the least variance (eq. 7).
-//! The width is in texels, the same for every occluder. Splits follow the camera, unless relaxed over the map: they move by
-//! fractions of a layer while it does, and what bleeds changes with them.
+//! Light still bleeds between occluders of one layer: in foliage, whose depths have no gaps, more layers help only slowly.
+//! Receivers steeper than 45° to the light may show faint lines where layers meet. Narrow layers raise the least variance
+//! (eq. 7). The width is in texels, the same for every occluder. Splits follow the camera, unless they are relaxed over the
+//! map: they move by fractions of a layer while it moves, and the bleeding changes with them.
 
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -66,14 +66,14 @@ pub use params::{
 use relaxation::{LayerRelaxation, PreparedRelaxation};
 use targets::{LayerTargets, PreparedLayers};
 
-/// The passes of one frame.
+/// Passes of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedLvsm {
     basis: PreparedBasis,
-    /// `None` where splits are given.
+    /// Passes that move the splits; `None` if the splits are given.
     relaxation: Option<PreparedRelaxation>,
-    /// `None` where layers are encoded from depth.
+    /// Draws that write the layers; `None` if layers are encoded from depth.
     layers: Option<PreparedLayers>,
 }
 
@@ -119,7 +119,7 @@ impl Technique for Lvsm {
             layer_count: params.layers,
             overlap,
             layer_step: packing.step(),
-            // Without overlap there is nothing to blend over.
+            // Without an overlap there is no interval to blend over.
             blends: (params.blend && overlap > 0.0).into(),
             shows_layers: (params.show == LvsmShow::Layers).into(),
             least_variance: match params.least_variance {
@@ -151,7 +151,7 @@ impl Technique for Lvsm {
 
     fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedLvsm) {
         let PreparedLvsm { basis, relaxation, layers } = prepared;
-        // Where nothing is relaxed before the layers are drawn, depth is drawn with them.
+        // Unless a relaxation needs depth first, the layers' draws write depth too.
         if layers.is_none() || relaxation.is_some() {
             self.map.record_map(recorder, frame, basis);
         }
@@ -166,7 +166,7 @@ impl Technique for Lvsm {
         basis.record(recorder);
     }
 
-    /// Splits glide from frame to frame until they are where they belong.
+    /// Whether the splits have stopped moving: they approach their places over several frames.
     fn is_settled(&self, _params: &LvsmParams, still_frames: u32) -> bool {
         self.relaxation.is_settled(still_frames)
     }
@@ -181,7 +181,7 @@ impl Technique for Lvsm {
 }
 
 impl Lvsm {
-    /// Whether the frame's layers are written as its casters are drawn.
+    /// Returns whether the caster pass writes the frame's layers.
     fn draws_layers(&self, frame: &PreparedFrame<'_>, params: &LvsmParams) -> Result<bool, Error> {
         let has_casters = matches!(frame.casters, PreparedCasters::Draws(_));
         if params.layers_by == LvsmLayersBy::Depth || params.resolve == ResolveBy::Exact || !has_casters {
@@ -199,14 +199,14 @@ impl Lvsm {
     }
 }
 
-/// δ of section 3.4, in t: the depth that a plane at 45° to the light spans under the kernel, in the middle of the range;
-/// no more than leaves every layer of an even split its own middle half.
+/// Returns δ of section 3.4, in t: the depth that a plane at 45° to the light spans under the kernel, in the middle of the
+/// range. It is limited so that every layer of an even split keeps its middle half.
 fn automatic_overlap(map: &FrameMap, params: &LvsmParams) -> f32 {
     let reach_texels = 0.5 * params.kernel_size + 1.0;
     (params.overlap * reach_texels * texel_of_range(map)).min(0.25 / params.layers as f32)
 }
 
-/// A texel's width in the middle of the range, in t.
+/// Returns a texel's width in the middle of the range, in t.
 fn texel_of_range(map: &FrameMap) -> f32 {
     let view = &map.view;
     let range_m = map.range.far_m - map.range.near_m;
@@ -214,13 +214,13 @@ fn texel_of_range(map: &FrameMap) -> f32 {
     view.texel_in_plane * if view.perspective == 1 { middle_m } else { 1.0 } / range_m
 }
 
-/// The global σ²min of eq. 7, in t: of a plane at 45° to the light in the middle of the range, half of its step from texel to texel
-/// squared, as `minimum_variance` has it for every plane.
+/// Returns the global σ²min of eq. 7, in t²: for a plane at 45° to the light in the middle of the range, the square of half its
+/// step from texel to texel, as `minimum_variance` computes it for every plane.
 fn variance_at_45_degrees(map: &FrameMap) -> f32 {
     (0.5 * texel_of_range(map)).powi(2)
 }
 
-/// Splits in t that do not wait for the GPU; none for those that are relaxed.
+/// Returns the splits that the CPU knows, in t; `None` if the GPU relaxes them.
 fn given_splits(map: &FrameMap, params: &LvsmParams) -> Result<Option<Vec<f32>>, Error> {
     let split_count = params.layers as usize - 1;
     match params.placement {

@@ -2,85 +2,85 @@ use crate::contract::{ParamList, param_choice};
 use crate::techniques::filterable::{DepthAxis, MomentStorage, filterable_params};
 
 param_choice! {
-    /// Where the layers of [`Lvsm`](super::Lvsm) meet.
+    /// Placement of the splits between the layers of [`Lvsm`](super::Lvsm).
     pub enum LayerPlacement {
-        /// At equal steps of depth.
+        /// Equal steps of depth.
         Uniform = "uniform",
-        /// At `split_depths`.
+        /// Splits at `split_depths`.
         Manual = "manual",
-        /// Behind the second occluders, found each frame.
+        /// Splits behind the second occluders, found each frame.
         Lloyd = "lloyd",
     }
 }
 
 param_choice! {
-    /// What Lloyd's relaxation of [`Lvsm`](super::Lvsm)'s layers looks at.
+    /// Source of the histogram for Lloyd's relaxation of [`Lvsm`](super::Lvsm)'s layers.
     pub enum RelaxOver {
-        /// The bleeding that receivers in view would see.
+        /// Bleeding that receivers in view would see.
         View = "view",
-        /// The light map's discontinuities, wherever the camera looks.
+        /// Discontinuities of the light map, independent of the camera.
         Map = "map",
-        /// The same as published: splits lie on second occluders, and μ + σ may lie beyond them.
+        /// Discontinuities as published: splits lie on second occluders, and μ + σ may lie beyond them.
         MapAsPrinted = "map_as_printed",
     }
 }
 
 param_choice! {
-    /// Which layers of [`Lvsm`](super::Lvsm) Lloyd's relaxation merges and which it splits, where that helps.
+    /// Rule by which Lloyd's relaxation merges and splits layers of [`Lvsm`](super::Lvsm).
     pub enum LvsmTeleport {
-        /// Merges those whose merging adds the least inertia, splits the one that has the most.
+        /// Merge the layers whose merging adds the least inertia, split the one that has the most.
         Inertia = "inertia",
-        /// Merges those that hold nothing, splits the one with the largest weight: the paper's.
+        /// Merge layers that hold nothing, split the one with the largest weight: the paper's rule.
         Weight = "weight",
     }
 }
 
 param_choice! {
-    /// How [`Lvsm`](super::Lvsm) blends where two layers overlap.
+    /// Blend of two overlapping layers of [`Lvsm`](super::Lvsm).
     pub enum LvsmTransition {
-        /// From the lesser of both layers' bounds at the split to the receiver's own layer at the overlap's end.
+        /// From the smaller of both bounds at the split to the receiver's own layer at the overlap's end.
         Lesser = "lesser",
-        /// From one layer's bound to the other's, over the whole overlap: the paper's.
+        /// From one layer's bound to the other's, over the whole overlap: the paper's rule.
         Mixed = "mixed",
     }
 }
 
 param_choice! {
-    /// What bounds the visibility in a layer of [`Lvsm`](super::Lvsm).
+    /// Bound on visibility in a layer of [`Lvsm`](super::Lvsm).
     pub enum LvsmBound {
-        /// The bound of depths that lie in the layer, which is Chebyshev's or less.
+        /// Bound of depths that lie in the layer: at most Chebyshev's.
         Bounded = "bounded",
-        /// Chebyshev's: the paper's.
+        /// Chebyshev's bound: the paper's.
         Chebyshev = "chebyshev",
     }
 }
 
 param_choice! {
-    /// The least variance that depths in a layer of [`Lvsm`](super::Lvsm) are taken to have.
+    /// Least variance assumed for depths in a layer of [`Lvsm`](super::Lvsm).
     pub enum LvsmLeastVariance {
-        /// That of the receiver's own plane over a texel.
+        /// Variance of the receiver's own plane over a texel.
         Receiver = "receiver",
-        /// That of a plane at 45° to the light over a texel, everywhere: one σ²min, by equation 7 in every layer, the paper's.
+        /// Variance of a plane at 45° to the light over a texel: the paper's one σ²min, scaled to layers by equation 7.
         Global = "global",
     }
 }
 
 param_choice! {
-    /// When the layers of [`Lvsm`](super::Lvsm) are written.
+    /// Time at which the layers of [`Lvsm`](super::Lvsm) are written.
     pub enum LvsmLayersBy {
         /// After the light map, from its depths: a pass whose time does not depend on the casters.
         Depth = "depth",
-        /// As casters are drawn, a target for each layer: the paper's.
+        /// While casters are drawn, one target per layer: the paper's method.
         Targets = "targets",
     }
 }
 
 param_choice! {
-    /// What [`Lvsm`](super::Lvsm) writes into the mask.
+    /// Output of [`Lvsm`](super::Lvsm).
     pub enum LvsmShow {
         /// Visibility.
         Visibility = "visibility",
-        /// The receivers' layers in colours, darker in shadow; a mask of one channel gets their luminance.
+        /// Layers of the receivers in colours, darker in shadow; a mask of one channel gets their luminance.
         Layers = "layers",
     }
 }
@@ -88,58 +88,58 @@ param_choice! {
 filterable_params! {
     /// Parameters of [`Lvsm`](super::Lvsm).
     pub struct LvsmParams {
-        /// Layers of depth.
+        /// Number of depth layers.
         layers: u32 = 4, in 1..=16,
             more "Less light bleeding; memory and the blur's time grow in proportion, the lookup's does not.";
-        /// How the layers are placed.
+        /// Placement of the layers.
         placement: LayerPlacement = LayerPlacement::Lloyd,
             more "lloyd follows the scene; uniform spreads precision evenly; manual clears one receiver for certain.";
-        /// The depths at which manual layers meet, along `depth_axis` from the light's centre (a sun: from the scene's
-        /// middle).
+        /// Depths at which manual layers meet, along `depth_axis` from the light's centre (for a sun, from the middle of the
+        /// scene).
         split_depths: ParamList = ParamList::EMPTY, unit "m",
             more "One less than `layers`, ascending; each takes away bleeding onto what lies just behind it.";
         /// Overlap of neighbouring layers, relative to the depth that a plane at 45° spans under the kernel.
         overlap: f32 = 1.0, in 0.0..=8.0,
             more "Steep receivers cross from layer to layer without a seam, and layers can lie less close.";
-        /// Blend between two layers where they overlap.
+        /// Whether two layers are blended where they overlap.
         blend: bool = true,
             more "false reads one layer always, and may show where layers meet in bleeding regions.";
-        /// How two layers blend where they overlap.
+        /// Blend of two overlapping layers.
         transition: LvsmTransition = LvsmTransition::Lesser,
             more "mixed is the paper's, and lets in what the worse of two bounds bleeds.";
-        /// What bounds the visibility in a layer.
+        /// Bound on visibility in a layer.
         bound: LvsmBound = LvsmBound::Bounded,
             more "chebyshev is the paper's: layers let in a little light where occluders fill them.";
-        /// The least variance that depths are taken to have.
+        /// Least variance assumed for depths.
         least_variance: LvsmLeastVariance = LvsmLeastVariance::Receiver,
             more "global is the paper's: receivers steeper than 45° shade themselves, and those that face the light bleed more.";
-        /// Splits that Lloyd's relaxation moves in each frame, in turns.
+        /// Number of splits that Lloyd's relaxation moves in each frame, in turns.
         splits_per_frame: u32 = 15, in 1..=15,
             more "Follows moving scenes more quickly.";
-        /// What Lloyd's relaxation looks at.
+        /// Source of the histogram for Lloyd's relaxation.
         relax_over: RelaxOver = RelaxOver::View,
             more "view spends layers where the camera sees light bleed; map does not depend on the camera; splits of \
                   map_as_printed cut the occluders that they should lie behind.";
-        /// Whether texels without a caster count as occluders at the far end, where `relax_over` is not view.
+        /// Whether texels without a caster count as occluders at the far end, unless `relax_over` is view.
         relax_background: bool = false,
             more "true spends layers on the edges of what stands before nothing.";
-        /// Standard deviation below which depths under a texel's neighbourhood ask for no split, where `relax_over` is not view.
+        /// Standard deviation of depth over neighbouring texels below which they ask for no split, unless `relax_over` is view.
         relax_from: f32 = 0.0, in 0.0..=0.5, unit "parts of the range",
             more "Slopes and small steps of depth no longer draw splits to themselves.";
-        /// Standard deviation beyond which they ask for a split no more, where `relax_over` is not view.
+        /// Standard deviation beyond which their weight no longer grows, unless `relax_over` is view.
         relax_up_to: f32 = 0.5, in 0.001..=0.5, unit "parts of the range",
             more "The deepest steps draw splits the more.";
-        /// Which layers Lloyd's relaxation merges and splits.
+        /// Rule by which Lloyd's relaxation merges and splits layers.
         teleport: LvsmTeleport = LvsmTeleport::Inertia,
             more "weight is the paper's, and stays in worse places.";
-        /// How the moments are stored.
+        /// Storage format of the moments.
         storage: MomentStorage = MomentStorage::Unorm16,
             more "unorm16 suffices, since a layer covers little depth; float32 takes twice the memory.";
-        /// When the layers are written. Of a host's depth map, after it always.
+        /// Time at which the layers are written. With a host's depth map they are always written after it.
         layers_by: LvsmLayersBy = LvsmLayersBy::Depth,
             more "targets is the paper's: eight layers in a pass over the casters, which relaxed layers draw once more; needs an \
                   `msaa` of 1.";
-        /// What goes into the mask.
+        /// Content of the mask.
         show: LvsmShow = LvsmShow::Visibility,
             more "layers colours each receiver by its layer, to see where the splits lie.";
     } => Paper {

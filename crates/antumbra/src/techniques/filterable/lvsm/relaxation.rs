@@ -1,4 +1,4 @@
-//! Depths where layers meet, found on the GPU: a histogram of where splits are wanted, then Lloyd's relaxation on it.
+//! Splits between layers, found on the GPU: a histogram of where splits are needed, then Lloyd's relaxation on it.
 
 use glam::UVec2;
 
@@ -10,34 +10,34 @@ use crate::shaders;
 use crate::techniques::filterable::{Filterable, FrameMap, PreparedBasis, pipelines_index};
 
 bindings! {
-    /// Group 1 over the map, 2 over the receivers.
+    /// Histogram and its parameters: group 1 of the pass over the map, group 2 of the pass over the receivers.
     struct Wanted = "wanted splits", COMPUTE {
-        /// The neighbourhoods, or the receivers, that say where splits are wanted.
+        /// Grid of neighbourhoods or of receivers that add to the histogram.
         0 grid: Uniform,
         1 histogram: ReadWrite,
     }
 }
 
-/// The most threads along a side that fill the histogram from the map; its integers hold what so many give.
+/// Maximum number of threads along a side that fill the histogram from the map; its integers hold the sum of that many.
 const MAX_NEIGHBOURHOODS: u32 = 512;
 
-/// The most receivers along a side that it takes of the view.
+/// Maximum number of receivers along a side that fill the histogram from the view.
 const MAX_RECEIVERS: u32 = 128;
 
-/// Layers as published may be as thin as two bins of the histogram: one without any depth would have no moments.
+/// Smallest width of a layer as published, in t: two bins of the histogram. A layer without depth would have no moments.
 const LEAST_LAYER: f32 = 2.0 / 4096.0;
 
 /// Threads along each side of a workgroup of the histogram.
 const TILE: u32 = 8;
 
-/// The pass that fills the histogram in the prepared frame.
+/// Key of the pass that fills the histogram in the prepared frame.
 #[derive(Clone, Copy, Debug)]
 struct Gathering {
     source: RelaxOver,
     multisampled: bool,
     is_distance: bool,
     counts_background: bool,
-    /// Threads.
+    /// Number of threads.
     grid: UVec2,
 }
 
@@ -57,20 +57,20 @@ impl Gathering {
     }
 }
 
-/// The splits and the passes that move them.
+/// Splits between layers, and the passes that move them.
 #[derive(Debug)]
 pub(super) struct LayerRelaxation {
     lloyd: Lloyd,
     layout: wgpu::BindGroupLayout,
     uniform: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
-    /// By [`Gathering::index`], made when first asked for.
+    /// Pipelines indexed by [`Gathering::index`], created on first use.
     pipelines: [Option<wgpu::ComputePipeline>; 24],
-    /// None where splits are given.
+    /// Histogram pass of the prepared frame; `None` if the splits are given.
     gathering: Option<Gathering>,
 }
 
-/// What moves the splits of one frame.
+/// Pass that fills the histogram of one frame.
 #[derive(Debug)]
 pub(super) struct PreparedRelaxation {
     gathering: Gathering,
@@ -86,7 +86,7 @@ impl LayerRelaxation {
         Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 24], gathering: None }
     }
 
-    /// The splits: floats in ascending order, in t.
+    /// Returns the buffer of splits: floats in ascending order, in t.
     pub(super) fn splits(&self) -> &wgpu::Buffer {
         self.lloyd.splits()
     }
@@ -97,7 +97,7 @@ impl LayerRelaxation {
         self.lloyd.set(stage, splits);
     }
 
-    /// Makes ready for the GPU to find the splits of the next frame, of whose map `passes` has made `basis`.
+    /// Prepares the relaxation of the next frame's splits; `basis` is that frame's map, prepared by `passes`.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -135,7 +135,7 @@ impl LayerRelaxation {
         let how = Relaxation {
             iterations: 1,
             moved_count: params.splits_per_frame,
-            // Second occluders ask for a split behind them; receivers say where.
+            // A second occluder needs a split behind it; a receiver names the split itself.
             shift: if params.relax_over == RelaxOver::Map { 1.5 * overlap } else { 0.0 },
             least_gap: if params.relax_over == RelaxOver::MapAsPrinted { LEAST_LAYER } else { 3.0 * overlap },
             teleport: match params.teleport {
@@ -162,17 +162,17 @@ impl LayerRelaxation {
         PreparedRelaxation { gathering, pipeline: pipeline.clone() }
     }
 
-    /// Whether the prepared frame's splits are found by the GPU, from its light map.
+    /// Whether the GPU finds the prepared frame's splits from its light map.
     pub(super) fn is_due(&self) -> bool {
         self.gathering.is_some()
     }
 
-    /// Whether splits stay where they are, after so many frames of which each was as the one before.
+    /// Whether the splits no longer move after `still_frames` equal frames.
     pub(super) fn is_settled(&self, still_frames: u32) -> bool {
         !self.is_due() || self.lloyd.is_settled(still_frames)
     }
 
-    /// Records what moves the splits, after the light map and before what reads them.
+    /// Records the passes that move the splits: after the light map, before the passes that read them.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, basis: &PreparedBasis, prepared: &PreparedRelaxation) {
         let PreparedRelaxation { gathering, pipeline } = prepared;
         self.lloyd.record_clear(recorder);

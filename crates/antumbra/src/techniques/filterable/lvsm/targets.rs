@@ -1,10 +1,10 @@
-//! The layers written as the casters are drawn, a target for each word of the packed map.
+//! Layers written while casters are drawn, one render target per word of the packed map.
 //!
-//! Lauritzen and McCool 2008, section 5: all layers in one pass by multiple render targets, of which they say that a pass after a
-//! fast one of depth alone costs the same for any scene. WebGPU's default limits allow eight targets of 32 bits: eight layers of
-//! 16-bit moments in one pass over the casters, more in two.
+//! Lauritzen and McCool 2008, section 5: all layers in one pass by multiple render targets. The paper says that after a fast
+//! depth-only pass, such a pass costs the same for any scene. WebGPU's default limits allow eight targets of 32 bits: eight
+//! layers of 16-bit moments in one pass over the casters, more in two.
 //!
-//! Where splits are relaxed the map is drawn once before, by depth alone, since this frame's splits come of this frame's depths.
+//! With relaxed splits, a depth-only pass draws the map first, because a frame's splits depend on the same frame's depths.
 
 use super::gpu_types::{LayerDraw, LvsmUniform};
 use crate::contract::MeshCaster;
@@ -24,30 +24,30 @@ bindings! {
     }
 }
 
-/// The outputs of the shaders: WebGPU's default `max_color_attachments`, and of four bytes each its default
+/// Number of outputs of the shaders: WebGPU's default `max_color_attachments`; at four bytes each, also its default
 /// `max_color_attachment_bytes_per_sample`.
 const MOST_TARGETS: u32 = 8;
 
-/// Targets of a draw at the most.
+/// Returns the maximum number of targets of a draw on this device.
 fn most_targets(gpu: &Gpu) -> usize {
     let limits = gpu.device.limits();
     let by_bytes = limits.max_color_attachment_bytes_per_sample / 4;
     MOST_TARGETS.min(limits.max_color_attachments).min(by_bytes).max(1) as usize
 }
 
-/// What draws the casters once for every eight words.
+/// Programs that draw the casters once per eight words.
 #[derive(Debug)]
 pub(super) struct LayerTargets {
     layout: wgpu::BindGroupLayout,
-    /// By the number of targets, and whether depths are distances.
+    /// Programs keyed by the number of targets, and by whether depths are distances.
     programs: Vec<((usize, bool), CasterProgram)>,
 }
 
-/// The draws of one frame.
+/// Draws of one frame.
 #[derive(Debug)]
 pub(super) struct PreparedLayers {
     draws: Vec<Draw>,
-    /// The word of what has no caster.
+    /// Word of texels without a caster.
     clear: wgpu::Color,
 }
 
@@ -55,9 +55,9 @@ pub(super) struct PreparedLayers {
 #[derive(Debug)]
 struct Draw {
     group: wgpu::BindGroup,
-    /// Its index in `programs`.
+    /// Index of the draw's program in `programs`.
     program: usize,
-    /// That it writes.
+    /// Range of words that the draw writes.
     words: std::ops::Range<usize>,
 }
 
@@ -66,7 +66,7 @@ impl LayerTargets {
         Self { layout: LayerTarget::layout(gpu), programs: Vec::new() }
     }
 
-    /// Makes ready to draw every word of the map that `passes` has prepared as `basis`.
+    /// Prepares draws of every word of the map that `passes` has prepared as `basis`.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -93,7 +93,7 @@ impl LayerTargets {
         PreparedLayers { draws, clear }
     }
 
-    /// The index of the program with so many targets.
+    /// Returns the index of the program with `target_count` targets, and compiles it if it is missing.
     fn program(
         &mut self,
         gpu: &Gpu,
@@ -124,7 +124,7 @@ impl LayerTargets {
         self.programs.len() - 1
     }
 
-    /// Draws the casters, and their depths over what `depth` holds, which are the same.
+    /// Draws the casters into the words of `views`, and clears and redraws `depth` with the same depths.
     pub(super) fn record(
         &self,
         recorder: &mut Recorder<'_>,

@@ -1,4 +1,4 @@
-//! Where the splits go, on any adapter; what they do for shadows stands in the laboratory's tests and in `filterable`'s.
+//! Placement of the splits on any adapter. Their effect on shadows is tested in the laboratory's tests and in `filterable`'s.
 
 use antumbra_light::Light;
 use glam::{Vec2, Vec3};
@@ -11,7 +11,7 @@ use crate::techniques::Technique;
 use crate::techniques::filterable::{DepthAxis, MomentStorage, Multisampling};
 use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, is_software, read_layer, read_storage};
 
-/// Boards at `height_m` over a table over the ground, under a light that looks down at a slant.
+/// Test scene: boards at `height_m` over a table over the ground, under a light at a slant.
 fn boards(gpu: &Gpu, height_m: f32) -> Case {
     let light = Light::new(RECTANGLE, Vec3::new(-1.5, 6.0, -1.0), Vec3::ZERO);
     let view = View::new(Vec3::new(2.0, 2.5, 6.0), Vec3::new(0.3, 0.0, 0.0));
@@ -25,7 +25,7 @@ fn boards(gpu: &Gpu, height_m: f32) -> Case {
     Case::new(gpu, light, view, meshes)
 }
 
-/// The splits after a frame.
+/// Returns the splits after a frame.
 fn frame(gpu: &Gpu, lvsm: &mut Lvsm, case: &Case, params: &LvsmParams) -> Vec<f32> {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     case.with_prepared(&casters, |frame| {
@@ -40,7 +40,7 @@ fn frame(gpu: &Gpu, lvsm: &mut Lvsm, case: &Case, params: &LvsmParams) -> Vec<f3
 }
 
 fn params(relax_over: RelaxOver) -> LvsmParams {
-    // Along the light's axis, where boards, table and ground have many depths each.
+    // Along the light's axis boards, table and ground each have many depths.
     let depth_axis = DepthAxis::Light;
     LvsmParams {
         map_size: MapSize::Texels(256),
@@ -52,7 +52,7 @@ fn params(relax_over: RelaxOver) -> LvsmParams {
     }
 }
 
-/// Two bins of the histogram.
+/// Width of two bins of the histogram, in t.
 const QUANTUM: f32 = 2.0 / 4096.0;
 
 fn assert_close(got: &[f32], want: &[f32], most: f32, what: &str) {
@@ -64,7 +64,7 @@ fn assert_close(got: &[f32], want: &[f32], most: f32, what: &str) {
 fn every_adapter_finds_the_same_splits() {
     let Some(gpu) = gpu() else { return };
     let case = boards(gpu, 3.0);
-    // As llvmpipe and SwiftShader find them, which differ by up to four bins of the histogram: they do not rasterise alike.
+    // Results of llvmpipe and SwiftShader, which differ by up to four bins of the histogram because they rasterise differently.
     for (relax_over, want) in [(RelaxOver::View, [0.1804, 0.6254, 0.7553]), (RelaxOver::Map, [0.5456, 0.6994, 0.8701])]
     {
         let mut lvsm = Lvsm::new(gpu).expect("no features needed");
@@ -92,19 +92,19 @@ fn splits_stay_where_nothing_moves_and_arrive_within_thirty_frames_where_somethi
             assert_close(&frame(gpu, &mut lvsm, &high, &params), &splits, QUANTUM, "thirty frames after the move");
         }
         if relax_over == RelaxOver::View && is_software(gpu) {
-            // Clusters of the map's edges have two best places here; those of the view have one, but a second that is as good on an
-            // NVIDIA H200.
+            // The map's histogram has two equally good optima here. That of the view has one, except on an NVIDIA H200, where a
+            // second is as good.
             let want = frame(gpu, &mut Lvsm::new(gpu).expect("no features needed"), &high, &params);
             assert_close(&splits, &want, QUANTUM, "without a past");
         }
     }
 }
 
-/// The labels of a frame's passes that draw casters, and the channels of the filtered map.
+/// Returns the labels of a frame's passes that draw casters, and the channels of the filtered map.
 fn drawn(gpu: &Gpu, case: &Case, params: &LvsmParams) -> (Vec<&'static str>, Vec<f32>) {
     let mut lvsm = Lvsm::new(gpu).expect("no features needed");
     let mut casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
-    // One board stops all light and one next to none, by their alpha.
+    // Alpha makes one board opaque and another nearly transparent.
     for (caster, opacity) in casters[2..4].iter_mut().zip([1.0, 0.1]) {
         let coverage = SurfaceCoverage::Alpha(opacity);
         caster.opacity = Opacity::Translucent { coverage, transmitted: Vec3::ZERO, texture: None };
@@ -174,8 +174,8 @@ fn targets_say_that_they_have_one_sample_a_texel() {
     assert!(error.to_string().contains("set `msaa` to 1"), "{error}");
 }
 
-/// Background is an occluder where it is asked to be: boards before nothing then ask for splits at the far end. Weights that are
-/// clamped to nothing leave no split where it was asked for; small steps left out move them.
+/// Background that counts as an occluder adds splits at the far end, behind boards in front of nothing. Clamping the weights
+/// and leaving out small steps both move the splits.
 #[test]
 fn what_asks_for_splits_is_switched() {
     let Some(gpu) = gpu() else { return };
@@ -186,14 +186,14 @@ fn what_asks_for_splits_is_switched() {
     let with_background = found(LvsmParams { relax_background: true, ..usual });
     println!("{plain:?}, with background {with_background:?}");
     assert!(with_background[2] > plain[2] + 0.05, "{with_background:?}, {plain:?}");
-    // The table is .5 m above the ground of six: a step of a standard deviation of a twentieth. The boards' are of a fourth.
+    // The table is .5 m above the ground in a range of 6 m: a standard deviation of a twentieth. The boards' is a fourth.
     let large_steps = found(LvsmParams { relax_from: 0.15, ..usual });
     let all_alike = found(LvsmParams { relax_up_to: 0.02, ..usual });
     println!("large steps {large_steps:?}, all alike {all_alike:?}");
     assert!(large_steps != plain && all_alike != plain && large_steps != all_alike);
 }
 
-/// Equation 7 with one σ²min: a receiver that faces the light, whose own plane has no variance, has that of a plane at 45°.
+/// Equation 7 with one σ²min: a receiver that faces the light has no variance of its own and gets that of a plane at 45°.
 #[test]
 fn one_least_variance_is_that_of_a_plane_at_45_degrees() {
     let Some(gpu) = gpu() else { return };
@@ -211,8 +211,8 @@ fn one_least_variance_is_that_of_a_plane_at_45_degrees() {
         case.run(gpu, crate::TechniqueKind::Lvsm, &settings)
     };
     let (own, global) = (run(LvsmLeastVariance::Receiver), run(LvsmLeastVariance::Global));
-    // Far behind the half-plane all texels hold its one depth, 1.5 m before the ground: Chebyshev's bound is σ² / (σ² + d²), with
-    // σ half of a texel's width.
+    // Far behind the half-plane all texels hold its one depth, 1.5 m in front of the ground: Chebyshev's bound is σ² / (σ² +
+    // d²), with σ half of a texel's width.
     let umbra = case.ground_pixels(|p| p.x < -0.7 && p.x > -0.95 && p.z.abs() < 1.0);
     assert!(!umbra.is_empty());
     for (i, _) in umbra {

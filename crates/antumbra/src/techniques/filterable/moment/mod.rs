@@ -2,14 +2,14 @@
 //!
 //! Christoph Peters, Reinhard Klein, "Moment Shadow Mapping", I3D 2015; quantisation and bias after Peters, Münstermann,
 //! Wetzstein, Klein, "Improved Moment Shadow Maps for Translucent Occluders, Soft Shadows and Single Scattering", JCGT 2017.
-//! Of all distributions of depth that have the filtered moments, the one with least in front of the receiver is found in
-//! closed form: a sharper bound than two moments give, exact for two occluders over a receiver, at 64 bits a texel.
+//! Among all depth distributions that have the filtered moments, a closed form finds the one with least in front of the
+//! receiver. Its bound is sharper than that of two moments, and exact for two occluders over a receiver, at 64 bits per texel.
 //!
 //! # Limits
-//! Three occluders and more under one kernel leave light bleeding, weaker than `vsm`'s. Rounding makes the fourth moment
-//! uncertain: moments are moved towards a distribution that is certain (a fraction 6·10⁻⁵ of the way in 16 bits), which
-//! brightens shadows within a few thousandths of the light's range of their occluder. The width is in texels, the same for
-//! every occluder.
+//! Three or more occluders under one kernel leave light bleeding, weaker than `vsm`'s. Rounding makes the fourth moment
+//! uncertain, so moments are moved towards a valid distribution (a fraction 6·10⁻⁵ of the way in 16 bits). This brightens
+//! shadows within a few thousandths of the light's range of their occluder. The width is in texels, the same for every
+//! occluder.
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -50,7 +50,7 @@ impl Technique for Moment {
         frame: &PreparedFrame<'_>,
         params: &MomentParams,
     ) -> Result<PreparedBasis, Error> {
-        // Peters et al. 2017, section 2.3, for 16 bits; in floats the filters' sums round, and single precision solves.
+        // Peters et al. 2017, section 2.3, for 16 bits. In floats, the filter's sums and the single-precision solver round.
         let (packing, moment_bias) = match params.storage {
             FourMomentStorage::Unorm16 => (Packing::Unorm16, 6e-5),
             FourMomentStorage::Float32 => (Packing::Float32, 5e-6),

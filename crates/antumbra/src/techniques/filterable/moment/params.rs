@@ -2,21 +2,21 @@ use crate::contract::param_choice;
 use crate::techniques::filterable::filterable_params;
 
 param_choice! {
-    /// Where [`Moment`](super::Moment) lets depths lie.
+    /// Depth distributions that [`Moment`](super::Moment) considers.
     pub enum MomentProblem {
-        /// Anywhere: cheaper, and in use everywhere.
+        /// Distributions over all depths: cheaper, and the common choice.
         Hamburger = "hamburger",
-        /// In the light's range alone: a little less light bleeding.
+        /// Distributions within the light's depth range only: slightly less light bleeding.
         Hausdorff = "hausdorff",
     }
 }
 
 param_choice! {
-    /// How four moments are stored.
+    /// Storage format of four moments.
     pub enum FourMomentStorage {
-        /// 16-bit fixed point, 64 bits a texel.
+        /// 16-bit fixed point, 64 bits per texel.
         Unorm16 = "unorm16",
-        /// 32-bit float, 128 bits a texel.
+        /// 32-bit float, 128 bits per texel.
         Float32 = "float32",
     }
 }

@@ -1,19 +1,19 @@
 //! `vsm`: filtered variance shadow maps.
 //!
-//! William Donnelly, Andrew Lauritzen, "Variance Shadow Maps", I3D 2006; numerics after Andrew Lauritzen, "Summed-Area
-//! Variance Shadow Maps", GPU Gems 3, chapter 8, 2007. Each texel keeps the first two moments of depth, which can be
-//! filtered as colours are; Chebyshev's inequality turns a filtered texel into an upper bound on visibility, which is
-//! exact for one planar occluder over one planar receiver. The kernel costs the map's size, not the picture's.
+//! William Donnelly, Andrew Lauritzen, "Variance Shadow Maps", I3D 2006; numerics after Andrew Lauritzen, "Summed-Area Variance
+//! Shadow Maps", GPU Gems 3, chapter 8, 2007. Each texel stores the first two moments of depth, which can be filtered like
+//! colours. Chebyshev's inequality turns a filtered texel into an upper bound on visibility, which is exact for one planar
+//! occluder over one planar receiver. The cost of the blur depends on the map's size, not on the image's.
 //!
-//! Where we depart: depth is linear along the light's axis; the second moment is taken about the middle of the range,
-//! which keeps two more bits; the least variance comes from the receiver's own plane and from the storage's step, and the
-//! receiver is moved towards the light as everywhere in this library, so that there is no bias to tune.
+//! Differences from the paper: depth is linear along the light's axis. The second moment is taken about the middle of the
+//! range, which keeps two more bits. The least variance comes from the receiver's plane and from the storage step, and the
+//! receiver is moved towards the light as everywhere in this library, so there is no bias to tune.
 //!
 //! # Limits
-//! Light bleeds where occluders overlap: with A to B far apart and B close to C, A's penumbra shows on C through B
-//! (Lauritzen & McCool 2008, eq. 4). `bleeding_reduction` trades it for narrower penumbrae, [`lvsm`](super::lvsm) and
-//! [`evsm`](super::evsm) take it away. The width is in texels, the same for every occluder. 16-bit storage adds noise to
-//! the variance: a range of a few metres at the most.
+//! Light bleeds where occluders overlap: if A and B are far apart and B is close to C, A's penumbra shows on C through B
+//! (Lauritzen & McCool 2008, eq. 4). `bleeding_reduction` reduces it at the price of narrower penumbrae; [`lvsm`](super::lvsm)
+//! and [`evsm`](super::evsm) remove it. The width is in texels, the same for every occluder. 16-bit storage adds noise to the
+//! variance and suits ranges of at most a few metres.
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};

@@ -1,4 +1,4 @@
-//! Colours of levels.
+//! Tests of the colours of levels.
 
 use glam::Vec3;
 
@@ -11,14 +11,14 @@ use crate::gpu::Stage;
 use crate::shadow::{Casters, Frame};
 use crate::testing::{Case, Mesh, RECTANGLE, SIZE, gpu, read_layer, run, test_ground};
 
-/// As `primitives/hues.wesl` has it.
+/// Returns a hue as in `primitives/hues.wesl`.
 fn hue(number: usize) -> Vec3 {
     let hue = (number as f32 * 0.381_966).fract();
     Vec3::new(0.0, 2.0, 1.0).map(|k| 0.25 + 0.75 * (((hue + k / 3.0).fract() * 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0))
 }
 
-/// In the umbra of a half-plane the filter has one size, f = l (1/z − 1/z_r), between two levels' own; the colour is theirs, mixed
-/// by the variance, as dark as an umbra.
+/// In the umbra of a half-plane the filter has one size, f = l (1/z − 1/z_r), between two levels' own. The colour is a mix of
+/// theirs by the variance, as dark as an umbra.
 #[test]
 fn shown_levels_are_those_of_the_filter_s_size() {
     let Some(gpu) = gpu() else { return };
@@ -45,7 +45,7 @@ fn shown_levels_are_those_of_the_filter_s_size() {
             technique.set(key, value).expect("a parameter");
         }
         let mask = Mask::with_channels(gpu.device(), SIZE, MaskChannels::Three);
-        // The first frames may lack room for all levels.
+        // The first frames may lack memory for all levels.
         for _ in 0..6 {
             case.with_frame(Casters::Meshes(&casters), |frame| {
                 run(gpu, &mut technique, &Frame { mask: &mask, ..*frame }).expect("a good frame");
@@ -60,7 +60,7 @@ fn shown_levels_are_those_of_the_filter_s_size() {
             // The bias moves the sheet by two thirds of a texel; neighbouring hues lie .1 apart.
             assert!(shown(i).abs_diff_eq(0.2 * want, 0.01), "{map_size} at {p}: {}, want {}", shown(i), 0.2 * want);
         }
-        // What nothing hides has no level.
+        // Unshadowed receivers have no level.
         for (i, p) in case.ground_pixels(|p| test_ground(p) && p.x > 0.9) {
             assert!(shown(i).abs_diff_eq(Vec3::ONE, 0.01), "{map_size} at {p}: {}", shown(i));
         }

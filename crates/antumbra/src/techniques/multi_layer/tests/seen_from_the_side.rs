@@ -1,5 +1,5 @@
-//! Triangles that the light sees from the side: their planes run through all depths within a texel, and rasterisers
-//! extrapolate. Of every way that fragments come into the lists.
+//! Tests of triangles that the light sees edge-on, by every path that gathers fragments. Their planes pass through all depths
+//! within a texel, and rasterisers extrapolate.
 
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
@@ -17,15 +17,15 @@ fn lamp() -> Light {
     Light::new(LightShape::Rectangle { size_m: Vec2::splat(0.5) }, Vec3::new(0.7, 5.0, 0.4), Vec3::new(0.1, 0.0, -0.1))
 }
 
-/// Sheets that stand to the lamp, on the ground: their planes pass its middle by some hundredths of a texel, to which
-/// rasterisers snap, so that each is a sliver of the map, from near the lamp to near the ground.
+/// Sheets edge-on to the lamp, on the ground. Their planes pass its centre at some hundredths of a texel, to which rasterisers
+/// snap, so that each is a sliver of the map, from near the lamp to near the ground.
 fn fins() -> Vec<TestMesh> {
     let ground = TestMesh::boxed(Vec3::new(-3.0, -0.2, -3.0), Vec3::new(3.0, 0.0, 3.0), 1.0);
     let middle = lamp().center;
     let corners = (0..FINS).flat_map(|i| {
         let angle = std::f32::consts::TAU * i as f32 / FINS as f32;
         let (out, aside) = (Vec3::new(angle.cos(), 0.0, angle.sin()), Vec3::new(-angle.sin(), 0.0, angle.cos()));
-        // At a tangent and a depth below the lamp; the farther end stands aside.
+        // At a tangent and a depth below the lamp; the farther end is offset sideways.
         let at = |tangent: f32, depth: f32| middle + depth * (tangent * out - Vec3::Y);
         let off = 1e-5 * (1 + i % 32) as f32 * aside;
         [at(0.1, 1.0), at(0.4, 1.0), at(0.4, 4.5) + off, at(0.1, 4.5) + off]
@@ -39,10 +39,10 @@ fn fins() -> Vec<TestMesh> {
     vec![ground, fins]
 }
 
-/// So many that some slivers hold the middle of a texel.
+/// Number of fins, large enough that some slivers cover the centre of a texel.
 const FINS: u32 = 2000;
 
-/// A white texel for everything: a mask that hides all.
+/// White texture for every caster: an alpha mask without holes.
 struct White {
     uvs: wgpu::Buffer,
     view: wgpu::TextureView,
@@ -64,7 +64,7 @@ impl White {
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4), rows_per_image: None };
         gpu.queue().write_texture(texture.as_image_copy(), &[255; 4], layout, texture.size());
         Self {
-            // Of every corner, all zero.
+            // Texture coordinates of every corner, all zero.
             uvs: buffer(gpu, 8 * 4 * u64::from(FINS), wgpu::BufferUsages::VERTEX),
             view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
             sampler: gpu.device().create_sampler(&wgpu::SamplerDescriptor::default()),
@@ -81,7 +81,7 @@ fn buffer(gpu: &Gpu, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     })
 }
 
-/// Positions that shaders cannot read.
+/// Returns positions in a buffer that shaders cannot read.
 fn without_storage(gpu: &Gpu, mesh: &TestMesh) -> wgpu::Buffer {
     let bytes: &[u8] = bytemuck::cast_slice(&mesh.positions);
     let positions = buffer(gpu, bytes.len() as u64, wgpu::BufferUsages::VERTEX);
@@ -89,7 +89,7 @@ fn without_storage(gpu: &Gpu, mesh: &TestMesh) -> wgpu::Buffer {
     positions
 }
 
-/// Calls `test` with the fins as each path draws them, its name, and the samples that are asked for.
+/// Calls `test` for each path with the fins as that path draws them, its name, and the number of samples.
 fn for_each_path(
     gpu: &Gpu,
     meshes: &[TestMesh],
@@ -126,7 +126,7 @@ fn fragments_lie_between_the_view_s_planes() {
     let (light, meshes) = (lamp(), fins());
     let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
     let frame = light.frame();
-    // Of the casters' bounds, which the view is fitted to.
+    // Bounds of the casters, to which the view is fitted.
     let corners = on_gpu.iter().flat_map(|mesh| mesh.caster().bounds.corners());
     let (nearest, farthest) = corners
         .map(|corner| (corner - frame.center).dot(frame.axis))
@@ -157,7 +157,7 @@ fn fragments_lie_between_the_view_s_planes() {
             .map(|[z_m, _]| f32::from_bits(*z_m))
             .collect();
         assert!(depths.len() > 1000, "{path}");
-        // The planes stand a thousandth off, and open surfaces are moved by a share of a texel.
+        // The planes are padded by a thousandth, and open surfaces are moved by a fraction of a texel.
         let farthest = 1.002 * farthest * (1.0 + prepared.texel_in_plane);
         let outside = depths.iter().filter(|z_m| !(**z_m > 0.998 * nearest && **z_m < farthest)).count();
         assert_eq!(outside, 0, "{path}: of {} fragments", depths.len());

@@ -1,10 +1,10 @@
-//! The lower level: a tree over each mesh's triangles, in the mesh's own space, kept from frame to frame.
+//! Bottom level: a tree over each mesh's triangles in object space, kept from frame to frame.
 //!
-//! A mesh's triangles are copied, in the tree's order, so that a leaf's lie side by side and meshes of any buffers are read in one pass.
-//! A triangle takes 48 bytes of them (64 where a texture is asked for) and 16 of nodes: less than twice the 36 of its corners.
+//! A mesh's triangles are copied in the tree's order, so that a leaf's are adjacent and one pass reads meshes of any buffers. A triangle
+//! takes 48 bytes (64 with texture coordinates) and 16 of nodes: less than twice the 36 of its corners.
 //!
-//! A mesh that tells its [`version`](MeshCaster::version) is made once, and fitted anew where its vertices changed. One that does not is fitted
-//! in each frame: right whatever has changed, but made for what it was at first.
+//! A mesh with a [`version`](MeshCaster::version) is built once, and refitted where its vertices changed. A mesh without one is refitted in
+//! each frame: correct after any change, but with the hierarchy of its first frame.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -37,14 +37,14 @@ bindings! {
 }
 
 shared_constants! {
-    /// The last place that a leaf can name.
+    /// Largest position that a leaf can encode.
     const FIRST_MASK: u32 = 0x1ff_ffff, as in RAY_TRACE;
 }
 
-/// Bytes of a vector, of which nodes and triangles are made.
+/// Size of a vector, the unit of nodes and triangles, bytes.
 const VECTOR_BYTES: u64 = 16;
 
-/// Where a mesh's tree is, in vectors.
+/// Position of a mesh's tree, in vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct MeshPlace {
     /// Its box, then its nodes.
@@ -53,12 +53,12 @@ pub(super) struct MeshPlace {
     pub(super) triangle_stride: u32,
 }
 
-/// What tells a mesh from others.
+/// Identity of a mesh.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum MeshKey {
-    /// That tells its version; with texture coordinates or without.
+    /// Mesh with a version, with or without texture coordinates.
     Versioned { mesh: u64, has_uvs: bool },
-    /// By where it lies.
+    /// Mesh identified by its buffers.
     Buffers { positions: wgpu::Buffer, indices: wgpu::Buffer, uvs: Option<wgpu::Buffer>, first: u32, count: u32 },
 }
 
@@ -84,9 +84,9 @@ struct KeptMesh {
     triangles: Range<u64>,
     triangle_count: u32,
     triangle_stride: u32,
-    /// What its boxes are of.
+    /// Version of the vertices that the boxes contain.
     vertices: Option<u64>,
-    /// The last frame that asked for it.
+    /// Last frame that used the mesh.
     frame: u64,
 }
 
@@ -100,7 +100,7 @@ impl KeptMesh {
     }
 }
 
-/// Programs of the passes over meshes.
+/// Pipelines of the passes over meshes.
 #[derive(Debug)]
 struct Programs {
     kept_layout: wgpu::BindGroupLayout,
@@ -110,7 +110,7 @@ struct Programs {
     recall: wgpu::ComputePipeline,
 }
 
-/// Meshes' trees.
+/// Trees of meshes.
 #[derive(Debug)]
 pub(super) struct Meshes {
     programs: Programs,
@@ -122,7 +122,7 @@ pub(super) struct Meshes {
     fitted: Option<Work>,
 }
 
-/// A buffer of vectors, and which of them are taken.
+/// Buffer of vectors, and which of them are allocated.
 #[derive(Debug)]
 struct Room {
     label: &'static str,
@@ -130,7 +130,7 @@ struct Room {
     ranges: RangeAllocator<u64>,
 }
 
-/// Trees that are made, or fitted, in a frame.
+/// Trees that are built, or refitted, in a frame.
 #[derive(Debug)]
 struct Work {
     forest: Forest,
@@ -143,7 +143,7 @@ impl Room {
         Self { label, buffer: None, ranges: RangeAllocator::new(0..0) }
     }
 
-    /// Forgets what it holds; has room for so many vectors, which are no more than a binding holds.
+    /// Discards the content and allocates space for `vectors`, at most what a binding can hold.
     fn renew(&mut self, gpu: &Gpu, vectors: u64) {
         self.ranges = RangeAllocator::new(0..vectors);
         self.buffer = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -159,7 +159,7 @@ impl Room {
     }
 }
 
-/// A mesh that a frame asks for, and a caster of it.
+/// Mesh that a frame uses, and one of its casters.
 struct Asked<'a, 'c> {
     key: MeshKey,
     caster: &'a MeshCaster<'c>,
@@ -174,7 +174,7 @@ impl Asked<'_, '_> {
         if self.caster.opacity.texture().is_some() { 4 } else { 3 }
     }
 
-    /// Vectors of nodes and of triangles.
+    /// Returns the number of vectors for nodes and for triangles.
     fn vectors(&self) -> [u64; 2] {
         let count = u64::from(self.triangle_count());
         [count + u64::from(FRAME_VECTORS), count * u64::from(self.triangle_stride())]
@@ -202,7 +202,7 @@ impl Meshes {
         }
     }
 
-    /// Makes ready for the meshes of some casters, which have triangles each: where each caster's is.
+    /// Prepares the meshes of casters with at least one triangle each. Returns the position of each caster's mesh.
     #[expect(clippy::mutable_key_type, reason = "a buffer is hashed by which one it is, and that never changes")]
     pub(super) fn prepare(
         &mut self,
@@ -222,7 +222,7 @@ impl Meshes {
         }
         for mesh in &asked {
             if let Some(kept) = self.kept.get_mut(&mesh.key) {
-                // Of another size it is another mesh, whatever it says.
+                // A different size means a different mesh, whatever its version.
                 let is_it = kept.triangle_count == mesh.triangle_count();
                 kept.frame = if is_it { self.frame } else { 0 };
             }
@@ -251,7 +251,7 @@ impl Meshes {
         Ok(keys.iter().map(|key| self.kept[key].place()).collect())
     }
 
-    /// Takes room for a mesh, in the place of those that the frame does not ask for if need be.
+    /// Allocates space for a mesh, replacing meshes that the frame does not use if necessary. Returns whether there is space.
     fn take(&mut self, mesh: &Asked<'_, '_>) -> bool {
         if let Some(old) = self.kept.remove(&mesh.key) {
             self.give_back(&old);
@@ -287,7 +287,7 @@ impl Meshes {
         self.triangles.ranges.free_range(kept.triangles.clone());
     }
 
-    /// Room for all that a frame asks for, where what there was is too small: just as much at first, and half as much again later.
+    /// Allocates space for all meshes of a frame if it is too small: exactly at first, with half as much again later.
     fn renew(&mut self, stage: &Stage<'_>, technique: &'static str, asked: &[Asked<'_, '_>]) -> Result<(), Error> {
         if let Some(mesh) = asked.iter().find(|mesh| mesh.triangle_count() > FIRST_MASK) {
             return Err(Error::Unsupported {
@@ -366,7 +366,7 @@ impl Meshes {
                 source_range: &stage.uniform("antumbra mesh source", &range),
                 mesh_positions,
                 mesh_indices,
-                // Where there are none nothing reads them.
+                // A placeholder that no shader reads.
                 mesh_uvs: uvs.unwrap_or(mesh_positions),
             };
             sources.push((source.group(stage, &self.programs.source_layout), count));
@@ -375,7 +375,7 @@ impl Meshes {
         Some(Work { forest, kept, sources })
     }
 
-    /// Makes and fits what is to be.
+    /// Records the builds and refits.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, trees: &TreePrograms) {
         let Programs { gather, place, recall, .. } = &self.programs;
         if let Some(work) = &self.made {
@@ -410,13 +410,13 @@ impl Meshes {
         self.triangles.buffer()
     }
 
-    /// Whether a frame that is as the one before finds all trees as they are.
+    /// Whether no tree was built or refitted in the last frame.
     #[cfg(test)]
     pub(super) fn is_idle(&self) -> bool {
         self.made.is_none() && self.fitted.is_none()
     }
 
-    /// Bytes of trees, apart from those of their making.
+    /// Size of the trees without the buffers for building them, bytes.
     pub(super) fn kept_bytes(&self) -> u64 {
         [&self.nodes, &self.triangles].into_iter().filter_map(|room| room.buffer.as_ref()).map(wgpu::Buffer::size).sum()
     }
@@ -438,7 +438,7 @@ impl Work {
     }
 }
 
-/// Positions, indices and, where a texture is asked for, its coordinates.
+/// Returns positions, indices and, for textured casters, texture coordinates.
 fn buffers_of<'a>(mesh: &MeshCaster<'a>) -> (&'a wgpu::Buffer, &'a wgpu::Buffer, Option<&'a wgpu::Buffer>) {
     (mesh.positions, mesh.indices, mesh.opacity.texture().map(|texture| texture.uvs))
 }

@@ -1,4 +1,4 @@
-//! Masks by irradiance against Lambert's formula, and against equation 1 of `sample_based`.
+//! Tests of irradiance masks against Lambert's formula, and against equation 1 of `sample_based`.
 
 use antumbra_light::{EmissionTexture, LightShape};
 use glam::{Vec2, Vec3};
@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use crate::TechniqueKind;
 use crate::testing::{Case, gpu, half_plane_ratio_errors, is_software};
 
-/// In one pass and in many: what earlier passes have found is weighed against what they have not.
+/// The result is the same in one pass and in many, which accumulate weighted means.
 #[test]
 fn the_ratio_is_lambert_s_in_one_pass_and_in_many() {
     let Some(gpu) = gpu() else { return };
@@ -17,7 +17,7 @@ fn the_ratio_is_lambert_s_in_one_pass_and_in_many() {
     }
 }
 
-/// Rays and bits are two ways to one sum over the same points.
+/// Rays and bits compute the same sum over the same points.
 #[test]
 fn every_shape_has_the_ratio_of_its_bits() {
     let Some(gpu) = gpu() else { return };
@@ -50,7 +50,7 @@ fn every_shape_has_the_ratio_of_its_bits() {
         let shape = &case.light.shape;
         println!("{shape:?}: {} apart, from visibility {}", apart(&rays, &bits), apart(&rays, &visible));
         assert!(partly > 100, "{shape:?}: {partly} pixels in penumbra");
-        // On a graphics card a point on an edge may be open to one and hidden to the other.
+        // On a GPU, a point on an edge may be visible to one and hidden to the other.
         let most = if is_software(gpu) { 1e-5 } else { 0.03 };
         assert!(apart(&rays, &bits) < most, "{shape:?}: {}", apart(&rays, &bits));
         assert!(apart(&rays, &visible) > 1e-3, "{shape:?}");

@@ -1,4 +1,4 @@
-//! What trees and rays cost, printed: `cargo test -p antumbra --lib -- --ignored --nocapture ray_traced::tests::measure`.
+//! Prints the cost of trees and rays: `cargo test -p antumbra --lib -- --ignored --nocapture ray_traced::tests::measure`.
 
 use antumbra_light::{Aabb, Light};
 use glam::{Mat4, Quat, UVec2, Vec2, Vec3};
@@ -9,7 +9,7 @@ use crate::gpu::{Gpu, PassTimer, Recorder};
 use crate::shadow::{AnyShadow, Casters, Frame};
 use crate::testing::{Case, RECTANGLE, View, gpu, read_buffer};
 
-/// A ball with bumps, of 2 `rings`² triangles.
+/// Returns a ball with bumps, of 2 `rings`² triangles.
 fn ball(rings: u32, bump: f32) -> (Vec<Vec3>, Vec<u32>) {
     let vertex = |i: u32| {
         let (row, column) = (i / (rings + 1), i % (rings + 1));
@@ -26,7 +26,7 @@ fn ball(rings: u32, bump: f32) -> (Vec<Vec3>, Vec<u32>) {
     (positions, (0..rings * rings).flat_map(quad).collect())
 }
 
-/// A mesh in a set, whose vertices may change.
+/// Mesh in a caster set, whose vertices may change.
 struct InSet {
     positions: wgpu::Buffer,
     indices: wgpu::Buffer,
@@ -73,7 +73,7 @@ impl InSet {
     }
 }
 
-/// Draws a frame of a set, and gives its steps' milliseconds.
+/// Draws a frame of a set, and returns its steps' milliseconds.
 fn times(
     gpu: &Gpu,
     timer: &mut PassTimer,
@@ -201,7 +201,7 @@ fn rays_a_second() {
         let mut rays = TechniqueKind::RayTraced.create(gpu).expect("any device");
         let size: UVec2 = crate::testing::SIZE;
         for turn in 0..3 {
-            // Another seed, so that the frame is not kept.
+            // Another seed, so that the frame is not cached.
             rays.set("seed", &turn.to_string()).expect("a parameter");
             let times = times(gpu, &mut timer, &case, &set, &mut rays);
             let ms = times.iter().find(|(label, _)| *label == "trace").expect("traced").1;

@@ -1,4 +1,4 @@
-//! The upper level: a tree over the instances of a frame, made in each frame that casters may have moved in.
+//! Top level: a tree over the instances of a frame, rebuilt in each frame in which casters may have moved.
 
 use super::gpu_types::{INSTANCE_VECTORS, InstanceRange, InstanceRun, Segment};
 use super::mesh::MeshPlace;
@@ -36,7 +36,7 @@ pub(super) struct Top {
 #[derive(Debug)]
 struct Prepared {
     count: u32,
-    /// None where there are no instances.
+    /// Bind group of the list; `None` if there are no instances.
     listed: Option<wgpu::BindGroup>,
     sources: Vec<(wgpu::BindGroup, u32)>,
 }
@@ -55,7 +55,7 @@ impl Top {
         }
     }
 
-    /// Makes ready for the instances of casters, whose meshes are at places among `mesh_nodes`.
+    /// Prepares the instances of casters, whose meshes are at `places` in `mesh_nodes`.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -97,7 +97,7 @@ impl Top {
         Ok(())
     }
 
-    /// A dispatch for each run of casters whose instances lie in the same buffer.
+    /// Returns a dispatch for each run of casters whose instances are in the same buffer.
     fn sources(&self, stage: &Stage<'_>, casters: &[&MeshCaster<'_>]) -> Vec<(wgpu::BindGroup, u32)> {
         let mut first_item = 0;
         let of_buffer = casters.chunk_by(|a, b| a.instances == b.instances);
@@ -119,7 +119,7 @@ impl Top {
             .collect()
     }
 
-    /// Lists the instances and makes the tree.
+    /// Lists the instances and builds the tree.
     pub(super) fn record(&self, recorder: &mut Recorder<'_>, trees: &TreePrograms) {
         let Some(Prepared { listed: Some(listed), sources, .. }) = &self.prepared else { return };
         self.forest.clear(recorder);

@@ -1,19 +1,19 @@
-//! Trees of boxes over items in a row, made on the device: over triangles of meshes, over instances of a frame.
+//! Bounding volume hierarchies over an array of items, built on the GPU: over triangles of meshes, over instances of a frame.
 //!
-//! Items are sorted by Morton codes of their middles, four bits at a time (`sort.wesl`), and the tree over them is found from the codes, every
-//! node by itself (`links.wesl`: Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012).
+//! Items are sorted by the Morton codes of their centres, four bits at a time (`sort.wesl`), and the tree is derived from the codes, each
+//! node independently (`links.wesl`: Karras, "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012).
 //!
 //! Why not parallel locally-ordered clustering (Meister, Bittner 2018, TVCG; in one kernel: Benthin et al. 2024, HPG)? Its trees are
-//! better. But its rounds are as many as the data asks for, which the processor would have to learn or guess, and the one kernel has
-//! workgroups wait for what others write, which WebGPU does not promise to make progress or to be seen. Here every pass is one dispatch, how many there are
-//! is known before, and the same items make the same tree to the bit.
+//! better. But its number of rounds depends on the data, so the CPU would have to read it back or guess; and in the single kernel
+//! workgroups wait for others' writes, for which WebGPU guarantees neither progress nor visibility. Here every pass is one dispatch, their
+//! number is known in advance, and the same items yield the same tree to the bit.
 //!
-//! Runs of a few items are one leaf, of as many as keep a tree's nodes no more than its items. Nodes are put in the order in which rays come by
-//! them by counting (`words.wesl`), so that no stack makes them and none walks them (`nodes.wesl`).
+//! Runs of a few items form a leaf, as large as is needed to keep a tree's nodes at most its items. Nodes are put in depth-first order by
+//! counting (`words.wesl`), so that neither building nor traversal needs a stack (`nodes.wesl`).
 //!
-//! Boxes come of a pyramid over the items' order (`boxes.wesl`). To go up from the leaves, with the second of two siblings going on, one
-//! workgroup would have to see what another has written in the same dispatch. So where items move and keep their order, the pyramid and the boxes are made
-//! anew and nothing else: that is how bent meshes are fitted.
+//! Boxes come from a pyramid over the items' order (`boxes.wesl`). A pass from the leaves upwards, continued by the second of two siblings,
+//! would need one workgroup to see another's writes of the same dispatch. If items move and keep their order, only the pyramid and the
+//! boxes are recomputed: this is how deformed meshes are refitted.
 
 use crate::gpu::{
     Bindings, Gpu, Recorder, Stage, bindings, compute_pipeline, dispatch_threads, shared_constants, sized_buffer,
@@ -59,23 +59,23 @@ bindings! {
 }
 
 shared_constants! {
-    /// Items that a workgroup sorts.
+    /// Number of items that a workgroup sorts.
     const BLOCK_ITEMS: u32 = 2048, as in TREE_SORT_COUNT;
-    /// Boxes that a level of the pyramid has one for.
+    /// Number of boxes per box of the next level of the pyramid.
     const GROUP: u32 = 8, as in TREE_PYRAMID;
-    /// Values of a digit.
+    /// Number of values of a digit.
     const DIGITS: u32 = 16, as in TREE_SORT_COUNT;
-    /// Sizes that leaves may have.
+    /// Number of leaf sizes.
     const LEAF_SIZES: u32 = 3, as in TREE_TALLY;
 }
 
-/// Digits of a code: an even number, so that the sort ends in the buffer that it began in.
+/// Number of digits of a code: even, so that the sort ends in the buffer that it began in.
 const CODE_DIGITS: u32 = 8;
 
-/// Vectors of a tree before its nodes: its own box.
+/// Number of vectors of a tree before its nodes: its own box.
 pub(super) const FRAME_VECTORS: u32 = 2;
 
-/// Programs of the passes.
+/// Pipelines of the passes.
 #[derive(Debug)]
 pub(super) struct TreePrograms {
     boxes_layout: wgpu::BindGroupLayout,
@@ -113,16 +113,16 @@ impl TreePrograms {
     }
 }
 
-/// What trees are over.
+/// Kind of the trees' items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Level {
-    /// Triangles: leaves of several, nodes of one vector.
+    /// Triangles: leaves of several items, nodes of one vector.
     Triangles,
-    /// Instances: leaves of one, nodes of two vectors.
+    /// Instances: leaves of one item, nodes of two vectors.
     Instances,
 }
 
-/// Trees that are made, or fitted anew, together.
+/// Trees that are built, or refitted, together.
 #[derive(Debug)]
 pub(super) struct Forest {
     scratch: Scratch,
@@ -149,17 +149,17 @@ struct Prepared {
     item_count: u32,
     segment_count: u32,
     block_count: u32,
-    /// Nodes that there may be.
+    /// Largest number of nodes.
     node_room: u32,
     boxes: wgpu::BindGroup,
-    /// Of each level of the pyramid its group and how many boxes it has.
+    /// Bind group and number of boxes of each level of the pyramid.
     levels: Vec<(wgpu::BindGroup, u32)>,
     made: Option<Made>,
     shape: wgpu::Buffer,
     segments: wgpu::Buffer,
 }
 
-/// What only trees that are made need.
+/// Bind groups for building trees.
 #[derive(Debug)]
 struct Made {
     digits: Vec<wgpu::BindGroup>,
@@ -176,7 +176,7 @@ impl Forest {
         }
     }
 
-    /// Allocates for some segments, whose trees go among `nodes`. `makes`: trees are made, not fitted anew.
+    /// Allocates for some segments, whose trees are stored in `nodes`. `makes`: build the trees instead of refitting them.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -269,22 +269,22 @@ impl Forest {
         self.prepared().item_count
     }
 
-    /// [`TreeShape`] and [`Segment`]s.
+    /// Buffers of [`TreeShape`] and [`Segment`]s.
     pub(super) fn shape(&self) -> (&wgpu::Buffer, &wgpu::Buffer) {
         (&self.prepared().shape, &self.prepared().segments)
     }
 
-    /// The items' boxes, two vectors each, by their numbers.
+    /// Boxes of the items, two vectors each, by item number.
     pub(super) fn items(&self) -> &wgpu::Buffer {
         here(&self.scratch.items)
     }
 
-    /// The items' numbers, by their places in the trees.
+    /// Item numbers, by position in the trees.
     pub(super) fn order(&self) -> &wgpu::Buffer {
         here(&self.scratch.orders[0])
     }
 
-    /// Clears what is counted in, before trees are made.
+    /// Clears the counters before trees are built.
     pub(super) fn clear(&self, recorder: &mut Recorder<'_>) {
         recorder.clear_buffer(here(&self.scratch.tallies));
         recorder.clear_buffer(here(&self.scratch.starts));
@@ -294,7 +294,7 @@ impl Forest {
         self.prepared().made.as_ref().expect("prepared to be made")
     }
 
-    /// Sorts items whose boxes are there: their numbers by place, within each segment.
+    /// Sorts items by their boxes within each segment; the result is the order.
     pub(super) fn sort(&self, pass: &mut wgpu::ComputePass<'_>, programs: &TreePrograms) {
         let prepared = self.prepared();
         pass.set_bind_group(0, &prepared.boxes, &[]);
@@ -310,7 +310,7 @@ impl Forest {
         }
     }
 
-    /// Makes trees over items that are sorted, without boxes yet.
+    /// Builds trees over sorted items, without boxes.
     pub(super) fn link(&self, pass: &mut wgpu::ComputePass<'_>, programs: &TreePrograms) {
         let items = self.item_count();
         pass.set_bind_group(0, &self.made().links, &[]);
@@ -333,7 +333,7 @@ impl Forest {
 }
 
 impl Prepared {
-    /// The pyramid, and each tree's own box.
+    /// Records the pyramid and each tree's own box.
     fn make_frames(&self, pass: &mut wgpu::ComputePass<'_>, programs: &TreePrograms) {
         for (group, count) in &self.levels {
             pass.set_bind_group(0, group, &[]);
@@ -351,7 +351,7 @@ impl Scratch {
             sized_buffer(stage, slot, label, 4 * u64::from(count), usage);
         };
         let items = shape.item_count;
-        // Two vectors a box.
+        // Two vectors per box.
         words(&mut self.items, "antumbra tree items", 8 * items);
         words(&mut self.pyramid, "antumbra tree pyramid", 8 * pyramid_boxes);
         words(&mut self.orders[0], "antumbra tree order", items);
@@ -374,7 +374,7 @@ impl Scratch {
     }
 }
 
-/// Boxes of each level of the pyramid, up to the one of all.
+/// Returns the number of boxes of each level of the pyramid, up to the single one.
 fn level_counts(item_count: u32) -> Vec<u32> {
     let mut counts = vec![item_count.div_ceil(GROUP)];
     while let Some(count) = counts.last().copied().filter(|count| *count > 1) {
@@ -392,7 +392,7 @@ fn over(pass: &mut wgpu::ComputePass<'_>, program: &wgpu::ComputePipeline, threa
     dispatch_threads(pass, threads);
 }
 
-/// A workgroup for each block, in two dimensions where they are more than WebGPU has in one.
+/// Dispatches a workgroup per block, in two dimensions if WebGPU's limit requires it.
 fn over_blocks(pass: &mut wgpu::ComputePass<'_>, program: &wgpu::ComputePipeline, blocks: u32) {
     pass.set_pipeline(program);
     let across = blocks.min(65_535);

@@ -1,22 +1,22 @@
-//! `alias_free`: hard shadows that equal the ray tracer's, without a resolution and without a bias.
+//! `alias_free`: hard shadows that equal the ray tracer's, independent of a resolution and without a bias.
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
-//! EGSR 2008, section 3; after Aila and Laine 2004 and Johnson et al. 2005. The receivers themselves are stored in the
-//! light map, in a list a texel, and every triangle near a list is tested against each receiver in it: the triangle's
-//! supporting plane, and the three planes through the light and an edge. `techniques/receiver_lists` holds the passes: by
-//! default triangles are rasterised conservatively over the lists (section 3.2), which for one light point is faster than
-//! to let groups of receivers look for them; where lists are crowded, as of a sun over a town, groups do. The device
-//! chooses in each frame, and the shadow is the same.
+//! EGSR 2008, section 3; after Aila and Laine 2004 and Johnson et al. 2005. The light map stores the receivers
+//! themselves, in a list per texel, and every triangle near a list is tested against each receiver in it: against the
+//! triangle's supporting plane, and the three planes through the light and an edge. `techniques/receiver_lists` contains
+//! the passes. By default triangles are rasterised conservatively over the lists (section 3.2), which for one light point
+//! is faster than groups of receivers that search for them. If lists are crowded, as for a sun over a town, groups are
+//! used. The device chooses in each frame, and the shadow is the same.
 //!
-//! A closed mesh casts by the triangles that a segment from the receiver *enters*, which no receiver can lie on, and so
-//! needs no bias. Open meshes cast from both sides; there the segment starts a hair off the surface, on the side that the
-//! camera sees: 2⁻¹⁸ of the receiver's distances to the origin and to the camera, 40 µm at 5 m from both, which is what the
-//! rounding of the depth buffer and of single precision can move a receiver.
+//! A closed mesh casts by the triangles that a segment from the receiver *enters*, on which no receiver can lie, and so
+//! needs no bias. Open meshes cast from both sides; there the segment starts at a ray offset, on the side that the camera
+//! sees: 2⁻¹⁸ of the receiver's distances to the origin and to the camera, 40 µm at 5 m from both, which covers the
+//! rounding of the depth buffer and of single precision.
 //!
 //! # Limits
-//! The light is a point, whatever its size: no penumbra. A position is only as good as the depth buffer: a receiver
+//! The light is a point, whatever its size: no penumbra. A position is only as precise as the depth buffer: a receiver
 //! within that rounding of a shadow's edge can fall on either side. Time grows with the triangles between receivers and
-//! light, not with a map's size. A mesh that says it is closed and is not leaks where it is open.
+//! light, not with a map's size. A mesh that claims to be closed and is not leaks where it is open.
 
 use glam::Vec3;
 
@@ -31,7 +31,7 @@ mod params;
 
 pub use params::{AliasFreeParams, RegionHull, TestedPlanes};
 
-/// Exact hard shadows.
+/// Technique for exact hard shadows.
 #[derive(Debug)]
 pub struct AliasFree {
     passes: ViewSamples,

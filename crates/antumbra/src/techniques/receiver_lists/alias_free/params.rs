@@ -2,21 +2,21 @@ use crate::contract::{param_choice, params};
 use crate::techniques::receiver_lists::Traversal;
 
 param_choice! {
-    /// What of the light's map a triangle is drawn over.
+    /// Region of the light's map over which a triangle is drawn.
     pub enum RegionHull {
         /// The convex hull of three boxes, twelve corners.
         Boxes = "boxes",
-        /// Two corners for each of the triangle's: the paper's.
+        /// Two corners for each of the triangle's, as published.
         SixVertices = "six_vertices",
     }
 }
 
 param_choice! {
-    /// Which planes a receiver is tested against.
+    /// Planes that a receiver is tested against.
     pub enum TestedPlanes {
-        /// Those of the triangle and the receiver, made for each receiver.
+        /// Planes of the triangle and the receiver, computed per receiver.
         Receiver = "receiver",
-        /// Those of the triangle and the light, made once a triangle: the paper's.
+        /// Planes of the triangle and the light, computed once per triangle, as published.
         Triangle = "triangle",
     }
 }

@@ -2,38 +2,37 @@
 //!
 //! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, "Sample Based Visibility for Soft Shadows using Alias-free Shadow Maps",
 //! EGSR 2008, section 4. Each receiver has a bit for each light point. A triangle hides the points behind all of its
-//! planes as seen from the receiver, an AND over planes; what triangles hide together is the OR. Visibility is the
-//! weight of the bits left. `techniques/receiver_lists` holds the passes, and says where they depart from the paper.
+//! planes as seen from the receiver, an AND over planes; several triangles combine by OR. Visibility is the weight of
+//! the remaining bits. `techniques/receiver_lists` contains the passes, and describes the departures from the paper.
 //!
-//! Every shape of light is taken as it is, volumes, textured rectangles and lists of points too: a plane through the
-//! receiver is an affine function of a light point's coordinates in the light's frame. Points are sorted into words of
-//! 32 that lie close together, so that a plane settles most words at once.
+//! Every shape of light is supported exactly, including volumes, textured rectangles and lists of points: a plane
+//! through the receiver is an affine function of a light point's coordinates in the light's frame. Points are sorted
+//! into words of 32 that are close together, so that a plane decides most words at once.
 //!
-//! Translucent casters that only cover hide as many of the light points as they stop light: each triangle has a number for
-//! each point, stratified over points that lie close together (`primitives/stochastic`). What several surfaces let through so
-//! multiplies along each segment, which the share of section 6 does not. Casters that tint dim what is seen of the light by
-//! the share of it that they cover (section 6), each mesh by its front faces and by its back faces.
+//! Translucent casters without tint hide light points in proportion to the light that they stop: each triangle has a random
+//! number for each point, stratified over points that are close together (`primitives/stochastic`). Transmittances of several
+//! surfaces thus multiply along each segment, which the fraction of section 6 does not achieve. Tinted casters dim the
+//! visible light by the fraction of it that they cover (section 6), each mesh by its front faces and by its back faces.
 //!
-//! All receivers share one set of light points, so few of them show as overlapping hard shadows: bands. `rotate` trades
-//! bands for noise where the light's shape allows: every pixel turns the points about the light's axis by another angle
-//! (section 4.2). `accumulate` takes other points in each frame (by the table, of a light that is the same at any angle,
-//! the same points at other angles, which evens out angles alone), and gives the mean of the frames since something last
-//! moved (figure 7); `mask/accumulation` says what counts as moving. The first frame after a change is as without it.
+//! All receivers share one set of light points, so few of them show as overlapping hard shadows: bands. `rotate` replaces
+//! bands by noise if the light's shape allows it: every pixel rotates the points about the light's axis by another angle
+//! (section 4.2). `accumulate` takes other points in each frame (with the table and a light that is the same at any angle,
+//! the same points at other angles, which averages over angles alone), and returns the mean of the frames since the last
+//! change (figure 7); `mask/accumulation` defines changes. The first frame after a change is the same as without it.
 //!
-//! **Lighting and visibility** are apart, as in the paper: a light point counts by its luminance, and the host shades.
+//! **Lighting and visibility** are separate, as in the paper: a light point counts by its luminance, and the host shades.
 //! `weights=irradiance` is equation 1 instead: each point gives a receiver its emission, in colour, times both cosines over the
-//! squared distance, and the mask is what arrives of the irradiance without casters, channel by channel. The host multiplies an
-//! area light's own irradiance by it. Where the light is small beside its distance both are the same.
+//! squared distance, and the mask is the fraction of the irradiance without casters that arrives, by channel. The host
+//! multiplies an area light's own irradiance by it. If the light is small relative to its distance both are the same.
 //!
-//! `sub` lists every other pixel in both directions, interpolates within surfaces, and lists what it would get wrong in a
-//! second round (section 4.3, which proposes "a view-sample subset" and "a reconstruction step").
+//! `sub` lists every other pixel in both directions, interpolates within surfaces, and lists the pixels that this would
+//! get wrong in a second round (section 4.3, which proposes "a view-sample subset" and "a reconstruction step").
 //!
 //! # Limits
-//! While things move, few points show as bands or noise; `accumulate` helps only when all is still. Several
-//! layers of casters that cover in part have noise, less the more points there are. Tinted casters that
-//! overlap are multiplied as if they covered the light independently. Time grows with the triangles between receiver
-//! and light: foliage close to a large light is the worst case. A mesh that says it is closed and is not leaks where it
-//! is open.
+//! During motion, few points show as bands or noise; `accumulate` helps only in still frames. Several layers of partly
+//! covering casters have noise, which decreases with the number of points. Overlapping tinted casters multiply as if
+//! they covered the light independently. Time grows with the triangles between receiver and light: foliage close to a
+//! large light is the worst case. A mesh that claims to be closed and is not leaks where it is open.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -57,7 +56,7 @@ pub use crate::contract::SampleWeights;
 pub use crate::techniques::receiver_lists::Traversal;
 pub use params::{RegionOfInfluence, SampleBasedParams, SampleEvaluation};
 
-/// Exact soft shadows.
+/// Technique for exact soft shadows.
 #[derive(Debug)]
 pub struct SampleBased {
     passes: ViewSamples,
@@ -66,32 +65,32 @@ pub struct SampleBased {
     keeps_bits: bool,
     counts_tests: bool,
     unit_points: UnitPoints,
-    /// Made when it is first asked for.
+    /// Created when a frame first needs it.
     accumulation: Option<Accumulation>,
 }
 
-/// The passes of one frame.
+/// Passes of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedSampleBased {
     samples: PreparedSamples,
-    /// Where frames are accumulated.
+    /// Accumulation; `None` if it is off.
     accumulation: Option<PreparedAccumulation>,
 }
 
-/// The points of the unit cube that the light's points are made from, and what they were made for.
+/// Cached points of the unit cube from which the light's points are computed, with their key.
 #[derive(Debug, Default)]
 struct UnitPoints(Cached<(SampleSet, u32, u32, u32), Vec<Vec3>>);
 
 impl UnitPoints {
-    /// The points of a set's run; see [`SampleSet::run`]. Relaxed ones take a tenth of a second to make.
+    /// Returns the points of a set's run; see [`SampleSet::run`]. Relaxed ones take a tenth of a second to compute.
     fn of(&mut self, set: SampleSet, run: u32, samples: u32, seed: u32) -> &[Vec3] {
         self.0.get_or_make((set, run, samples, seed), || set.run(run, samples, seed))
     }
 }
 
-/// Part of a turn from one frame to the next, where pixels are turned: the golden ratio's, so that any number of frames
-/// divide the circle evenly.
+/// Rotation from one frame to the next as a fraction of a turn, if pixels are rotated: the golden ratio, so that any
+/// number of frames divide the circle evenly.
 const TURN_OF_FRAME: f64 = 0.618_033_988_749_894_8;
 
 impl Technique for SampleBased {
@@ -131,8 +130,8 @@ impl Technique for SampleBased {
             self.accumulation = None;
         }
         let rotations = if params.rotate { rotations_of(frame.light) } else { 0 };
-        // Where any turn will do, another turn is as good as other points, and a table of planes stays as it is. Else
-        // every pixel keeps its turn: runs of points that were turned apart would no longer complete each other.
+        // If any rotation will do, another one is as good as other points, and the table of planes stays valid.
+        // Otherwise every pixel keeps its rotation, because rotated runs of points would not complement each other.
         let keeps_points = params.evaluation == SampleEvaluation::Lookup && rotations == 1;
         let (run_of_points, run_of_turns) = if keeps_points { (0, run) } else { (run, 0) };
         let unit_points = self.unit_points.of(params.sample_set, run_of_points, params.samples, params.seed);
@@ -196,38 +195,37 @@ impl Technique for SampleBased {
 }
 
 impl SampleBased {
-    /// The bits of the last frame where [`keep_bits`](SampleBasedParams::keep_bits) is set: for each pixel, row after
-    /// row, `⌈points / 32⌉` words of `u32`, 1 where the light point is seen; usage `COPY_SRC`. Pixels without geometry,
-    /// out of the light's reach or turned away from all of it hold anything, and those that
-    /// [`sub`](SampleBasedParams::sub) interpolates. [`Self::bit_order`] says which bit is
-    /// which point.
+    /// Bits of the last frame if [`keep_bits`](SampleBasedParams::keep_bits) is set: for each pixel, row after row,
+    /// `⌈points / 32⌉` words of `u32`, 1 where the light point is visible; usage `COPY_SRC`. Bits are undefined for
+    /// pixels without geometry, out of the light's reach or facing away from all of it, and for those that
+    /// [`sub`](SampleBasedParams::sub) interpolates. [`Self::bit_order`] maps bits to points.
     pub fn bits(&self) -> Option<&wgpu::Buffer> {
         self.passes.bits().filter(|_| self.keeps_bits)
     }
 
-    /// What the last frame tested, where [`count_tests`](SampleBasedParams::count_tests) is set: eight words of `u32`, of
-    /// which the last six count modulo 2³² the boxes of triangles and the triangles held against groups of receivers
-    /// (drawn ones against texels), the triangles held against receivers, those of them that come near the light, words of
-    /// light points held against these, and light points; usage `COPY_SRC`.
+    /// Counters of the last frame if [`count_tests`](SampleBasedParams::count_tests) is set: eight words of `u32`, of
+    /// which the last six count modulo 2³² the boxes of triangles and the triangles tested against groups of receivers
+    /// (drawn ones against texels), the triangles tested against receivers, those of them that come near the light, words
+    /// of light points tested against these, and light points; usage `COPY_SRC`.
     pub fn test_counts(&self) -> Option<&wgpu::Buffer> {
         self.passes.counters().filter(|_| self.counts_tests)
     }
 
-    /// For each bit of a pixel, from the first word's lowest on, the index of its light point in the sample set, or in
-    /// the light's own list.
+    /// Index of each bit's light point, in the sample set or in the light's own list; bits start at the lowest of the
+    /// first word.
     pub fn bit_order(&self) -> &[u32] {
         &self.bit_order
     }
 }
 
-/// A hash of parameters, by their written form: no two that differ are written alike.
+/// Returns a hash of parameters, by their `Debug` form: different parameters have different forms.
 fn hash_of(params: &SampleBasedParams) -> u64 {
     let mut hasher = DefaultHasher::new();
     format!("{params:?}").hash(&mut hasher);
     hasher.finish()
 }
 
-/// How many turns about its axis leave a light as it is; 1 for any angle, 0 for none but whole ones.
+/// Returns the number of rotations about its axis that leave a light unchanged; 1 for any angle, 0 for none but whole turns.
 fn rotations_of(light: &Light) -> u32 {
     if light.emission.is_some() {
         return 0;

@@ -4,21 +4,21 @@ use crate::contract::{SampleWeights, param_choice, params};
 use crate::techniques::receiver_lists::Traversal;
 
 param_choice! {
-    /// How [`SampleBased`](super::SampleBased) finds the light points behind a plane.
+    /// Method by which [`SampleBased`](super::SampleBased) finds the light points behind a plane.
     pub enum SampleEvaluation {
-        /// Each is tested.
+        /// Each light point is tested.
         Exact = "exact",
-        /// A table of planes holds the bits of 128 points at a time.
+        /// A table of planes contains the bits of 128 points at a time.
         Lookup = "lookup",
     }
 }
 
 param_choice! {
-    /// What of the light's map a triangle is drawn over.
+    /// Region of the light's map over which a triangle is drawn.
     pub enum RegionOfInfluence {
         /// The convex hull of three boxes, twelve corners.
         Boxes = "boxes",
-        /// The convex hull of three hexagons about the ellipses that the light throws through the corners: the paper's.
+        /// The convex hull of three hexagons about the ellipses that the light projects through the corners, as published.
         Hexagons = "hexagons",
     }
 }
@@ -58,7 +58,7 @@ params! {
         /// Tests a single light sample where no silhouette lies between the receivers and the light.
         penumbra_only: bool = false,
             more "Saves tests in wide umbrae and costs a silhouette test everywhere; changes nothing else.";
-        /// Leave out triangles whose plane has receivers and light on one side; drawn ones over that side of their plane.
+        /// Skips triangles whose plane has receivers and light on one side; drawn ones are clipped by their plane.
         cut_by_plane: bool = true,
             more "Saves time near large triangles, changes nothing else.";
         /// Skips triangles of closed meshes that face all of the light.

@@ -1,4 +1,4 @@
-//! Accumulation: what it converges to, and what ends it.
+//! Tests of accumulation: its limit, and the changes that restart it.
 
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Mat4, Vec3};
@@ -25,7 +25,7 @@ fn sample_based(gpu: &Gpu, settings: &[(&str, &str)]) -> AnyShadow {
     technique
 }
 
-/// The half-plane's case, with its casters said to be anywhere, so that only what is in their buffers tells where.
+/// Half-plane case whose casters have huge bounds, so that only their buffers' content shows where they are.
 struct Still {
     case: Case,
 }
@@ -39,7 +39,7 @@ impl Still {
         self.changed(gpu, technique, &self.case.light, Mat4::IDENTITY)
     }
 
-    /// A frame under another light, of a camera turned about.
+    /// Returns a frame with another light and a rotated camera.
     fn changed(&self, gpu: &Gpu, technique: &mut AnyShadow, light: &Light, turn: Mat4) -> Vec<f32> {
         let bounds = Aabb { min: Vec3::splat(-20.0), max: Vec3::splat(20.0) };
         let caster = |mesh| MeshCaster { bounds, ..Mesh::caster(mesh) };
@@ -52,7 +52,7 @@ impl Still {
     }
 }
 
-/// Whether a mask is of one frame: sixteenths alone.
+/// Whether a mask is of one frame: multiples of 1/16 alone.
 fn is_of_one_frame(mask: &[f32]) -> bool {
     mask.iter().all(|v| (v * SAMPLES as f32).fract() == 0.0)
 }
@@ -78,7 +78,7 @@ fn frames_of_a_still_scene_come_closer_to_the_truth() {
     }
 }
 
-/// The mean of n frames less that of the frames before tells what the last one was: sixteenths alone, as any frame by itself.
+/// The change of the mean of n frames yields the last frame: multiples of 1/16, like any single frame.
 #[test]
 fn each_frame_counts_as_much_as_the_others() {
     let Some(gpu) = gpu() else { return };
@@ -130,7 +130,7 @@ fn whatever_moves_begins_anew() {
     assert!(is_of_one_frame(&still.frame(gpu, &mut technique)), "a setting changed");
 }
 
-/// A set of casters tells by its version what moves: nobody reads its buffers for it.
+/// The version of a caster set shows what moves, without reading its buffers.
 #[test]
 fn a_set_tells_what_moves() {
     let Some(gpu) = gpu() else { return };

@@ -1,13 +1,13 @@
 //! `cssm`: convolution soft shadow maps.
 //!
 //! Thomas Annen, Zhao Dong, Tom Mertens, Philippe Bekaert, Hans-Peter Seidel, Jan Kautz, "Real-Time, All-Frequency Shadows
-//! in Dynamic Scenes", SIGGRAPH 2008. The shadow test is a Fourier series of four terms in depth, whose factors part;
-//! summed-area tables of the sines and cosines filter it, and those of their products with depth give the mean blocker
-//! depth (eq. 10). Both sides of the step are bounded, so no part needs the map.
+//! in Dynamic Scenes", SIGGRAPH 2008. The shadow test is a separable Fourier series of four terms in depth. Summed-area tables
+//! of the sines and cosines filter it, and those of their products with depth give the mean blocker depth (eq. 10). Both sides
+//! of the step are bounded, so no piece needs the map.
 //!
 //! # Limits
-//! Four terms take an eighth of the range of depth to rise: contact shadows are lost, and what is nearer than that to its
-//! receiver casts none. Five tables of four channels: at 4096² more than a gigabyte.
+//! Four terms take an eighth of the depth range to rise: contact shadows are lost, and geometry nearer than that to its
+//! receiver casts none. Five tables of four channels take more than a gigabyte at 4096².
 
 use crate::techniques::summed::{SoftTechnique, table_params};
 

@@ -1,87 +1,85 @@
 use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
-    /// How the exponentials are summed.
+    /// Storage of the exponentials' sums.
     pub enum EssmTable {
-        /// Integer tables on a grid of tiles, each with a plane of its own and as many bits as its size leaves.
+        /// Integer tables on a grid of tiles, each with a plane of its own and as many bits as its size allows.
         Tiles = "tiles",
-        /// The paper's: integer tables of `precision_bits` on one range of depth, on a grid that keeps sums below 2³².
+        /// Integer tables of `precision_bits` over one depth range, on a grid that keeps sums below 2³²: the paper's.
         TileGrid = "tile_grid",
-        /// One table of 32-bit floats on one range of depth.
+        /// One table of 32-bit floats over one depth range.
         Float = "float",
     }
 }
 
 param_choice! {
-    /// How sums travel while tables are made.
+    /// Algorithm that computes the tables.
     pub enum EssmScan {
-        /// Work in proportion to the texels.
+        /// Block scan: work is proportional to the number of texels.
         Blocks = "blocks",
-        /// Recursive doubling, the paper's: passes in proportion to the tile's logarithm.
+        /// Recursive doubling, the paper's: the number of passes is proportional to the tile's logarithm.
         Doubling = "doubling",
     }
 }
 
 param_choice! {
-    /// The shape that is filtered over.
+    /// Shape of the filter kernel.
     pub enum EssmKernel {
-        /// The light's: a parallelogram for a rectangle, an ellipse for everything else; with the pixel's footprint.
+        /// The light's shape with the pixel's footprint: a parallelogram for a rectangle, an ellipse for all others.
         Light = "light",
-        /// An ellipse with the pixel's footprint, whatever the light: the paper's.
+        /// An ellipse with the pixel's footprint for every light: the paper's.
         Ellipse = "ellipse",
-        /// The light's, without the footprint.
+        /// The light's shape without the footprint.
         Isotropic = "isotropic",
     }
 }
 
 param_choice! {
-    /// The window of the light map.
+    /// Window of the light map.
     pub enum EssmWindow {
-        /// A square around what casts and receives; warped to what the camera sees where that makes the texels that fall
-        /// there half as wide.
+        /// Square around casters and receivers, warped towards the camera's view if that makes the texels there half as wide.
         Seen = "seen",
-        /// The square, always.
+        /// Square around casters and receivers, always.
         Square = "square",
     }
 }
 
 param_choice! {
-    /// Where [`Essm`](super::Essm) looks for blockers.
+    /// Blocker search of [`Essm`](super::Essm).
     pub enum EssmSearch {
-        /// In windows of several scales, and counts what hides a point of the light.
+        /// Windows of several scales; counts blockers that hide a point of the light.
         Scales = "scales",
-        /// In one window, as wide as the light is seen at the nearest blocker's depth, and counts all that is in it: the
-        /// paper's.
+        /// One window, as wide as the light appears at the nearest blocker's depth; counts all that is in it: the paper's.
         Window = "window",
     }
 }
 
 param_choice! {
-    /// How [`Essm`](super::Essm) cuts a kernel's rows.
+    /// Cuts of a kernel's rows by [`Essm`](super::Essm).
     pub enum EssmCuts {
-        /// Into `subdivisions` columns each; their ends stay whole.
+        /// `subdivisions` columns per row; the ends of rows stay whole.
         Columns = "columns",
-        /// Into `subdivisions` × `subdivisions` parts each, their ends too: the paper's.
+        /// `subdivisions` × `subdivisions` parts per row, and for its ends too: the paper's.
         Squares = "squares",
     }
 }
 
 param_choice! {
-    /// Where the range of depth of `tile_grid` and `float` comes from.
+    /// Source of the depth range of `tile_grid` and `float`.
     pub enum EssmRange {
-        /// The least and greatest depth in the map.
+        /// Smallest and largest depth in the map.
         Map = "map",
-        /// The casters' box.
+        /// Bounding box of the casters.
         Box = "box",
     }
 }
 
 param_choice! {
-    /// What [`Essm`](super::Essm) takes the mean of over blockers.
+    /// Quantity that [`Essm`](super::Essm) averages over blockers.
     pub enum EssmBlockerMean {
-        /// The width of the penumbra that each asks for.
+        /// Penumbra width that each blocker implies.
         Width = "width",
-        /// Their depth: the paper's.
+        /// Depth of each blocker: the paper's.
         Depth = "depth",
     }
 }
@@ -90,63 +88,63 @@ params! {
     /// Parameters of [`Essm`](super::Essm).
     pub struct EssmParams {
         shared map_size, more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
-        /// The light map's window, unless the host renders it.
+        /// Window of the light map, unless the host renders it.
         window: EssmWindow = EssmWindow::Seen,
             more "seen spends texels where the camera looks, be that near or far; square keeps them still when it moves.";
-        /// Parts along each side of a kernel.
+        /// Number of parts along each side of a kernel.
         subdivisions: u32 = 5, in 1..=16,
             more "Fewer wrong answers where a part holds near and far occluders; time grows with the square.";
-        /// Scales at which blockers are searched.
+        /// Number of scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
-        /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster, and look at each blocker at its
-        /// own depth where that hides another part of the light than the mean.
+        /// Search blockers once more if their mean lies much nearer to the receiver than the nearest caster, and evaluate
+        /// blockers at their own depth if that hides another part of the light than the mean.
         second_look: bool = true,
             more "Truer penumbrae under occluders of many depths; there search and kernel take up to twice the time.";
-        /// Where blockers are searched; `search_scales` and `second_look` are for scales alone.
+        /// Blocker search; `search_scales` and `second_look` apply only to scales.
         search: EssmSearch = EssmSearch::Scales,
             more "window is the paper's; behind lattices what it holds that hides no part of the light widens penumbrae.";
-        /// What the mean of blockers is of. Under a sun both are one.
+        /// Quantity that is averaged over blockers. Under a sun both are the same.
         blocker_mean: EssmBlockerMean = EssmBlockerMean::Width,
             more "depth is the paper's: penumbrae are narrower where blockers of several depths meet under a near light.";
         /// Whether the light's part below the receiver's own plane counts as hidden.
         horizon: bool = true,
             more "false is the paper's: receivers that the light grazes are as bright as those that face it.";
         shared edge_goes_on;
-        /// How a kernel's rows are cut.
+        /// Cuts of a kernel's rows.
         cuts: EssmCuts = EssmCuts::Columns,
             more "squares is the paper's: as many times more parts as there are rows in a kernel's height for each part.";
-        /// How the exponentials are summed.
+        /// Storage of the exponentials' sums.
         table: EssmTable = EssmTable::Tiles,
             more "tiles holds at any depth; tile_grid is the paper's and darkens lit ground in deep scenes; float is noisy.";
-        /// How sums travel while tables are made.
+        /// Algorithm that computes the tables.
         scan: EssmScan = EssmScan::Blocks,
             more "doubling is the paper's, kept to be measured against: slower, and twice the memory and more.";
-        /// Exponents: for tiles a texel's width, for the others the range of depth. 0 is automatic: 0.1 and 80.
+        /// Exponent: per texel width for tiles, over the depth range for the others. 0 is automatic: 0.1 and 80.
         exponent: f32 = 0.0, in 0.0..=88.0,
             more "Darker contacts; above what the bits hold, more parts are read from the map, or turn dark.";
-        /// Bits that tile_grid keeps for each value.
+        /// Number of bits of each value of tile_grid.
         precision_bits: u32 = 20, in 8..=24, unit "bits",
             more "Finer values; smaller tiles, and more of them under each kernel.";
-        /// Where the range of depth of tile_grid and float comes from.
+        /// Source of the depth range of tile_grid and float.
         range: EssmRange = EssmRange::Map,
             more "map is narrower, and needs a pyramid of the map, which the search needs in any case.";
-        /// How far above 1 the exponential visibility of a part may be before it counts as non-planar.
+        /// Excess over 1 of a part's exponential visibility from which it counts as non-planar.
         epsilon: f32 = 0.05, in 0.0..=10.0,
             more "Fewer parts are read from the map; what lies beyond the receiver hides more of what blocks.";
-        /// Parts up to this width are read from the map, where that takes fewer reads than the table.
+        /// Largest width of parts that are read from the map, if that takes fewer reads than the table.
         direct_texels: f32 = 3.0, in 0.0..=64.0, unit "texels",
             more "Truer contacts; 2 × 2 comparisons miss what is finer than a quarter of this.";
-        /// The shape that is filtered over.
+        /// Shape of the filter kernel.
         kernel: EssmKernel = EssmKernel::Light,
             more "ellipse is the paper's; isotropic leaves fine shadows far away to alias.";
         /// Whether the pixel's footprint ends where a neighbouring pixel shows another surface.
         footprint_ends: bool = true,
             more "false is the paper's: at edges of the picture's surfaces shadows are a little softer.";
-        /// Height of an ellipse's rows as the paper has it, of `cuts = squares` alone: columns have as many rows for every ellipse.
+        /// Height of an ellipse's rows, for `cuts = squares` only: with columns, ellipses of any size have as many rows.
         row_height: f32 = 5.0, in 1.0..=64.0, unit "texels", scale Log,
             more "Fewer lookups, coarser outline.";
-        /// How often the ends of an ellipse's rows are refined: the paper's Level0, Level1, Level2.
+        /// Number of refinements of the ends of an ellipse's rows: the paper's Level0, Level1, Level2.
         level: u32 = 0, in 0..=3,
             more "A smoother outline; lookups at each row's ends double.";
         shared sub;
@@ -180,5 +178,5 @@ params! {
     }
 }
 
-/// The exponent that 20 bits hold over the whole range, μ ln 2.
+/// Largest exponent that 20 bits hold over the whole range, μ ln 2.
 const CONSISTENT_EXPONENT: f32 = 20.0 * std::f32::consts::LN_2;

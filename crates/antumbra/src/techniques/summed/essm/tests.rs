@@ -1,4 +1,4 @@
-//! Sums at any depth, and the paper's that do not hold.
+//! Tests of sums at any depth, and of the paper's sums, which fail in deep scenes.
 
 use std::time::Instant;
 
@@ -18,18 +18,18 @@ fn deep(gpu: &Gpu, depth_m: f32) -> Case {
     let occluder = Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.0, 4.0), 1.5);
     let mut meshes = vec![ground, occluder];
     if depth_m > 0.0 {
-        // Seen past the ground's edge, at tangents from 1.5 to 2.
+        // Visible past the ground's edge, at tangents from 1.5 to 2.
         let far = 4.0 + depth_m;
         meshes.push(Mesh::horizontal(gpu, Vec2::new(1.4 * far, -far), Vec2::new(2.0 * far, far), -depth_m));
     }
     Case::new(gpu, light, view, meshes)
 }
 
-/// The largest error where all or nothing of the light is seen.
+/// Returns the largest error where all or nothing of the light is visible.
 fn worst(gpu: &Gpu, depth_m: f32, settings: &[(&str, &str)]) -> f32 {
     let case = deep(gpu, depth_m);
     let mask = case.run(gpu, TechniqueKind::Essm, settings);
-    // The penumbra is 0.3 m wide to each side, and a texel of a 512² map of such a width is 3 cm.
+    // The penumbra extends 0.3 m to each side, and a texel of a 512² map of such a width is 3 cm.
     let sure = case.ground_pixels(|p| test_ground(p) && p.x.abs() > 0.4);
     assert!(sure.iter().any(|(_, p)| p.x < 0.0) && sure.iter().any(|(_, p)| p.x > 0.0));
     sure.iter().map(|(i, p)| (mask[*i] - if p.x > 0.0 { 1.0 } else { 0.0 }).abs()).fold(0.0, f32::max)
@@ -59,18 +59,18 @@ fn the_paper_s_sums_fail_in_deep_scenes() {
     }
 }
 
-/// Of a tile of nothing but occluders, too, and of as many bits as it may have.
+/// Tests sums of tiles of nothing but occluders, with the maximum number of bits.
 #[test]
 fn whole_tiles_of_every_precision_sum_without_wrapping() {
     let Some(gpu) = gpu() else { return };
     for (bits, exponent) in [("20", "13.8"), ("24", "16.6")] {
         for scan in ["blocks", "doubling"] {
-            // One part, so that tiles' borders are what cuts it.
+            // One part, so that only tile borders cut it.
             let printed = [("table", "tile_grid"), ("direct_texels", "0"), ("subdivisions", "1"), ("map_size", "512")];
             let own = [("precision_bits", bits), ("exponent", exponent), ("scan", scan)];
             let error = worst(gpu, 0.0, &[printed.as_slice(), &own].concat());
             println!("{bits} bits, {scan}: largest error {error:.4}");
-            // One part for a kernel is coarse; a tile that wraps lets all of the light in.
+            // One part for a kernel is coarse; a tile that wraps would let in all of the light.
             assert!(error <= 0.07, "{bits} bits, {scan}: {error}");
         }
     }
@@ -86,8 +86,8 @@ fn doubling_makes_the_same_tables() {
     }
 }
 
-/// A list of points is filtered as an ellipse of their covariance: one point is a hard shadow, and as many as cover a
-/// square have nearly its penumbra.
+/// A list of points is filtered as an ellipse of their covariance: one point gives a hard shadow, and points that cover a
+/// square give nearly its penumbra.
 #[test]
 fn lists_of_points_have_the_shadow_of_what_they_cover() {
     let Some(gpu) = gpu() else { return };
@@ -105,7 +105,7 @@ fn lists_of_points_have_the_shadow_of_what_they_cover() {
     assert!(many < 0.03, "256 points: {many}");
 }
 
-/// The window is kept while nothing moves, and no longer.
+/// The map's window is reused only while nothing moves.
 #[test]
 fn a_kept_window_follows_what_moves() {
     let Some(gpu) = gpu() else { return };
@@ -124,7 +124,7 @@ fn a_kept_window_follows_what_moves() {
         masks.push(mask);
     }
     assert!(masks[0] == masks[1] && masks[0] != masks[2]);
-    // What it costs to prepare and record a frame, on the CPU.
+    // CPU time of preparing and recording a frame.
     let mut ms_of = |step: f32| {
         const FRAMES: u32 = 20;
         let begin = Instant::now();
@@ -141,8 +141,8 @@ fn a_kept_window_follows_what_moves() {
     println!("prepare: {:.3} ms while all stands still, {:.3} ms while the light moves", ms_of(0.0), ms_of(1e-3));
 }
 
-/// A panel whose lower half stands below the ground's plane: with the horizon the ground sees the upper half of it, and all of
-/// it as published.
+/// A panel whose lower half is below the ground's plane: with the horizon the ground sees its upper half, and as published all
+/// of it.
 #[test]
 fn the_horizon_is_a_switch() {
     let Some(gpu) = gpu() else { return };
@@ -159,6 +159,6 @@ fn the_horizon_is_a_switch() {
     };
     let (with, without) = (mean("true"), mean("false"));
     println!("lit {with} with the horizon, {without} without");
-    // The light is 1 m high about 0.3 m, tilted by a tenth: .8 of it is above.
+    // The light is 1 m high, centred at 0.3 m and tilted by a tenth: .8 of it is above the ground.
     assert!((0.75..0.85).contains(&with) && without > 0.97, "{with}, {without}");
 }

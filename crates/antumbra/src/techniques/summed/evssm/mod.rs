@@ -1,13 +1,13 @@
 //! `evssm`: soft shadows from exponential variance shadow maps.
 //!
 //! Andrew Lauritzen, Michael McCool, "Layered Variance Shadow Maps", Graphics Interface 2008, section 7, for the basis: two
-//! moments of depth warped by e^{cu} and by −e^{−cu}. Search, kernel and mean blocker depth are those of
-//! [`vssm`](super::vssm), in each warp; the lesser of the two bounds counts, so no part needs the map.
+//! moments each of depth warped by e^{cu} and by −e^{−cu}. Search, kernel and mean blocker depth are those of
+//! [`vssm`](super::vssm), in each warp. The smaller of the two bounds counts, so no part needs the map.
 //!
 //! # Limits
-//! The square of the warp spans e^{4c}, which integers of some 20 bits hold for c up to about 5: light bleeds more than
-//! with the exponents of float maps. With `table = float` larger ones can be had, and noise with them. `table = mips` sums
-//! nothing and bears any exponent that floats hold, but a part takes in what lies beside it.
+//! The square of the warp spans e^{4c}, which integers of some 20 bits hold for c up to about 5, so light bleeds more than with
+//! the exponents of float maps. `table = float` allows larger ones, with noise. `table = mips` needs no sums and allows any
+//! exponent that floats hold, but a part then includes its surroundings.
 
 use crate::techniques::summed::summed_area_table::Sums;
 use crate::techniques::summed::{Basis, Filter, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings};

@@ -1,13 +1,13 @@
-//! `savsm`: summed-area variance shadow maps with penumbrae that harden towards contacts.
+//! `savsm`: summed-area variance shadow maps with contact hardening.
 //!
 //! Andrew Lauritzen, "Summed-Area Variance Shadow Maps", GPU Gems 3, chapter 8, 2007. A summed-area table of depth and its
-//! square gives mean and variance over any rectangle in constant time; Chebyshev's inequality bounds the lit share from
+//! square gives mean and variance over any rectangle in constant time; Chebyshev's inequality bounds the lit fraction from
 //! above. The penumbra's width comes from a brute-force blocker search as in `pcss`.
 //!
 //! # Limits
-//! One mean and one variance stand for a whole kernel: where occluders of different depths overlap, light bleeds through
-//! (`overlap`), and where the kernel's mean lies beyond the receiver the bound says lit. [`vssm`](super::vssm) cuts the
-//! kernel to mend the latter. The search is not constant in time, and its taps are a grid.
+//! One mean and one variance represent a whole kernel. Where occluders of different depths overlap, light bleeds through
+//! (`overlap`), and where the kernel's mean lies beyond the receiver, the bound says lit; [`vssm`](super::vssm) cuts the kernel
+//! to fix the latter. The search is not constant in time, and its taps are a regular grid.
 
 use crate::techniques::summed::{Basis, SoftDesign, SoftParams, SoftSettings, SoftTechnique, shared_settings};
 

@@ -5,19 +5,19 @@ params! {
     /// Parameters of [`Savsm`](super::Savsm).
     pub struct SavsmParams {
         shared map_size, more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
-        /// Taps of the blocker search.
+        /// Number of taps of the blocker search.
         search_samples: u32 = 64, in 1..=4096, scale Log,
             more "Fewer thin occluders missed; time grows in proportion.";
-        /// Scales at which blockers are searched.
+        /// Number of scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
             more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
-        /// Search blockers once more where their mean lies much nearer the receiver than the nearest caster.
+        /// Search blockers once more if their mean lies much nearer to the receiver than the nearest caster.
         second_look: bool = true,
             more "Truer penumbrae under occluders of many depths; there the search takes twice the time.";
-        /// What the summed-area table is made of.
+        /// Number format of the summed-area table.
         table: TableSums = TableSums::Integer,
             more "integer keeps as many bits as the largest part leaves; float loses what sums over the whole map take.";
-        /// Visibility up to this is taken for none, and the rest is stretched.
+        /// Visibility up to this value becomes 0; the rest is rescaled to [0, 1].
         bleeding_reduction: f32 = 0.0, in 0.0..=0.9,
             more "Less light bleeding, and thinner penumbrae.";
         shared edge_goes_on;

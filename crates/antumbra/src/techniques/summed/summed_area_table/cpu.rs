@@ -1,10 +1,10 @@
-//! CPU reference: the definition, row by row.
+//! CPU reference of summed-area tables: the definition, row by row.
 
 use std::ops::Add;
 
 use glam::UVec2;
 
-/// Sums over all texels of the same tile that are neither right of nor below each texel.
+/// Returns for each texel the sum over the texels of its tile that are neither to its right nor below it.
 pub(crate) fn build<T: Copy + Default + Add<Output = T>>(values: &[T], size: UVec2, tile: u32) -> Vec<T> {
     let mut table = values.to_vec();
     let at = |x: u32, y: u32| (y * size.x + x) as usize;
@@ -18,7 +18,7 @@ pub(crate) fn build<T: Copy + Default + Add<Output = T>>(values: &[T], size: UVe
     table
 }
 
-/// The largest power-of-two tile, from 16 to 256 texels, of which every sum is below 2³².
+/// Returns the largest power-of-two tile, 16 to 256 texels, in which every sum is below 2³².
 pub(crate) fn chosen_tile(values: &[[u32; 4]], size: UVec2) -> u32 {
     let mut tile = 16;
     while tile < size.max_element().next_power_of_two().min(super::MAX_TILE) {

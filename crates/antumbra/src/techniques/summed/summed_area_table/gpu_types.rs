@@ -3,14 +3,14 @@ use glam::UVec2;
 use crate::gpu::gpu_structs;
 
 gpu_structs! {
-    /// The shape of a table made by `table.wesl`.
+    /// Shape of a table made by `table.wesl`.
     pub(crate) struct TableUniform {
         size: UVec2,
         tile: u32,
         padding: u32,
     }
 
-    /// One step of `doubling.wesl`.
+    /// Parameters of one step of `doubling.wesl`.
     pub(crate) struct DoublingUniform {
         size: UVec2,
         stride: UVec2,

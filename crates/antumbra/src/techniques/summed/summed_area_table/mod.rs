@@ -1,14 +1,14 @@
 //! Summed-area tables of four channels: one for a whole texture, or a grid of tiles with a table each.
 //!
-//! A texel of the table holds the sum of all texels of its tile that are neither to the right of it nor below it, so
-//! that the sum over any rectangle inside a tile comes from four of them (Crow 1984). Sizes need be no powers of two.
+//! A texel of the table holds the sum of all texels of its tile that are neither to the right of it nor below it, so the sum
+//! over any rectangle inside a tile takes four of them (Crow 1984). Sizes need not be powers of two.
 //!
-//! Integer sums wrap, and differences of wrapped sums are exact as long as the rectangle's own sum is below 2³²; float
-//! sums lose what their 24 bits cannot hold. Within a tile chosen by [`Tiling::Chosen`] nothing wraps at all.
+//! Integer sums wrap, and differences of wrapped sums are exact if the rectangle's own sum is below 2³². Float sums lose the
+//! bits beyond 24. Within a tile chosen by [`Tiling::Chosen`] nothing wraps.
 //!
-//! [`Scan::Blocks`] reads the source once and writes the table once where there are tiles, of 256 texels at the most; for
-//! one table it reads the source twice. The source is a texture, or is encoded where it is read ([`Source::Encoded`]), so
-//! that no texture need hold it. [`Scan::Doubling`] is how it was done in 2013, kept to be measured against.
+//! [`Scan::Blocks`] reads the source once and writes the table once for tiles of at most 256 texels; for one table it reads the
+//! source twice. The source is a texture, or a shader encodes it on reading ([`Source::Encoded`]), so that no texture needs to
+//! store it. [`Scan::Doubling`] is the method of 2013, kept for comparison.
 
 use std::sync::Arc;
 
@@ -29,23 +29,23 @@ mod tests;
 use gpu_types::{DoublingUniform, TableUniform};
 
 shared_constants! {
-    /// Texels along a side of a block, which a workgroup sums.
+    /// Side of a block, texels; a workgroup sums one block.
     pub(crate) const BLOCK: u32 = 16, as in SUMMED_AREA_TABLE_INTEGER;
 
-    /// The largest tile, which a workgroup still sums in one pass.
+    /// Largest side of a tile, texels, that a workgroup still sums in one pass.
     pub(crate) const MAX_TILE: u32 = 256, as in SUMMED_AREA_TABLE_INTEGER;
 
-    /// Texels along a side of what a workgroup of the pass over tiles sums, where tiles are not larger.
+    /// Side of the area that a workgroup of the pass over tiles sums if tiles are not larger, texels.
     const PANEL: u32 = 64, as in SUMMED_AREA_TABLE_INTEGER;
 
-    /// Sums that a step of recursive doubling gathers.
+    /// Number of sums that a step of recursive doubling adds up.
     const DOUBLING_READS: u32 = 8, as in SUMMED_AREA_DOUBLING_INTEGER;
 }
 
 /// Threads of a workgroup that carries sums from block to block.
 const CARRY_THREADS: u32 = 64;
 
-/// What is summed.
+/// Number format of sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sums {
     /// `Rgba32Float`.
@@ -55,7 +55,7 @@ pub(crate) enum Sums {
 }
 
 impl Sums {
-    /// The format of source and table.
+    /// Returns the format of source and table.
     pub(crate) fn format(self) -> wgpu::TextureFormat {
         match self {
             Self::Float => wgpu::TextureFormat::Rgba32Float,
@@ -63,7 +63,7 @@ impl Sums {
         }
     }
 
-    /// The type of a binding that is declared for integers.
+    /// Converts the type of a binding that is declared for integers to this number format.
     pub(crate) fn adapt(self, ty: &mut wgpu::BindingType) {
         if self == Self::Integer {
             return;
@@ -80,28 +80,28 @@ impl Sums {
     }
 }
 
-/// How a table is cut.
+/// Division of a table into tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tiling {
-    /// One tile for all.
+    /// One tile for the whole table.
     Whole,
-    /// Tiles of a power of two texels, from 16 to [`MAX_TILE`].
+    /// Tiles with a power-of-two side, from 16 to [`MAX_TILE`] texels.
     Tiles,
-    /// The largest power of two, from 16 to [`MAX_TILE`], of which every sum stays below 2³²; found on the GPU from integer
-    /// values (Shen et al. 2013, section 6.1). With values below 2²⁴ a tile of 16 always does.
+    /// Tiles with the largest power-of-two side, from 16 to [`MAX_TILE`], in which every sum stays below 2³²; found on the GPU
+    /// from integer values (Shen et al. 2013, section 6.1). With values below 2²⁴ a tile of 16 always fits.
     Chosen,
 }
 
-/// How sums travel.
+/// Algorithm that sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Scan {
-    /// Work in proportion to the texels.
+    /// Block scan: work is proportional to the number of texels.
     Blocks,
-    /// Passes in proportion to the tile's logarithm.
+    /// Recursive doubling: the number of passes is proportional to the tile's logarithm.
     Doubling,
 }
 
-/// What makes a table.
+/// Key of a table's pipelines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TableDesign {
     pub(crate) sums: Sums,
@@ -109,16 +109,16 @@ pub(crate) struct TableDesign {
     pub(crate) tiling: Tiling,
 }
 
-/// Where values come from.
+/// Source of the values.
 pub(crate) enum Source<'a> {
     /// A texture of [`Sums::format`], given to `prepare`.
     Texture,
-    /// A shader that encodes them: bind groups 0 to 2 are its own. Not for doubling.
+    /// Shader that encodes the values, with bind groups 0 to 2 of its own. Not for doubling.
     Encoded { wgsl: &'static str, constants: &'a [(&'a str, f64)], layouts: [&'a wgpu::BindGroupLayout; 3] },
 }
 
 bindings! {
-    /// What every pass has; of integers, see [`Sums::adapt`].
+    /// Bindings of every pass, declared for integers; see [`Sums::adapt`].
     struct TableBindings = "summed-area table", COMPUTE {
         1 table: WrittenTexture(wgpu::TextureFormat::Rgba32Uint),
         2 shape: Uniform,
@@ -128,19 +128,19 @@ bindings! {
         6 largest: ReadWrite,
     }
 
-    /// Where a texture is summed.
+    /// Bindings of passes that sum a texture.
     struct TextureTable = "summed-area table of a texture",
         COMPUTE, group 0 of [SUMMED_AREA_TABLE_INTEGER, SUMMED_AREA_DOUBLING_INTEGER], with made: TableBindings
     {
         0 source: Texture(texels::UINT),
     }
 
-    /// Where a chosen tile says whether the last steps of doubling are taken.
+    /// Dispatch arguments of the last steps of doubling, for a chosen tile.
     struct LateSteps = "late steps of doubling", COMPUTE, group 1 of [SUMMED_AREA_DOUBLING_INTEGER] {
         0 late_dispatch: ReadWrite,
     }
 
-    /// Where values are encoded as they are read.
+    /// Bindings of passes that encode values when they read them.
     struct EncodedTable = "summed-area table of encoded values",
         COMPUTE, group 3 of [SOFT_TABLE], with made: TableBindings
     {
@@ -148,7 +148,7 @@ bindings! {
     }
 }
 
-/// Makes tables.
+/// Summed-area table and the passes that compute it.
 #[derive(Debug)]
 pub(crate) struct SummedAreaTable {
     design: TableDesign,
@@ -156,12 +156,12 @@ pub(crate) struct SummedAreaTable {
     layout: wgpu::BindGroupLayout,
     pipelines: Pipelines,
     uniform: wgpu::Buffer,
-    /// Which table it is of those that a pass reads together.
+    /// Index of the table among those that one pass reads together.
     part: u8,
     made: Option<Made>,
 }
 
-/// The passes in order.
+/// Pipelines in the order of the passes.
 #[derive(Debug)]
 enum Pipelines {
     Whole { sum_blocks: wgpu::ComputePipeline, carry: [wgpu::ComputePipeline; 2], finish: wgpu::ComputePipeline },
@@ -169,7 +169,7 @@ enum Pipelines {
     Doubling { choose: Option<ChooseSteps>, step: wgpu::ComputePipeline },
 }
 
-/// What chooses a tile, and then the steps of doubling that it takes.
+/// Pipelines that choose a tile, and then the steps of doubling that it needs.
 #[derive(Debug)]
 struct ChooseSteps {
     choose: [wgpu::ComputePipeline; 2],
@@ -177,43 +177,43 @@ struct ChooseSteps {
     late: wgpu::ComputePipeline,
 }
 
-/// What is made for one size.
+/// Objects for one size of table.
 #[derive(Debug)]
 struct Made {
     size: UVec2,
     side: u32,
     memory: Memory,
     view: wgpu::TextureView,
-    /// Of all but the steps of doubling.
+    /// Bind group of all passes but the steps of doubling.
     bind_group: wgpu::BindGroup,
     steps: Vec<wgpu::BindGroup>,
     late: Option<Late>,
 }
 
-/// What is allocated for one size; all lights share it.
+/// Allocations for one size of table, shared by all lights.
 #[derive(Debug)]
 struct Memory {
     texture: Arc<wgpu::Texture>,
-    /// `above`, `before`, `corner` of blocks.
+    /// Borders of blocks: `above`, `before`, `corner`.
     borders: [Arc<wgpu::Buffer>; 3],
-    /// The largest sums of tiles of 2^i blocks.
+    /// Largest sums of tiles of 2^i blocks.
     largest: Arc<wgpu::Buffer>,
-    /// The other of the two textures between which doubling goes to and fro.
+    /// Second of the two textures between which doubling alternates.
     other: Option<Arc<wgpu::Texture>>,
-    /// Workgroups of the steps of doubling that not every tile takes: none where they are not taken.
+    /// Workgroups of the late steps of doubling, which not every tile needs; 0 where they are skipped.
     late_dispatch: Option<Arc<wgpu::Buffer>>,
 }
 
-/// The steps at the end of `steps` that the GPU takes only where the tile that it has chosen is so large.
+/// Steps at the end of `steps` that the GPU runs only if the tile that it has chosen is large enough.
 #[derive(Debug)]
 struct Late {
-    /// The first of them.
+    /// Index of the first late step.
     first: usize,
     group: wgpu::BindGroup,
 }
 
 impl SummedAreaTable {
-    /// Table of a design. `part` is its number among those that a pass reads together.
+    /// Creates the passes of a design. `part` is the table's index among those that one pass reads together.
     pub(crate) fn new(gpu: &Gpu, design: TableDesign, part: u8, source: &Source<'_>) -> Self {
         let sums = design.sums;
         let is_encoded = matches!(source, Source::Encoded { .. });
@@ -255,8 +255,8 @@ impl SummedAreaTable {
         Self { design, is_encoded, layout, pipelines, uniform, part, made: None }
     }
 
-    /// Allocates the table of a source of `size` texels and binds `binding` to it: the source's texture, or where values
-    /// are encoded the texture that their tiles' planes go to. `side` is that of [`Tiling::Tiles`]; another one takes the same
+    /// Allocates the table of a source of `size` texels and binds `binding` to it: the source's texture or, for encoded values,
+    /// the texture that receives the tiles' planes. `side` is that of [`Tiling::Tiles`]; a different side takes the same
     /// memory.
     pub(crate) fn prepare(&mut self, stage: &Stage<'_>, binding: &wgpu::TextureView, size: UVec2, side: u32) {
         let side = match self.design.tiling {
@@ -285,14 +285,14 @@ impl SummedAreaTable {
             let Doubling { strides, late_count } = Doubling::of(size, side);
             let last = strides.len() - 1;
             late = (late_count > 0).then_some(strides.len() - late_count);
-            // Those of the largest tile are kept, though smaller ones take fewer.
+            // Requests the steps of the largest tile too, so that they stay cached when a smaller one takes fewer.
             let is_tiled = self.design.tiling == Tiling::Tiles;
             let most = if is_tiled { Doubling::of(size, MAX_TILE).strides.len() } else { strides.len() };
             for i in 0..most.max(strides.len()) {
                 let stride = strides[i.min(last)];
                 let step = DoublingUniform { size, stride, tile: side, ..DoublingUniform::default() };
                 let uniform = stage.uniform("antumbra doubling", &step);
-                // To and fro, so that the last step writes the table.
+                // Alternates so that the last step writes the table.
                 let is_to_table = (last % 2) == (i % 2);
                 let (from, to) = if is_to_table { (&other, &view) } else { (&view, &other) };
                 steps.push(bind(if i == 0 { binding } else { from }, to, &uniform));
@@ -351,7 +351,7 @@ impl SummedAreaTable {
         }
     }
 
-    /// Reads the source, writes the table, in one pass of this label. `bind` binds groups 0 to 2 where values are encoded.
+    /// Records one pass that reads the source and writes the table. `bind` binds groups 0 to 2 if values are encoded.
     pub(crate) fn record(
         &self,
         recorder: &mut Recorder<'_>,
@@ -416,38 +416,38 @@ impl SummedAreaTable {
         });
     }
 
-    /// The table; after [`Self::prepare`].
+    /// Returns the table; `None` before [`Self::prepare`].
     pub(crate) fn view(&self) -> Option<&wgpu::TextureView> {
         self.made.as_ref().map(|made| &made.view)
     }
 
-    /// The largest sum of tiles of 2^i blocks, as bits of floats; see the shader's `tile_side`.
+    /// Returns the largest sums of tiles of 2^i blocks, as bits of floats; see the shader's `tile_side`.
     pub(crate) fn largest(&self) -> Option<&wgpu::Buffer> {
         self.made.as_ref().map(|made| &*made.memory.largest)
     }
 }
 
-/// The steps of doubling.
+/// Steps of recursive doubling.
 #[derive(Debug, PartialEq)]
 struct Doubling {
-    /// From one sum to the next that a step gathers.
+    /// Distances between the sums that a step adds up.
     strides: Vec<UVec2>,
-    /// How many of the last ones are taken only where the tile is larger than their stride.
+    /// Number of last steps that run only if the tile is larger than their stride.
     late_count: usize,
 }
 
 impl Doubling {
-    /// Of a table of tiles of `side`, or where that is 0 of the tile that will be chosen: 2 ⌈log₈ side⌉ steps, as many passes
-    /// as Shen et al. 2013 have (section 6.1, table 2).
+    /// Returns the steps for a table of tiles of `side`, or if that is 0 for the tile that will be chosen: 2 ⌈log₈ side⌉ steps,
+    /// as many passes as Shen et al. 2013 have (section 6.1, table 2).
     ///
-    /// One step at the least, so that a single texel is copied. Steps along x and along y may be taken in any order; what a
-    /// chosen tile may do without comes last, a pair of it, after which the sums lie in the same texture as before it.
+    /// There is at least one step, so that a single texel is copied. Steps along x and along y commute. Steps that a chosen
+    /// tile may skip come last, in pairs, so that the sums stay in the same texture.
     fn of(size: UVec2, side: u32) -> Self {
         let strides_below = |length: u32| {
             std::iter::successors(Some(1), |stride: &u32| Some(stride * DOUBLING_READS))
                 .take_while(move |stride| *stride < length)
         };
-        // Every tile that may be chosen takes the strides below the smallest.
+        // Every tile that may be chosen needs the strides below the smallest.
         let least = if side == 0 { BLOCK } else { side };
         let mut strides: Vec<UVec2> = strides_below(size.x.min(least)).map(|x| UVec2::new(x, 0)).collect();
         strides.extend(strides_below(size.y.min(least)).map(|y| UVec2::new(0, y)));
@@ -461,5 +461,5 @@ impl Doubling {
     }
 }
 
-// The late steps are dispatched together: no tile that may be chosen takes some of them without the others.
+// One dispatch count serves all late steps: every tile that may be chosen runs either all or none of them.
 const _: () = assert!(MAX_TILE <= DOUBLING_READS * DOUBLING_READS * DOUBLING_READS && BLOCK > DOUBLING_READS);

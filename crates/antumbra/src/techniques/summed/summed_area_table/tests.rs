@@ -1,4 +1,4 @@
-//! The CPU reference against the definition, then the GPU against the CPU reference.
+//! Tests of the CPU reference against the definition, and of the GPU against the CPU reference.
 
 use antumbra_light::{hash_u32, unit_f32};
 use glam::UVec2;
@@ -7,7 +7,7 @@ use super::{DOUBLING_READS, Doubling, Scan, Source, SummedAreaTable, Sums, Table
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::testing::{gpu, read_storage, read_texture};
 
-/// Sizes that straddle blocks and workgroups; the largest ones once, since a software adapter takes its time.
+/// Sizes around blocks and workgroups; the largest are tested once, because software adapters are slow.
 const SIZES: [u32; 12] = [1, 2, 3, 15, 16, 17, 63, 64, 65, 255, 256, 1000];
 
 fn random(i: u32, channel: u32) -> u32 {
@@ -34,7 +34,7 @@ fn texture(gpu: &Gpu, size: UVec2, format: wgpu::TextureFormat, texels: &[u8]) -
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// The table of a source, as the GPU makes it.
+/// Returns the table of a source, computed by the GPU.
 fn table(gpu: &Gpu, made: &mut SummedAreaTable, source: &[u8], size: UVec2, side: u32) -> Vec<u8> {
     made.prepare(&Stage::at_once(gpu), &texture(gpu, size, made.design.sums.format(), source), size, side);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -61,7 +61,7 @@ fn twin_matches_the_definition() {
 
 #[test]
 fn twin_chooses_the_largest_tile_that_holds() {
-    // 2^20 a texel: 64² texels make 2^32 exactly, which is one too many.
+    // 2^20 per texel: 64² texels sum to exactly 2^32, one too many.
     let size = UVec2::splat(128);
     let mut values = vec![[1 << 20, 0, 0, 0]; 128 * 128];
     assert_eq!(cpu::chosen_tile(&values, size), 32);
@@ -72,7 +72,7 @@ fn twin_chooses_the_largest_tile_that_holds() {
     assert_eq!(cpu::chosen_tile(&vec![[1; 4]; 128 * 128], size), 128);
 }
 
-/// Wrapping sums: `Add` of plain integers panics where it overflows in debug.
+/// Sums that wrap: `Add` of plain integers panics on overflow in debug builds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 struct Wrapping4([u32; 4]);
@@ -166,7 +166,7 @@ fn the_gpu_chooses_the_twin_s_tile() {
             [(40, 20), (512, 24), (512, 22), (512, 20), (500, 18), (512, 15), (512, 13), (300, 8), (1024, 14)]
         {
             let size = UVec2::splat(size);
-            // Mean ½, so that a tile may be larger than the worst case needs; one corner is heavier than the rest.
+            // The mean is ½, so a tile may be larger than the worst case allows; one corner is heavier than the rest.
             let mut values = integers(size, bits);
             values[..16].fill([(1 << bits) - 1; 4]);
             let side = cpu::chosen_tile(&values, size);
@@ -190,7 +190,7 @@ fn the_gpu_chooses_the_twin_s_tile() {
     assert_eq!(counts.into_iter().collect::<Vec<_>>(), [4, 6]);
 }
 
-/// The steps of doubling that the GPU has taken.
+/// Returns the number of doubling steps that the GPU has run.
 fn passes_done(gpu: &Gpu, table: &SummedAreaTable) -> u32 {
     let made = table.made.as_ref().expect("prepared");
     let (Some(late), Some(dispatch)) = (&made.late, &made.memory.late_dispatch) else { return made.steps.len() as u32 };

@@ -1,14 +1,13 @@
 //! `vssm`: variance soft shadow mapping.
 //!
 //! Baoguang Yang, Zhao Dong, Jieqing Feng, Hans-Peter Seidel, Jan Kautz, "Variance Soft Shadow Mapping", Computer Graphics
-//! Forum 29(7), 2010. The mean blocker depth, too, comes from mean and variance: with V the lit share by Chebyshev's
-//! inequality and what is lit taken to lie at the receiver's own depth, mean = V t + (1 − V) z (eq. 5). Kernels are cut
-//! into n × n parts; a part whose mean lies beyond the receiver, where the inequality says nothing, is filtered by 2 × 2
-//! comparisons (section 4.2).
+//! Forum 29(7), 2010. Mean and variance also give the mean blocker depth: with V the lit fraction by Chebyshev's inequality,
+//! and lit texels assumed at the receiver's own depth, mean = V t + (1 − V) z (eq. 5). Kernels are cut into n × n parts. A part
+//! whose mean lies beyond the receiver, where the inequality says nothing, is filtered by 2 × 2 comparisons (section 4.2).
 //!
 //! # Limits
-//! Light bleeds where occluders of different depths overlap within one part (`overlap`). Tilted receivers have a variance
-//! of their own, which softens what falls on them. One mean depth stands for all blockers, as in `pcss`.
+//! Light bleeds where occluders of different depths overlap within one part (`overlap`). Tilted receivers have a variance of
+//! their own, which softens shadows on them. One mean depth represents all blockers, as in `pcss`.
 
 use crate::techniques::summed::{SoftTechnique, table_params};
 

@@ -1,4 +1,4 @@
-//! Equation 1 against Lambert's formula, and against the bits in double precision.
+//! Tests of equation 1 against Lambert's formula, and against the bits in double precision.
 
 use antumbra_light::{EmissionTexture, Light, LightShape, SampleSet};
 use glam::{DVec3, Vec2, Vec3};
@@ -9,7 +9,7 @@ use crate::gpu::{Gpu, Recorder};
 use crate::shadow::{Casters, Frame, Shadow};
 use crate::testing::{Case, Mesh, SIZE, gpu, lambert_irradiance, read_layer, read_storage};
 
-/// A case's mask in three channels, with the bits behind it and their points' order.
+/// Returns a case's mask in three channels, its bits and their points' order.
 fn masks(gpu: &Gpu, case: &Case, params: SampleBasedParams) -> ([Vec<f32>; 3], Vec<u32>, Vec<u32>) {
     let mask = Mask::with_channels(gpu.device(), SIZE, MaskChannels::Three);
     let mut shadow = Shadow::<SampleBased>::with_params(gpu, params).expect("a device with WebGPU's limits");
@@ -30,8 +30,8 @@ fn params() -> SampleBasedParams {
     SampleBasedParams { samples: 1024, sample_set, weights, ..SampleBasedParams::default() }
 }
 
-/// Under the half-plane's edge what a light as wide as it is high shows is a rectangle, and of each of its two colours another.
-/// Beside visibility the parts differ by tenths: what the edge leaves is the light's near side, or its far one.
+/// Under the half-plane's edge, the visible part of a square light is a rectangle, and a different one for each of its two
+/// colours. The fractions differ from visibility by tenths: the edge leaves the light's near side, or its far one.
 #[test]
 fn half_planes_leave_lambert_s_part_of_each_color() {
     let Some(gpu) = gpu() else { return };
@@ -46,7 +46,7 @@ fn half_planes_leave_lambert_s_part_of_each_color() {
     let (mut sum, mut sum_apart, mut largest) = (0.0f64, 0.0f64, 0.0f64);
     for (i, p) in &pixels {
         let first_seen = f64::from(-p.x) * (1.0 - 0.375) / 0.375;
-        // The part of a half of the light, from x0 to x1.
+        // Irradiance of a half of the light, from x0 to x1.
         let of = |[x0, x1]: [f64; 2], from: f64| lambert_irradiance(p.as_dvec3(), 4.0, [x0.max(from), x1], [-2.0, 2.0]);
         let [left, right] = [[-2.0, 0.0], [0.0, 2.0]];
         let parts = [left, right].map(|half| of(half, first_seen) / of(half, -2.0));
@@ -56,7 +56,7 @@ fn half_planes_leave_lambert_s_part_of_each_color() {
             (sum, largest) = (sum + error * error, largest.max(error));
         }
         sum_apart += (f64::from(visible[*i]) - parts[1]).powi(2);
-        // Nothing shines green, which has the part of the luminance: between the two.
+        // Green has no emission and takes the fraction of the luminance, which is between the two.
         let (low, high) = (red[*i].min(blue[*i]), red[*i].max(blue[*i]));
         assert!(green[*i] >= low - 1e-5 && green[*i] <= high + 1e-5, "{p}: {} of {low} to {high}", green[*i]);
     }
@@ -66,7 +66,7 @@ fn half_planes_leave_lambert_s_part_of_each_color() {
     assert!(ours < 0.004 && largest < 0.03 && apart > 0.05);
 }
 
-/// The mask is the sum of equation 1 over the bits, of every shape of light.
+/// The mask is the sum of equation 1 over the bits, for every shape of light.
 #[test]
 fn every_shape_has_the_sum_over_its_bits() {
     let Some(gpu) = gpu() else { return };
@@ -106,7 +106,7 @@ fn every_shape_has_the_sum_over_its_bits() {
     }
 }
 
-/// What a light point gives the ground at `p` by equation 1, but for constants.
+/// Returns the irradiance that a light point gives the ground at `p` by equation 1, up to constants.
 fn given(light: &Light, unit_points: &[Vec3], index: u32, p: Vec3) -> DVec3 {
     let frame = light.frame();
     let (to, leaving) = if let LightShape::Points { positions_m } = &light.shape {

@@ -1,4 +1,4 @@
-//! A subset of the view-samples with reconstruction, against all of them.
+//! Tests of a subset of the view-samples with reconstruction, against all of them.
 
 use glam::UVec2;
 
@@ -7,7 +7,7 @@ use crate::gpu::{Gpu, Recorder};
 use crate::shadow::{Casters, Shadow};
 use crate::testing::{Case, Mesh, RECTANGLE, SIZE, gpu, read_storage, read_texture};
 
-/// A case's mask, and how many tests it took.
+/// Returns a case's mask, and its number of tests.
 fn mask(gpu: &Gpu, case: &Case, params: SampleBasedParams) -> (Vec<f32>, u64) {
     let params = SampleBasedParams { count_tests: true, ..params };
     let mut shadow = Shadow::<SampleBased>::with_params(gpu, params).expect("a device with WebGPU's limits");
@@ -23,8 +23,8 @@ fn mask(gpu: &Gpu, case: &Case, params: SampleBasedParams) -> (Vec<f32>, u64) {
     (mask, u64::from(counts[5]))
 }
 
-/// Every other pixel, and those that interpolation would get wrong, have the very bits; the others are as near as it promises.
-/// In a penumbra a pixel's four neighbours differ by little, so few are left to the second round.
+/// Every other pixel, and those that interpolation would get wrong, have the exact bits; the others are as close as promised.
+/// In a penumbra a pixel's four neighbours differ by little, so few pixels remain for the second round.
 #[test]
 fn a_subset_has_the_bits_where_it_looks_and_less_to_test() {
     let Some(gpu) = gpu() else { return };
