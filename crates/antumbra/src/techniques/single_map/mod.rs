@@ -1,5 +1,5 @@
-//! Techniques of one light map and one pass over the receivers that resolves it into the mask. They differ in that pass's shader
-//! and its parameters alone.
+//! Techniques with one light map and one resolve pass, which reads the map for every receiver and writes the mask. They differ only
+//! in that pass's shader and parameters.
 
 use std::sync::Arc;
 
@@ -26,41 +26,41 @@ mod tests;
 
 bindings! {
     struct ResolveParams = "resolve parameters", COMPUTE {
-        /// The technique's own.
+        /// Parameters of the technique.
         0 params: Uniform,
-        /// The kernel's points.
+        /// Points of the kernel.
         1 taps: Storage,
     }
 }
 
-/// The points of a kernel.
+/// Points of a kernel, uploaded as a storage buffer.
 pub(crate) struct KernelPoints<'a> {
-    /// What they follow from, where that is not this light alone: they are then worked out once and shared.
+    /// Key of the table that lights share; `None` if the points belong to this light alone.
     pub(crate) key: Option<TableKey>,
-    /// The points, one after the other.
+    /// Function that computes the points' bytes, one point after the other.
     pub(crate) bytes: &'a dyn Fn() -> Vec<u8>,
 }
 
 impl KernelPoints<'_> {
-    /// Without points: WebGPU has no empty bindings.
+    /// Placeholder for kernels without points: WebGPU has no empty bindings.
     pub(crate) fn without_points() -> Self {
         let key = TableKey { of: "antumbra no taps", numbers: Vec::new() };
         Self { key: Some(key), bytes: &|| vec![0; 16] }
     }
 }
 
-/// What a frame's pass is.
+/// Settings of a frame's resolve pass.
 pub(crate) struct ResolvePass<'a> {
-    /// The map, where it is our own.
+    /// Settings of the library's own map; unused with a host's map.
     pub(crate) map: OwnMapSettings,
-    /// Values for the shader's constants.
+    /// Values of the shader's override constants, by name.
     pub(crate) constants: &'a [(&'static str, f64)],
-    /// Whether every other pixel is resolved, and what interpolation would get wrong.
+    /// Whether only every other pixel is resolved, plus the pixels that interpolation would get wrong.
     pub(crate) is_sparse: bool,
 }
 
 impl ResolvePass<'_> {
-    /// Of every pixel, by a shader without constants.
+    /// Pass over every pixel with a shader without constants.
     pub(crate) fn of(map: OwnMapSettings) -> Self {
         Self { map, constants: &[], is_sparse: false }
     }
@@ -74,20 +74,20 @@ pub(crate) struct MapResolve<P> {
     inputs: FrameInputs,
     params_layout: wgpu::BindGroupLayout,
     wgsl: &'static str,
-    /// Of groups behind the map's and the parameters'.
+    /// Layouts of the technique's bind groups that follow those of the map and the parameters.
     further_layouts: Vec<wgpu::BindGroupLayout>,
     resolve: Resolve,
     params_uniform: wgpu::Buffer,
-    /// Points of the light's own kernel.
+    /// Kernel points of this light alone.
     taps: Option<wgpu::Buffer>,
-    /// Points of one that others have, too.
+    /// Kernel points that lights share.
     shared_taps: Cached<TableKey, Arc<wgpu::Buffer>>,
-    /// Of the frame prepared last.
+    /// Override constants of the frame prepared last.
     constants: Vec<(&'static str, f64)>,
     _params: std::marker::PhantomData<P>,
 }
 
-/// The map and the pass of one frame.
+/// Map and resolve pass of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedMapResolve {
@@ -97,7 +97,7 @@ pub struct PreparedMapResolve {
 }
 
 impl<P: GpuStruct> MapResolve<P> {
-    /// Makes the pipelines of `technique` around its resolve shader, with values for the shader's constants.
+    /// Creates the pipelines of `technique` from its resolve shader and values of the shader's constants.
     pub(crate) fn new(
         gpu: &Gpu,
         technique: &'static str,
@@ -108,7 +108,7 @@ impl<P: GpuStruct> MapResolve<P> {
         Self::with_groups(gpu, technique, wgsl, constants, search, Vec::new())
     }
 
-    /// The same with groups of the technique's own behind the map's and the parameters'.
+    /// Like [`Self::new`], with the technique's own bind groups after those of the map and the parameters.
     pub(crate) fn with_groups(
         gpu: &Gpu,
         technique: &'static str,
@@ -140,8 +140,8 @@ impl<P: GpuStruct> MapResolve<P> {
         }
     }
 
-    /// Fits the map, allocates it, and uploads everything; compiles the pass where it is another, or sparse for
-    /// the first time.
+    /// Fits and allocates the map, and uploads everything. Compiles the pass if it differs from the last one, or
+    /// if it is sparse for the first time.
     pub(crate) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -175,12 +175,12 @@ impl<P: GpuStruct> MapResolve<P> {
         Ok(PreparedMapResolve { map, params_group: params.group(stage, &self.params_layout), resolve })
     }
 
-    /// Records the light map's pass (where it is ours), its pyramid (where there is one) and the resolve.
+    /// Records the light map's pass (if the map is the library's), its pyramid (if there is one) and the resolve pass.
     pub(crate) fn record(&self, recorder: &mut Recorder<'_>, frame: &PreparedFrame<'_>, prepared: &PreparedMapResolve) {
         self.record_with(recorder, frame, prepared, &[]);
     }
 
-    /// The same with the technique's own groups.
+    /// Like [`Self::record`], with the technique's own bind groups.
     pub(crate) fn record_with(
         &self,
         recorder: &mut Recorder<'_>,
@@ -198,7 +198,7 @@ impl<P: GpuStruct> MapResolve<P> {
         });
     }
 
-    /// What a host's shader needs to do as the pass does, by a linked text with a function `visibility_at`.
+    /// Function of the pass for hosts' shaders: `wgsl`, a linked text with a function `visibility_at`, its constants and bind groups.
     pub(crate) fn embeddable(&self, wgsl: &'static str) -> Option<Embeddable> {
         let inputs = self.inputs.embedded()?;
         let (map, is_own) = self.map.embedded()?;
@@ -208,18 +208,18 @@ impl<P: GpuStruct> MapResolve<P> {
         Some(Embeddable { wgsl, constants: self.constants.clone(), groups, is_own })
     }
 
-    /// The map that the technique has drawn, for pictures of it.
+    /// Light map that the technique has drawn, for display.
     pub(crate) fn drawn_map(&self) -> Option<DrawnMap> {
         self.map.drawn()
     }
 
-    /// Bytes of the light map and its pyramid, where they are the light's own.
+    /// Bytes of the light map and its pyramid, if they belong to this light.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.map.memory_bytes()
     }
 }
 
-/// In the order of their groups.
+/// Bind group layouts, in the order of their groups.
 fn layouts<'a>(
     map: &'a LightMap,
     params: &'a wgpu::BindGroupLayout,

@@ -1,4 +1,4 @@
-//! Taps over a light's shape, as `light_taps.wesl` takes them: places in the shape that do not know where it stands.
+//! Taps over a light's shape, the input of `light_taps.wesl`: positions in the light's own coordinates, whatever its pose.
 
 use antumbra_light::{Light, LightShape, SampleSet, ball_from_cube, disk_from_square};
 use glam::{Vec2, Vec3, Vec4};
@@ -10,33 +10,33 @@ use crate::receivers::inputs::kind_of;
 /// 2 / (1 + √5).
 const INVERSE_GOLDEN_RATIO: f64 = 0.618_033_988_749_894_9;
 
-/// A light's taps, of a sample set.
+/// Taps of a light, from a sample set.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Taps<'a> {
     pub(crate) light: &'a Light,
     pub(crate) set: SampleSet,
     pub(crate) seed: u32,
-    /// Which of the set's runs of so many points, one behind the other: 0 but where frames differ by random numbers.
+    /// Index of the run of consecutive points within the set: 0 unless frames use different random numbers.
     pub(crate) run: u32,
 }
 
 /// Use of a list of taps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TapUse {
-    /// Places in the light's shape, and scales.
+    /// Positions in the light's shape, with scales.
     Search,
-    /// Places in the light's shape.
+    /// Positions in the light's shape.
     Filter,
-    /// Places in the unit square.
+    /// Positions in the unit square.
     Square,
 }
 
-/// Lists of taps, one after the other, of so many taps each.
+/// Consecutive lists of taps, each with its use and its number of taps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TapLists<'a, const COUNT: usize>(pub(crate) [(Taps<'a>, TapUse, u32); COUNT]);
 
 impl<const COUNT: usize> TapLists<'_, COUNT> {
-    /// Runs a pass's preparation with the kernel of these taps.
+    /// Calls `prepare` with the kernel of these taps.
     pub(crate) fn with_kernel<R>(&self, prepare: impl FnOnce(KernelPoints<'_>) -> R) -> R {
         prepare(KernelPoints { key: self.key(), bytes: &|| bytemuck::pod_collect_to_vec(&self.taps()) })
     }
@@ -50,7 +50,7 @@ impl<const COUNT: usize> TapLists<'_, COUNT> {
         self.0.iter().flat_map(list).collect()
     }
 
-    /// What the taps follow from; `None` where that is the light's own points, or changes from frame to frame.
+    /// Key of the shared table of these taps; `None` if they depend on the light's own points, or change from frame to frame.
     fn key(&self) -> Option<TableKey> {
         let mut numbers = Vec::with_capacity(10);
         for (Taps { light, set, seed, run }, used_as, count) in &self.0 {
@@ -64,36 +64,36 @@ impl<const COUNT: usize> TapLists<'_, COUNT> {
 }
 
 impl Taps<'_> {
-    /// The search's: places, and in w where each lies in the range of scales. The golden ratio's multiples spread the scales
-    /// evenly over any run of taps.
+    /// Search taps: positions, and in w each tap's share of the range of scales, in [0, 1). Multiples of the golden ratio spread
+    /// the scales evenly over any run of taps.
     pub(crate) fn of_search(&self, count: u32) -> Vec<Vec4> {
         let scale = |i: u64| (i as f64 * INVERSE_GOLDEN_RATIO).fract() as f32;
         let first = u64::from(self.run) * u64::from(count);
         self.places(count).into_iter().zip(first..).map(|(place, i)| place.extend(scale(i))).collect()
     }
 
-    /// The filter's: places.
+    /// Filter taps: positions; w is 0.
     pub(crate) fn of_filter(&self, count: u32) -> Vec<Vec4> {
         self.places(count).into_iter().map(|place| place.extend(0.0)).collect()
     }
 
-    /// Points of the unit square, for filters that are not of the light's shape.
+    /// Points of the unit square, for filters that do not have the light's shape.
     pub(crate) fn of_square(&self, count: u32) -> Vec<Vec4> {
         self.set.run(self.run, count, self.seed).into_iter().map(|u| (u.truncate(), Vec2::ZERO).into()).collect()
     }
 
-    /// Whether any number of first taps covers the light: of sets that grow point by point, but not of a list, which is
-    /// walked in its own order.
+    /// Whether every prefix of the taps covers the light: true for sets that grow point by point, false for a list of points,
+    /// which is used in its own order.
     pub(crate) fn are_progressive(&self) -> bool {
         matches!(self.set, SampleSet::R2 | SampleSet::Sobol | SampleSet::PoissonDisc)
             && !matches!(self.light.shape, LightShape::Points { .. })
     }
 
-    /// Of rectangles in the unit square, to be shifted on the torus; of lists one of its points along right, up and axis
-    /// about the light's centre; of all others in the unit disc or ball, to be turned about its axis.
+    /// Positions of the taps. For a rectangle: in the unit square, to be shifted on the torus. For a list of points: one of them
+    /// along right, up and axis, relative to the light's centre. Otherwise: in the unit disc or ball, to be rotated about its axis.
     fn places(&self, count: u32) -> Vec<Vec3> {
         let points = self.set.run(self.run, count, self.seed).into_iter().map(|u| u.truncate()).zip(0..);
-        // One stratum, or one point of a list, a tap: every position gets its share of them, in order.
+        // Each tap takes one stratum, or one point of a list, in order, so that all of them get the same number of taps.
         let stratum = |i: u32| (i as f32 + 0.5) / count as f32;
         match &self.light.shape {
             LightShape::Rectangle { .. } => points.map(|(u, _)| u.extend(0.0)).collect(),
@@ -112,22 +112,22 @@ impl Taps<'_> {
     }
 }
 
-/// What passes over taps are compiled for: the constants of `light_taps.wesl`, and `LAYER_COUNT` of
+/// Override constants of passes over taps: those of `light_taps.wesl`, and `LAYER_COUNT` of
 /// `light_map/depth_layers/behind.wesl`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TapsProgram {
-    /// Of a light source in `receivers/light.wesl`.
+    /// Kind of the light, as in `receivers/light.wesl`.
     light_kind: u32,
-    /// Of the casters, the light map's own included.
+    /// Number of layers of casters, including the light map's own.
     layers: u32,
-    /// The light is a rectangle with a picture.
+    /// Whether the light is a rectangle with an emission texture.
     has_emission: bool,
-    /// Any number of first taps covers the light.
+    /// Whether every prefix of the taps covers the light.
     is_progressive: bool,
 }
 
 impl TapsProgram {
-    /// A rectangle's without a picture.
+    /// Constants of the usual light, a rectangle without emission texture.
     pub(crate) fn usual(layers: u32) -> Self {
         Self { light_kind: 0, layers, has_emission: false, is_progressive: true }
     }
@@ -142,7 +142,7 @@ impl TapsProgram {
         }
     }
 
-    /// By their names.
+    /// Values of the constants, by name.
     pub(crate) fn constants(self) -> [(&'static str, f64); 4] {
         [
             ("LIGHT_KIND", f64::from(self.light_kind)),

@@ -1,4 +1,4 @@
-//! Taps against their shapes, and what a receiver sees of a light that stands on its horizon against closed forms.
+//! Tests of taps against the light's shapes, and of lights on a receiver's horizon against closed forms.
 
 use std::f32::consts::PI;
 
@@ -10,11 +10,11 @@ use crate::TechniqueKind;
 use crate::shadow::Casters;
 use crate::testing::{Case, gpu, half_plane_ratio_errors, rmse, test_ground};
 
-/// How high the light's centre stands above the ground, and half its size.
+/// Height of the light's centre above the ground, and half the light's size.
 const HEIGHT_M: f32 = 0.1;
 const HALF_M: f32 = 0.5;
 
-/// Lights beside the ground, looking along it, and their shares above it.
+/// Lights beside the ground that face along it, with the fraction of each above the ground.
 fn lights_on_the_horizon() -> Vec<(LightShape, f32)> {
     let h: f32 = HEIGHT_M / HALF_M;
     let disc = ((-h).acos() + h * (1.0 - h * h).sqrt()) / PI;
@@ -54,7 +54,7 @@ fn places_lie_in_the_light_s_shape() {
             _ => assert!((0.9..=1.0 + 1e-6).contains(&radius), "{:?}: radius {radius}", light.shape),
         }
         assert_eq!(taps.are_progressive(), !matches!(light.shape, LightShape::Points { .. }));
-        // Scales lie evenly in their range.
+        // Scales are spread evenly over their range.
         let scales: Vec<f32> = taps.of_search(256).iter().map(|tap| tap.w).collect();
         let mean = scales.iter().sum::<f32>() / 256.0;
         assert!((mean - 0.5).abs() < 0.01 && scales.iter().all(|s| (0.0..1.0).contains(s)), "mean scale {mean}");
@@ -67,7 +67,7 @@ fn what_the_horizon_leaves_of_a_light_is_its_closed_form() {
     for (shape, share) in lights_on_the_horizon() {
         let mut case = Case::half_plane(gpu, shape.clone());
         case.light = on_the_horizon(shape);
-        // Those with one lookup for the whole light take a list of points for its centre, or count it.
+        // Techniques with one lookup for the whole light treat a list of points as its centre, or count it.
         let is_list = matches!(case.light.shape, LightShape::Points { .. });
         let others = [TechniqueKind::PcssAnisotropic, TechniqueKind::Essm, TechniqueKind::MultiLayer];
         for kind in [TechniqueKind::Pcss].iter().chain(others.iter().filter(|_| !is_list)) {

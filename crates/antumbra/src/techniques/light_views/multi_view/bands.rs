@@ -1,5 +1,5 @@
-//! What is kept of each pixel from batch to batch, in bands of rows that fit a binding: at 3840 × 2160 one buffer of all pixels
-//! would be larger than what WebGPU binds.
+//! Per-pixel state that is kept from batch to batch, in bands of rows that fit a binding: at 3840 × 2160 one buffer for all pixels
+//! would be larger than WebGPU's binding limit.
 
 use glam::UVec2;
 
@@ -7,7 +7,7 @@ use crate::contract::Error;
 use crate::gpu::{Stage, gpu_structs, sized_buffer};
 
 gpu_structs! {
-    /// Rows of the picture.
+    /// Rows of the image in one buffer.
     pub(crate) struct PixelBand {
         first_row: u32,
         padding_0: u32,
@@ -16,27 +16,27 @@ gpu_structs! {
     }
 }
 
-/// Bands begin at rows of workgroups.
+/// Multiple of rows at which bands begin: the height of a workgroup.
 const ROWS: u32 = 8;
 
-/// A band made ready for a frame.
+/// Band that is prepared for a frame.
 #[derive(Clone, Debug)]
 pub(super) struct Band {
-    /// Rows of threads.
+    /// Number of rows.
     pub(super) rows: u32,
-    /// [`PixelBand`].
+    /// Uniform of a [`PixelBand`].
     pub(super) uniform: wgpu::Buffer,
     pub(super) pixels: wgpu::Buffer,
 }
 
-/// The bands of a picture.
+/// Bands of an image.
 #[derive(Debug, Default)]
 pub(super) struct Bands {
     buffers: Vec<Option<wgpu::Buffer>>,
 }
 
 impl Bands {
-    /// As few bands as hold `bytes_each` for every pixel.
+    /// Prepares as few bands as hold `bytes_each` bytes for every pixel.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,

@@ -2,78 +2,76 @@
 //!
 //! Paul Heckbert and Michael Herf, "Simulating Soft Shadows with Graphics Hardware", CMU-CS-97-104, 1997; the
 //! "brute force" that Marrs et al. 2014 and Sintorn et al. 2008 measure against, with 2 × 2 filtered comparison. Each
-//! view is fitted on its own, in a window that is warped where that makes texels smaller where the camera looks (see
-//! `light_map/light_view`), and with its texels moved by a part of one (`window = plain` leaves both out, as the papers
-//! do). Maps are rendered in batches that fit a memory budget and are added into the mask, so
-//! that 1024 views never need 1024 maps.
+//! view is fitted on its own. Its window is warped if that makes texels smaller where the camera looks (see
+//! `light_map/light_view`), and its texels are shifted by a fraction of one (`window = plain` omits both, as in the papers).
+//! Maps are rendered in batches that fit a memory budget and are added to the mask, so that 1024 views never need 1024 maps.
 //!
-//! A sphere is seen as another disc from each receiver, and views are shared: its points lie within the ball so that from anywhere they
-//! are spread evenly over the disc (`light_views/ball`). Under a bulb in a box the rmse with 64 views is .020; of points on one disc, which faces
-//! the receivers' middle, it was .032.
+//! Each receiver sees another disc of a sphere, but receivers share views: so light points lie within the ball such that they are
+//! spread evenly over the disc from everywhere (`light_views/ball`). Under a bulb in a box the rmse with 64 views is .020; with
+//! points on one disc, which faces the receivers' centre, it is .032.
 //!
 //! Comparison is with the receiver's plane at each of the four texels (`compare = gather`), or by the hardware's
 //! comparison sampler with one reference depth (`compare = hardware`, as in the papers), which needs a slope bias and
 //! so detaches contacts at grazing light.
 //!
 //! # By triangles
-//! By default (`compare = triangles`) a texel holds the triangle that it shows beside its depth
-//! (`light_map/caster_triangles`; the idea is that of Lecocq et al., "Sub-Pixel Shadow Mapping", I3D 2014), and a map is asked
-//! which triangles may be in the way: the segment from the receiver to the light point is tested against those of 6 × 6
-//! texels about it, exactly, and on over the surfaces that they belong to. There is no bias but for what the depth
-//! buffer rounds, and an edge is where it is. What passes a view by that way is not yet lit: casters behind the first
-//! are not in the map. So each view tells how far from the light it knows of the segment, as in a life table whose
+//! By default (`compare = triangles`) a texel holds the triangle that it shows besides its depth
+//! (`light_map/caster_triangles`; the idea is that of Lecocq et al., "Sub-Pixel Shadow Mapping", I3D 2014), and a map tells
+//! which triangles may be in the way. The segment from the receiver to the light point is tested exactly against those of the
+//! 6 × 6 texels around it, and onwards over the surfaces that they belong to. The only bias is for the rounding of the depth
+//! buffer, and edges are exact. A segment that none of these triangles blocks is not yet lit: casters behind the first
+//! are not in the map. So each view tells how far from the light it knows the segment, as in a life table whose
 //! subjects leave before they die, and the light that passes is the product-limit estimate (Kaplan and Meier,
-//! "Nonparametric Estimation from Incomplete Observations", JASA 53, 1958) over spans s of the way,
+//! "Nonparametric Estimation from Incomplete Observations", JASA 53, 1958) over spans s of the segment,
 //!
 //! ```text
 //! V = Π (1 − hidden_s / known_s)        known_s = 1 − Σ_{r<s} (hidden_r + lost_r)
 //! ```
 //!
 //! where `hidden_s` is the light that ends at a caster in span s, and `lost_s` that of texels whose caster lies there, in
-//! front of the receiver, without being in the segment's way: behind it they know nothing. Triangles too small to be walked
-//! over count by the share of the four nearest texels that they fill. Triangles do not tell where a surface has holes: where
-//! any caster is not opaque, slopes are compared.
+//! front of the receiver, but not in the segment's way: nothing is known behind it. Triangles too small to be walked over
+//! count by the fraction of the four nearest texels that they fill. Triangles do not tell where a surface has holes: if any
+//! caster is not opaque, slopes are compared instead.
 //!
-//! Triangles narrower than a texel are drawn a texel wide, so that some texel shows them. rmse on 320 × 180 with 256 views,
-//! by slopes and so: `ring-in-grass` .058 .027, `ten-knots` .021 .011; with 64, `checker-far` .017 .010, `window` .012 .010.
+//! Triangles narrower than a texel are drawn a texel wide, so that some texel shows them. rmse at 320 × 180 with 256 views, by
+//! slopes and by triangles: `ring-in-grass` .058 .027, `ten-knots` .021 .011; with 64, `checker-far` .017 .010, `window` .012 .010.
 //!
 //! # By slopes
-//! `compare = sharp`, and where casters are not opaque. Each texel holds its surface's slope beside
-//! its depth (`light_map/depth_layers`), and so is carried on to the receiver as it lies: whether the receiver is behind the
-//! surface is known to a small part of a texel, at a crease, behind a sheet that crosses another, under a bump at a
-//! terminator. The bias is 3 % of the one that a comparison without slopes needs, and what the depth buffer rounds.
+//! With `compare = sharp`, or if a caster is not opaque, each texel holds its surface's slope besides its depth
+//! (`light_map/depth_layers`), with which the surface is extended to the receiver: whether the receiver is behind the surface
+//! is known to a small part of a texel, at a crease, behind a sheet that crosses another, under a bump at a terminator.
+//! The bias is 3 % of the one that a comparison without slopes needs, plus the rounding of the depth buffer.
 //!
-//! Where the surface ends between two texels no one view knows. A texel's answer holds at its centre, and since texels
-//! are moved apart between views, centres lie all around the receiver: a kernel narrower than a texel over all views'
-//! texels blurs an edge less than the bilinear mean, and has fewer answers to average. How narrow it should be
-//! follows from how far off the occluder is, which its texel tells. Light points see the edge of a contact in one place,
-//! so that few answers are enough and blur shows; the shadow of something far off is blurred over several texels anyway.
-//! With occluders sorted into three kinds by the texels that the light's size blurs them over, the light that passes is
+//! No single view knows where between two texels a surface ends. A texel's answer holds at its centre, and since texels
+//! are shifted between views, centres lie all around the receiver. A kernel narrower than a texel, over the texels of all
+//! views, blurs an edge less than the bilinear mean, and has fewer answers to average. Its best width depends on the
+//! occluder's distance, which the texel tells. Light points see the edge of a contact in one place, so that few answers
+//! are enough and blur shows; the shadow of a distant occluder is blurred over several texels anyway. Occluders are sorted
+//! into three kinds by the number of texels over which the light's size blurs their shadows, and the light that passes is
 //!
 //! ```text
 //! V = (1 − far) · (1 − near | not far) · (1 − contact | not near, not far)
 //! ```
 //!
-//! each factor by a kernel of its own: bilinear, .1 to .5 texels wide by the number of views, and .4 times that. A map
-//! holds what is nearest to the light, and so most blurred: what it says of nearer things holds where nothing farther
-//! hides, which is what the conditions ask for. On 320 × 180 with 64 views, rmse by bilinear means alone and so:
+//! each factor by its own kernel: bilinear, .1 to .5 texels wide by the number of views, and .4 times that. A map
+//! holds what is nearest to the light, and so most blurred: what it tells about nearer occluders holds only where no farther
+//! one hides, hence the conditions. At 320 × 180 with 64 views, rmse by bilinear means alone and by these kernels:
 //! `ring-in-grass` .147 .079, `fence-geometry` .027 .018, `tree` .033 .020; with 256 views `ring-in-grass` .057 (without
 //! slopes .072), `ten-knots` .021 (.0275).
 //!
 //! # Translucent casters
-//! A map holds that a surface is there or that it is not. So a translucent one is there in as many views as it stops light
-//! (Enderton, Sintorn, Shirley, Luebke, "Stochastic Transparency", I3D 2010): a number for each triangle and view, in
-//! sequences that are stratified over a triangle's views and unlike those of other triangles, against what of the light it
-//! stops (`primitives/stochastic.wesl`). One surface is exact to a view's share of the light; of several in a row the mean is
-//! the product, with noise. Where casters tint, each colour has views of its own, for three times the time.
+//! A map holds only whether a surface is there. So a translucent surface is drawn in the fraction of views that equals the
+//! fraction of light that it stops (Enderton, Sintorn, Shirley, Luebke, "Stochastic Transparency", I3D 2010): that fraction is
+//! compared with a number for each triangle and view, from sequences that are stratified over a triangle's views and differ
+//! between triangles (`primitives/stochastic.wesl`). One surface is exact to a view's share of the light; for several in a row
+//! the mean is the product, with noise. If casters tint, each colour has its own views, for three times the time.
 //!
 //! # Limits
-//! Every view rasterises the whole scene: time is views × triangles. Fewer views than the penumbra is wide show as
-//! overlapping hard shadows, since all pixels share the light points; by triangles nothing blurs them, so that hair under 64
-//! views has more noise than by slopes. What lies behind several others within a few texels, as in dense grass, no view
-//! may see. Triangles cost 80 bytes each, 8 bytes a texel instead of 4, and 32 bytes a pixel; slopes 8 bytes a texel and
-//! 24 a pixel. By slopes or depths alone, occluders much thinner than a texel let light through. A sphere's points lie on
-//! the disc that faces the middle of the receivers, so receivers far to the side see it a little too narrow.
+//! Every view rasterises the whole scene: time is proportional to views × triangles. Too few views for the width of the penumbra
+//! show as overlapping hard shadows, since all pixels share the light points; by triangles nothing blurs them, so that hair under
+//! 64 views has more noise than by slopes. No view may see what lies behind several surfaces within a few texels, as in dense
+//! grass. Triangles cost 80 bytes each, 8 bytes per texel instead of 4, and 32 bytes per pixel; slopes 8 bytes per texel and
+//! 24 per pixel. By slopes or depths alone, occluders much thinner than a texel let light through.
 
 use std::ops::Range;
 
@@ -129,28 +127,28 @@ bindings! {
     }
 }
 
-/// Maps of one batch together stay below this: WebGPU's default buffer limit, and little enough for any adapter.
+/// Bound on the bytes of one batch's maps: within WebGPU's default buffer limit, and small enough for any adapter.
 const BATCH_BUDGET_BYTES: u64 = 64 << 20;
 
-/// What sharp comparisons add up for each pixel: `EdgeSums` of `accumulate_sharp.wesl`.
+/// Bytes per pixel of the sums of sharp comparisons: `EdgeSums` of `accumulate_sharp.wesl`.
 const SUMS_BYTES: u64 = 24;
 
-/// What comparisons by triangles keep for each pixel: `life_tables` of `accumulate_triangles.wesl`.
+/// Bytes per pixel of comparisons by triangles: `life_tables` of `accumulate_triangles.wesl`.
 const LIFE_TABLE_BYTES: u64 = 32;
 
-/// No batch is larger: beyond this the resolve's setup no longer shows.
+/// Maximum number of light points of a batch: beyond it the setup cost of the resolve is negligible.
 const MAX_BATCH: u32 = 32;
 
-/// What to do in place of comparisons by triangles.
+/// Remedy in errors of comparisons by triangles.
 const WITHOUT_TRIANGLES: &str = "set `compare` to sharp";
 
 /// One depth map per light sample.
 #[derive(Debug)]
 pub struct MultiView {
     inputs: FrameInputs,
-    /// By depths alone, or with slopes.
+    /// Depth maps, with slopes for sharp comparisons.
     layers: DepthLayers,
-    /// Made when first asked for.
+    /// Triangle maps, created on first use.
     triangle_maps: Option<TriangleMaps>,
     by_depths: Accumulation,
     by_slopes: Accumulation,
@@ -159,45 +157,45 @@ pub struct MultiView {
     samplers: MapSamplers,
     unit_points: UnitPoints,
     sample_views: SampleViews,
-    /// What is kept of each pixel from batch to batch.
+    /// Per-pixel state that is kept from batch to batch.
     bands: Bands,
-    /// The light points of the frame's last batch, whose maps are there once it is drawn.
+    /// Light points of the frame's last batch, whose maps remain once it is drawn.
     last_points: Range<u32>,
-    /// Of all light points, with texels along a side of their maps.
+    /// Views of all light points, and texels along a side of their maps.
     views: (Vec<LightView>, u32),
 }
 
-/// The batches of one frame.
+/// Batches of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedViews {
     inputs: PreparedInputs,
-    /// Adds a batch to the mask.
+    /// Pipeline that adds a batch to the mask.
     accumulate: wgpu::ComputePipeline,
-    /// Maps are of triangles, not of depths.
+    /// Whether maps hold triangles, not depths alone.
     by_triangles: bool,
     batches: Vec<DrawnBatch>,
 }
 
-/// Views whose maps are drawn and added to the mask.
+/// Batch of views whose maps are drawn and added to the mask.
 #[derive(Debug)]
 struct DrawnBatch {
-    /// Of all that are drawn, those of this batch: where each colour has views of its own these are others in each.
+    /// Indices of the batch's views among all drawn ones; if each colour has its own views, they differ between colours.
     views: Range<u32>,
     groups: Vec<BandGroup>,
 }
 
-/// What of the light a view counts, and the mask's channel that it is added to.
+/// Colour weights of the light that a view counts, and the mask's channel that it is added to.
 type Color = (Vec3, u32);
 
-/// Group 1 for rows of the picture.
+/// Bind group 1 for rows of the image.
 #[derive(Clone, Debug)]
 struct BandGroup {
     rows: u32,
     group: wgpu::BindGroup,
 }
 
-/// What adds a batch to the mask, and the layout of its group 1.
+/// Pipeline that adds a batch to the mask, and the layout of its bind group 1.
 #[derive(Debug)]
 struct Accumulation {
     layout: wgpu::BindGroupLayout,
@@ -316,7 +314,7 @@ impl Technique for MultiView {
         }
     }
 
-    /// Those of the last batch: each is drawn over the one before. None where all lights share them.
+    /// Maps of the last batch: each batch is drawn over the one before. Empty if all lights share them.
     fn drawn_maps(&self) -> Vec<DrawnMap> {
         if self.last_points.is_empty() {
             return Vec::new();
@@ -353,7 +351,7 @@ impl MultiView {
         }
     }
 
-    /// The light points, and the view from each.
+    /// Returns the light points, and the view from each.
     fn points_and_views(
         &mut self,
         frame: &PreparedFrame<'_>,
@@ -376,7 +374,7 @@ impl MultiView {
         (points, views)
     }
 
-    /// The maps that exist at one time.
+    /// Size of the maps that exist at the same time.
     fn batch_of_maps(&self, view_size: u32, point_count: u32) -> LayersSize {
         let with_gradients = self.compare == MultiViewCompare::Sharp;
         let one = LayersSize { size: view_size, views: 1, layers: 1, with_gradients };
@@ -386,7 +384,7 @@ impl MultiView {
         LayersSize { views: batch_size(BATCH_BUDGET_BYTES, map_bytes, MAX_BATCH.min(point_count)), ..one }
     }
 
-    /// Makes ready to draw the views into maps, of triangles or of depth; of each colour one after the other.
+    /// Prepares to draw the views into maps of triangles or of depth, one colour after the other.
     fn prepare_maps(
         &mut self,
         stage: &Stage<'_>,
@@ -416,7 +414,7 @@ impl MultiView {
         Ok(())
     }
 
-    /// A batch's groups: one a band, or one for all of the picture's rows where depths alone are compared.
+    /// Bind groups of a batch: one per band, or one for all of the image's rows if only depths are compared.
     fn bind(&self, stage: &Stage<'_>, batch: &Batch, rows: u32, bands: &[Band]) -> Vec<BandGroup> {
         let layout = &self.accumulation().layout;
         let views = batch.bindings();
@@ -454,7 +452,7 @@ impl MultiView {
         groups
     }
 
-    /// What is kept of each pixel from batch to batch; nothing but the mask where depths are compared.
+    /// Prepares the per-pixel state that is kept from batch to batch; only the mask if depths are compared.
     fn prepare_bands(&mut self, stage: &Stage<'_>, frame: &PreparedFrame<'_>) -> Result<Vec<Band>, Error> {
         let bytes_each = match self.compare {
             MultiViewCompare::Triangles => LIFE_TABLE_BYTES,
@@ -468,7 +466,7 @@ impl MultiView {
     }
 }
 
-/// Each of the mask's colours where casters tint; else all light at once.
+/// Colours of the mask if casters tint; otherwise all light at once.
 fn colors_of(frame: &PreparedFrame<'_>) -> Vec<Color> {
     match (frame.casters.mask_channels(), frame.mask.channels()) {
         (MaskChannels::Three, MaskChannels::Three) => vec![(Vec3::X, 0), (Vec3::Y, 1), (Vec3::Z, 2)],
@@ -476,7 +474,7 @@ fn colors_of(frame: &PreparedFrame<'_>) -> Vec<Color> {
     }
 }
 
-/// How maps are compared: triangles do not tell where a surface has holes.
+/// Comparison in use: by slopes instead of triangles if a caster is not opaque, since triangles do not tell where a surface has holes.
 fn comparison_of(meshes: &[MeshCaster<'_>], params: &MultiViewParams) -> MultiViewCompare {
     let has_holes = meshes.iter().any(|mesh| !matches!(mesh.opacity, Opacity::Opaque));
     match params.compare {
@@ -485,8 +483,8 @@ fn comparison_of(meshes: &[MeshCaster<'_>], params: &MultiViewParams) -> MultiVi
     }
 }
 
-/// The wider kernel's standard deviation in texels for so many views. A Gaussian of σ holds 4 π σ² n independent texels of n
-/// views: about 32 are held, fewer are noise.
+/// Standard deviation of the wider kernel for a number of views, texels. A Gaussian of σ holds 4 π σ² n independent texels of n
+/// views: about 32 of them here, fewer are noise.
 fn kernel_texels(view_count: usize) -> f32 {
     (1.6 / (view_count as f32).sqrt()).clamp(0.1, 0.5)
 }

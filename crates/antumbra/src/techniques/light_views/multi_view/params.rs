@@ -3,27 +3,27 @@ use antumbra_light::SampleSet;
 use crate::contract::{param_choice, params};
 
 param_choice! {
-    /// How [`MultiView`](super::MultiView) compares a receiver with a map.
+    /// Comparison of a receiver with a map of [`MultiView`](super::MultiView).
     pub enum MultiViewCompare {
-        /// With the triangles that texels show, exactly; as `sharp` where a caster is not opaque. The casters' buffers must
-        /// be readable in compute.
+        /// Exact test against the triangles that texels show; the same as `sharp` if a caster is not opaque. The casters'
+        /// buffers must be readable in compute.
         Triangles = "triangles",
-        /// With the slope of each texel's surface, so that next to no bias is left; and those texels count most whose centres
-        /// are nearest to the receiver, the more so the nearer the occluder is.
+        /// Slopes of the texels' surfaces, with hardly any bias. Texels whose centres are nearest to the receiver count most,
+        /// the more so the nearer the occluder is.
         Sharp = "sharp",
-        /// Four texels, each with the receiver's plane at its own centre.
+        /// Four texels, each compared with the receiver's plane at its own centre.
         Gather = "gather",
-        /// The hardware's comparison sampler, one reference depth for all four.
+        /// The hardware's comparison sampler, with one reference depth for all four texels.
         Hardware = "hardware",
     }
 }
 
 param_choice! {
-    /// Where [`MultiView`](super::MultiView)'s texels lie.
+    /// Placement of [`MultiView`](super::MultiView)'s texels.
     pub enum MultiViewWindow {
-        /// In windows warped to where the camera looks, and moved apart from view to view.
+        /// Windows warped to where the camera looks, with texels shifted from view to view.
         Warped = "warped",
-        /// Evenly over the smallest rectangle, as the papers' do.
+        /// Even over the smallest rectangle, as in the papers.
         Plain = "plain",
     }
 }
@@ -44,7 +44,7 @@ params! {
         window: MultiViewWindow = MultiViewWindow::Warped,
             more "warped resolves what is near the camera and averages what one view's texels miss; plain has texels of \
                   one size.";
-        /// Comparison of four texels with a receiver.
+        /// Comparison of texels with a receiver.
         compare: MultiViewCompare = MultiViewCompare::Triangles,
             more "triangles finds edges where they are, for 32 bytes a pixel and 48 and more a triangle; sharp finds them \
                   between the views, for 24 bytes a pixel; gather keeps nothing; hardware is the papers' form and \

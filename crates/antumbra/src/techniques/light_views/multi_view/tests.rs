@@ -1,4 +1,4 @@
-//! What is summed over batches.
+//! Tests of the sums over batches, and of the comparisons with maps.
 
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
@@ -39,7 +39,7 @@ fn sums_add_up_over_batches_and_start_over_with_each_frame() {
     assert!(masks[0] == masks[3], "something is left from other frames");
 }
 
-/// Maps so large that each is a batch by itself add up to what all make in one.
+/// Maps so large that each is a batch by itself give the same sum as one batch of all.
 #[test]
 fn batches_of_one_view_are_those_of_all() {
     let Some(gpu) = gpu() else { return };
@@ -54,7 +54,7 @@ fn batches_of_one_view_are_those_of_all() {
     assert!(apart < 0.005, "{apart} apart");
 }
 
-/// A device whose bindings hold a third of the pictures' sums takes them in bands, and finds the same bits.
+/// A device whose bindings hold a third of an image's sums uses bands, and gives the same bits.
 #[test]
 fn bands_give_the_bits_of_one() {
     let Some(gpu) = gpu() else { return };
@@ -70,7 +70,7 @@ fn bands_give_the_bits_of_one() {
     }
 }
 
-/// At 3840 × 2160 the sums of all pixels are more than WebGPU's default binds, or this adapter at all: as few bands as hold them give
+/// At 3840 × 2160 the sums of all pixels exceed WebGPU's default binding limit, or that of this adapter: as few bands as hold them give
 /// the bits of many.
 #[test]
 #[ignore = "takes minutes on a software renderer"]
@@ -136,7 +136,7 @@ fn a_crossing_sheet_casts_its_shadow_from_where_it_crosses() {
     );
     assert!(triangles < 1e-3, "{triangles}");
     assert!(sharp < 0.02, "{sharp}");
-    // The sheet is within the bias of half a texel there: what the test would show without the sheet's slope.
+    // The sheet is within the bias of half a texel there: the result of the test without the sheet's slope.
     assert!(gather > 0.5, "{gather}");
 }
 
@@ -178,7 +178,7 @@ fn strip(gpu: &Gpu, low: f32, high: f32, cells: u32) -> Mesh {
     Mesh::new(gpu, &positions, &indices)
 }
 
-/// On the ground at x, under a light of 20 cm at height 4 m, the share of it that a strip at height ½ m leaves.
+/// Fraction of a light of 20 cm at height 4 m that a strip at height ½ m leaves on the ground at x.
 fn strip_visibility(x: f32, low: f32, high: f32) -> f32 {
     // The segment to light place l passes x + (l − x) / 8.
     let covered = |edge: f32| (8.0 * (edge - x) + x).clamp(-0.1, 0.1);
@@ -209,7 +209,7 @@ fn edges_are_where_they_are_however_wide_texels_are() {
         let (triangles, sharp) = (error("triangles"), error("sharp"));
         println!("{:.1} m wide: triangles {triangles:.4}, sharp {sharp:.4}", high - 0.1);
         assert!(triangles < 0.006, "{triangles}");
-        // What the test would show of answers at texels' centres alone.
+        // The error of answers at texel centres alone.
         assert!(sharp > 0.1, "{sharp}");
     }
 }

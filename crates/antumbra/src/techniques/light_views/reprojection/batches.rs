@@ -1,5 +1,5 @@
 //! Shared passes of `reprojection` and `reprojection_layered`: central maps, fragments scattered into a batch of views, and
-//! that batch added into the mask; batch after batch, within a budget.
+//! that batch added to the mask; batch after batch, within a memory budget.
 
 #[cfg(test)]
 use std::sync::Arc;
@@ -22,13 +22,13 @@ use crate::light_map::light_view::{LightView, LightViewGpu};
 use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::techniques::light_views::{Comparison, SampleViews, UnitPoints, batch_size, light_points};
 
-/// Integer maps of one batch together stay below this: half of WebGPU's smallest limit for a binding.
+/// Memory budget of one batch's integer maps, bytes: half of WebGPU's smallest limit for a binding.
 pub(crate) const BATCH_BUDGET_BYTES: u64 = 64 << 20;
 
-/// Rows of the integer maps start where copies into textures may.
+/// Alignment of the integer maps' rows, texels: that of copies to textures.
 const ROW_ALIGNMENT_TEXELS: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4;
 
-/// Central maps, scatter, resolve.
+/// Central maps, scatter and resolve of a reprojecting technique.
 #[derive(Debug)]
 pub(crate) struct Engine {
     technique: &'static str,
@@ -40,7 +40,7 @@ pub(crate) struct Engine {
     scatter: Scatter,
     resolve: Resolve,
     target_buffer: LeasedBuffer,
-    /// Views of the frame's central maps; none where maps are drawn from the light's points alone.
+    /// Views of the frame's central maps; empty if no central map is drawn.
     central: Vec<LightViewGpu>,
     frame_number: u32,
     #[cfg(test)]
@@ -49,7 +49,7 @@ pub(crate) struct Engine {
     widths: Vec<(f32, f32)>,
 }
 
-/// The passes of one frame.
+/// Passes of one frame.
 #[derive(Debug)]
 #[doc(hidden)]
 pub struct PreparedEngine {
@@ -62,19 +62,19 @@ pub struct PreparedEngine {
     resolve: PreparedResolve,
 }
 
-/// What a test holds against the CPU reference.
+/// State that tests compare with the CPU reference.
 #[cfg(test)]
 #[derive(Debug)]
 pub(crate) struct Parts<'a> {
-    /// The last batch's integer maps.
+    /// Integer maps of the last batch.
     pub(crate) targets: &'a wgpu::Buffer,
-    /// See `central.rs`.
+    /// Matrices from the central images to the targets: see `central.rs`.
     pub(crate) matrices: &'a [Mat4],
-    /// The depth that a texel of each central view is wide: (a, b) of a · depth + b.
+    /// Width of a texel of each central view as a difference in depth: (a, b) of a · depth + b.
     pub(crate) widths: &'a [(f32, f32)],
     /// Central depths and gradients.
     pub(crate) central: &'a [Arc<wgpu::Texture>; 2],
-    /// The list of surfels and its counts, where there is one.
+    /// List of surfels and its counts, if there is one.
     pub(crate) list: Option<[&'a wgpu::Buffer; 2]>,
 }
 
@@ -99,8 +99,8 @@ impl Engine {
         }
     }
 
-    /// The shift of this frame's light points: Halton's points (1960) in bases 2 and 3, which spread each point evenly
-    /// over the frames. (Steps of the R2 sequence would carry an R2 set onto itself.)
+    /// Shift of this frame's light points: Halton's points (1960) in bases 2 and 3, which spread each point evenly
+    /// over the frames. (Steps of the R2 sequence would map an R2 set onto itself.)
     pub(crate) fn next_jitter(&mut self) -> Vec2 {
         let radical_inverse = |base: u32| {
             let (mut rest, mut digit, mut sum) = (self.frame_number, 1.0 / base as f32, 0.0);
@@ -144,7 +144,7 @@ impl Engine {
         let layers_size = LayersSize {
             size: views.central_size,
             views: clip_from_world.len() as u32,
-            // What is behind the light takes one.
+            // Surfaces behind the light take one layer.
             layers: settings.source.layers() + u32::from(views.behind.is_some()),
             with_gradients: self.with_gradients,
         };
@@ -191,7 +191,7 @@ impl Engine {
         Ok(PreparedEngine { inputs, needs_central_map, is_from_behind, faces, targets, scatter, resolve })
     }
 
-    /// The integer maps of as many of `point_count` light points as the budget holds, and how many that are.
+    /// Allocates the integer maps of as many of `point_count` light points as the budget holds, and returns that number, too.
     fn make_targets(&mut self, stage: &Stage<'_>, views: &Views, point_count: u32) -> Result<(Targets, u32), Error> {
         let (view_size, faces) = (views.view_size, views.faces());
         let row_texels = view_size.next_multiple_of(ROW_ALIGNMENT_TEXELS);
@@ -234,7 +234,7 @@ impl Engine {
         }
     }
 
-    /// The central maps, with their layers, where there are such and they are the light's own: maps of the light's points are words of a buffer.
+    /// Central maps with their layers, if there are any and they belong to this light. Maps of light points are buffers, and not included.
     pub(crate) fn drawn_maps(&self) -> Vec<DrawnMap> {
         if self.central.is_empty() || !self.layers.are_own() {
             return Vec::new();
@@ -247,7 +247,7 @@ impl Engine {
         self.central.iter().zip(self.layers.depth_slices().chunks_exact(layers)).map(map).collect()
     }
 
-    /// Bytes of central maps, one batch of integer maps, what they are copied into, and the lists.
+    /// Bytes of central maps, one batch of integer maps, the texture that they are copied into, and the lists.
     pub(crate) fn memory_bytes(&self) -> u64 {
         self.layers.memory_bytes()
             + self.target_buffer.own_bytes()
@@ -256,7 +256,7 @@ impl Engine {
             + self.sample_views.memory_bytes()
     }
 
-    /// What a test holds against the CPU reference.
+    /// Returns the state that tests compare with the CPU reference.
     #[cfg(test)]
     pub(crate) fn parts(&self) -> Parts<'_> {
         Parts {
@@ -268,7 +268,7 @@ impl Engine {
         }
     }
 
-    /// Less room for the list of surfels than there is: that of one piece's names, and of all.
+    /// Limits the list of surfels for a test: names of one piece, and of all pieces.
     #[cfg(test)]
     pub(crate) fn limit_list(&mut self, piece: u32, kept: u64) {
         self.scatter.limit(super::surfel_list::Limits { piece, kept });

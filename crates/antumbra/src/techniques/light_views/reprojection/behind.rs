@@ -1,11 +1,11 @@
-//! Central views from behind the light, which hold what is nearer to the light than the light is large.
+//! Central views from behind the light, which hold casters that are nearer to the light than the light is large.
 //!
-//! From the light's middle, what is at depth z hides light of its rim at tangents up to r / z: a cover right before a light lies beyond
-//! every window, or is seen edge-on. From a place d behind the light tangents are no larger than r / d: along a segment from a receiver to
-//! the light, offsets change linearly with depth, and their tangents from there lie between those of the segment's two ends. A window
-//! that holds receivers and light holds all segments between them.
+//! From the light's centre, casters at depth z hide the light's rim at tangents up to r / z: a cover just in front of a light lies beyond
+//! every window, or is seen edge-on. From a distance d behind the light, tangents are no larger than r / d: along a segment from a receiver
+//! to the light, offsets change linearly with depth, and their tangents lie between those of the segment's two ends. A window that holds
+//! receivers and light holds all segments between them.
 //!
-//! What is behind the light is seen, too, and left out where surfels are collected.
+//! These views also see surfaces behind the light, which are left out when surfels are collected.
 
 use antumbra_light::{Aabb, Light, LightFrame};
 use glam::{DVec4, Vec3};
@@ -15,23 +15,23 @@ use crate::light_map::light_spread::LightSpread;
 use crate::light_map::light_view::{Followed, LightView, MIDDLE_TANGENT, ViewFit};
 use crate::light_map::occluding_bounds::Between;
 
-/// The light is seen at this tangent: by the middle face of a cube. From nearer behind, what is before its rim would be seen at a grazing
-/// angle; from farther, in coarser texels.
+/// Tangent at which the light's edge is seen, just within the middle face of a cube. From nearer, casters in front of the light's rim would
+/// be seen at a grazing angle; from farther, in coarser texels.
 const LIGHT_TANGENT: f32 = 1.0;
 
-/// A place behind a light, and where the light begins.
+/// Position behind a light, and distance to the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Behind {
-    /// The light's axes about the place.
+    /// Axes of the light, at the position.
     pub(super) frame: LightFrame,
-    /// From the place to the light's back, metres.
+    /// Distance from the position to the light's back, metres.
     depth_m: f32,
-    /// From there to what counts as before the light.
+    /// Distance from there to what counts as in front of the light, metres.
     gap_m: f32,
 }
 
 impl Behind {
-    /// Of a light, where `from_middle` does not hold what is near to it.
+    /// Position behind a light; `None` if the view `from_middle` holds the casters near the light.
     pub(super) fn of(light: &Light, from_middle: &LightView) -> Option<Self> {
         if from_middle.held_from_m == 0.0 {
             return None;
@@ -41,11 +41,11 @@ impl Behind {
         let depth_m = extent.max_element() / tangent;
         let center = from_middle.frame.center - (depth_m + extent_axis) * from_middle.frame.axis;
         let frame = LightFrame { center, ..from_middle.frame };
-        // What lies in the light's own plane, as a ceiling about a panel does, is behind it.
+        // Surfaces in the light's own plane, such as a ceiling around a panel, count as behind it.
         Some(Self { frame, depth_m, gap_m: 0.5 * from_middle.near_m })
     }
 
-    /// The view in one window, where one holds all receivers.
+    /// View with one window; `None` without receivers, or if no window holds all of them.
     pub(super) fn plane(&self, light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> Option<LightView> {
         if receivers.is_empty() {
             return None;
@@ -66,7 +66,7 @@ impl Behind {
         (view.window.half_size.max_element() <= MIDDLE_TANGENT).then_some(view)
     }
 
-    /// The plane from which on things are before the light, on world-space places.
+    /// Plane in world space from which on casters are in front of the light.
     pub(super) fn front_in_world(&self) -> DVec4 {
         let LightFrame { center, axis, .. } = self.frame;
         let (center, axis) = (center.as_dvec3(), axis.as_dvec3());
@@ -74,8 +74,8 @@ impl Behind {
     }
 }
 
-/// Casters as they are drawn from behind a light. Of a solid that may hold the light the nearest faces are behind it, and the back ones
-/// before it, which layers of solids leave out: it is drawn as open.
+/// Casters as they are drawn from behind a light. A solid that may contain the light has its nearest faces behind the light and its back
+/// faces in front of it; since layers leave out back faces of solids, it is drawn as open.
 pub(super) fn open_about_light<'a>(light: &Light, casters: &'a [MeshCaster<'a>]) -> Vec<MeshCaster<'a>> {
     let radius = Vec3::splat(light.bounding_radius());
     let of_light = Aabb { min: light.center - radius, max: light.center + radius };

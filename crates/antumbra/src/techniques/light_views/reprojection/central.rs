@@ -1,5 +1,5 @@
-//! The views that fragments go from and to: one from the light's middle, or the faces of a cube about it, and as many
-//! from each of its points; and the matrices between their images.
+//! Views that fragments are reprojected from and to: one from the light's centre, or the faces of a cube around it, and as
+//! many from each light point; and the matrices between their images.
 
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint};
 use glam::{DMat4, DVec4, Mat4, Vec3};
@@ -12,53 +12,53 @@ use crate::light_map::light_view::{Followed, LightView, LightViewGpu, Window};
 use crate::light_map::occluding_bounds::Between;
 use crate::techniques::light_views::{Batch, views_from};
 
-/// A plane view wider than this tangent is cut or wasteful; a cube takes its place.
+/// Maximum tangent of a plane view: a wider one is cut or wasteful, and a cube takes its place.
 const WIDEST_PLANE_TANGENT: f32 = 2.5;
 
-/// Faces of a cube, in the order of `sample_views.wesl`; the last looks back and is left out for lights that send
-/// nothing there.
+/// Number of faces of a cube, in the order of `sample_views.wesl`; the last looks back and is left out for lights that
+/// emit nothing there.
 const CUBE_FACES: usize = 6;
 
-/// How far a cube's face reaches beyond its edge, texels: bilinear quads and the bias stay on the face.
+/// Border of a cube's face beyond its edge, texels: bilinear quads and the bias stay on the face.
 const FACE_BORDER_TEXELS: f32 = 2.0;
 
-/// The near plane of a cube's faces, as a fraction of the far plane: reversed 32-bit depths keep their precision.
+/// Near plane of a cube's faces, as a fraction of the far plane: reversed 32-bit depths keep their precision.
 const CUBE_NEAR_FRACTION: f32 = 1e-3;
 
-/// As in `splat.wesl`.
+/// Number of targets of a group, as in `splat.wesl`.
 const GROUP_SIZE: usize = 8;
 
-/// A matrix's last row that differs from (0, 0, 0, 1) by less, over a whole image, is that: it is as near as light points
-/// in 32 bits lie to one plane, and a thousand times nearer than texels are to each other.
+/// Difference from (0, 0, 0, 1), over a whole image, below which a matrix's last row counts as that: the precision with which
+/// light points in 32 bits lie in one plane, and a thousandth of the distance between texels.
 const AFFINE_PRECISION: f64 = 1e-6;
 
-/// The views of a frame.
+/// Views of a frame.
 #[derive(Debug)]
 pub(super) struct Views {
-    /// One, or the faces of a cube.
+    /// Central views: one, or the faces of a cube.
     pub(super) central: Vec<LightView>,
-    /// As many for each light point, point by point.
+    /// Targets: as many views for each light point, point by point.
     pub(super) targets: Vec<LightView>,
     /// Texels along a side of a central view.
     pub(super) central_size: u32,
     /// Texels along a side of a target.
     pub(super) view_size: u32,
-    /// Where the central views are from, if that is behind the light.
+    /// Position of the central views, if they are from behind the light.
     pub(super) behind: Option<Behind>,
 }
 
-/// From the central images to the targets'.
+/// Matrices from the central images to the targets'.
 #[derive(Debug)]
 pub(super) struct Matrices {
-    /// Central view by central view, face by face, point by point: see [`target_from_central`].
+    /// Matrices by central view, face and point: see [`target_from_central`].
     pub(super) target_from_central: Vec<Mat4>,
-    /// Central view by central view, face by face: see [`metres_from_central`].
+    /// Matrices by central view and face: see [`metres_from_central`].
     metres_from_central: Vec<Mat4>,
-    /// Whether w is 1 in all of the first.
+    /// Whether w is 1 in all of `target_from_central`.
     pub(super) is_affine: bool,
 }
 
-/// Which of the groups are one central view's in one batch.
+/// Range of the groups of one central view in one batch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GroupRange {
     pub(super) first: u32,
@@ -84,7 +84,7 @@ impl Views {
             return Self { central, targets, central_size, view_size, behind };
         }
         let (central_size, view_size) = ((central_size / 2).max(1), (view_size / 2).max(1));
-        // What is farther than all that receives shades nothing.
+        // Casters farther than all receivers cast no shadow on them.
         let of_receivers = Aabb::of(receivers.iter().copied());
         let of_casters = || Between::new(light, casters, receivers).all().fold(Aabb::EMPTY, Aabb::union);
         let all = if of_receivers.is_empty() { of_casters() } else { of_receivers };
@@ -95,25 +95,25 @@ impl Views {
         Self { central, targets, central_size, view_size, behind }
     }
 
-    /// Maps of each light point.
+    /// Number of maps of each light point.
     pub(super) fn faces(&self) -> u32 {
         self.central.len() as u32
     }
 
-    /// A box's corners in the image of a central view: texels and depth, homogeneous.
+    /// Corners of a box in the image of a central view: texels and depth, homogeneous.
     pub(super) fn in_central(&self, view: usize, bounds: Aabb) -> [[f32; 4]; 8] {
         let texels_from_world = texels_from_world(&self.central[view], self.central_size);
         bounds.corners().map(|corner| (texels_from_world * corner.as_dvec3().extend(1.0)).as_vec4().to_array())
     }
 
-    /// What is before the light in the image of a central view: see [`SplatBatch`].
+    /// Plane of the light's front in the image of a central view: see [`SplatBatch`].
     pub(super) fn light_front_in_central(&self, view: usize) -> [f32; 4] {
         let Some(behind) = self.behind else { return [0.0, 0.0, 0.0, 1.0] };
         let texels_from_world = texels_from_world(&self.central[view], self.central_size);
         (texels_from_world.inverse().transpose() * behind.front_in_world()).as_vec4().to_array()
     }
 
-    /// The light's part of a [`SplatBatch`]: see `hides_nothing` in `surfels.wesl`.
+    /// Fields of a [`SplatBatch`] that describe the light: see `hides_nothing` in `surfels.wesl`.
     pub(super) fn light_in_central(&self, view: usize, points: &[LightPoint]) -> SplatBatch {
         let central = &self.central[view];
         let LightFrame { center, right, up, axis } = central.frame;
@@ -121,7 +121,7 @@ impl Views {
             points.iter().fold(Vec3::ZERO, |most, point| most.max(along(point).abs()))
         };
         let on_axes = |v: Vec3| Vec3::new(v.dot(right), v.dot(up), v.dot(axis));
-        // Metres; of directions, tangents.
+        // Metres; for directions, tangents.
         let reach = if central.perspective {
             reach(&|point| on_axes(point.xyz - center))
         } else {
@@ -137,7 +137,7 @@ impl Views {
         SplatBatch { light_reach, light_axis, ..SplatBatch::default() }
     }
 
-    /// All matrices.
+    /// Computes all matrices.
     pub(super) fn matrices(&self, settings: &Settings) -> Matrices {
         let target_from_central = target_from_central(self, settings.bias_before.then_some(settings.bias_scale));
         let is_affine = target_from_central.iter().all(|matrix| matrix.row(3) == glam::Vec4::W);
@@ -146,8 +146,8 @@ impl Views {
 }
 
 impl Matrices {
-    /// The matrices in groups, batch by batch, central view by central view, face by face; and where each central view's
-    /// of each batch are.
+    /// Returns the matrices in groups, by batch, central view and face; and the range of groups of each central view in
+    /// each batch.
     pub(super) fn groups(&self, faces: u32, batches: &[Batch]) -> (Vec<ViewGroup>, Vec<Vec<GroupRange>>) {
         let faces = faces as usize;
         let points = self.target_from_central.len() / (faces * faces);
@@ -182,19 +182,19 @@ impl Matrices {
     }
 }
 
-/// The one central view of a plane.
+/// Central view in a single plane.
 fn central_plane(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
     let fit = central_fit(light, Followed::All, central_reach(light), casters, receivers).for_many_windows();
     fit.view(LightView::best_roll(|window| fit.view(window)))
 }
 
-/// Whether anything that receives, or may, is behind the plane through a place.
+/// Whether any receiver is behind the plane through `middle`; if none are known, whether part of `all` is.
 fn is_behind(middle: &LightFrame, receivers: &[Vec3], all: Aabb) -> bool {
     let behind = |x: &Vec3| (*x - middle.center).dot(middle.axis) < 0.0;
     if receivers.is_empty() { all.corners().iter().any(behind) } else { receivers.iter().any(behind) }
 }
 
-/// Whether the centre is a cube: where asked for, or where a plane view would be cut. Lights that shine all around come in
+/// Whether the central view is a cube: if requested, or if a plane view would be cut. Lights that shine all around come in
 /// parts, each of which a plane holds.
 fn needs_cube(light: &Light, plane: &LightView, projection: ReprojectionProjection) -> bool {
     !light.is_distant()
@@ -207,7 +207,7 @@ fn needs_cube(light: &Light, plane: &LightView, projection: ReprojectionProjecti
         }
 }
 
-/// The faces about the light's middle, and for each light point as many.
+/// Cube faces around the light's centre, and around each light point.
 fn central_and_target_cubes(
     middle: LightFrame,
     points: &[LightPoint],
@@ -228,7 +228,7 @@ fn central_and_target_cubes(
     (central, points.iter().flat_map(|point| cube(point.xyz, view_size)).collect())
 }
 
-/// The faces of a cube about `frame`'s centre, in the order of [`CUBE_FACES`].
+/// Faces of a cube around `frame`'s centre, in the order of [`CUBE_FACES`].
 fn cube_faces(frame: LightFrame, far_m: f32, size: u32) -> [LightView; CUBE_FACES] {
     let LightFrame { right, up, axis, .. } = frame;
     let half_size = 1.0 / (1.0 - 2.0 * FACE_BORDER_TEXELS / size as f32).max(0.5);
@@ -251,10 +251,10 @@ fn cube_faces(frame: LightFrame, far_m: f32, size: u32) -> [LightView; CUBE_FACE
     })
 }
 
-/// Texels and depth of a target from texels and depth of the centre, for each central view a list for each face.
+/// Matrices from texels and depth of the centre to texels and depth of a target: for each central view, a list for each face.
 ///
 /// With bias before reprojection, the central depth first moves away from the light by the automatic bias of the
-/// central map: Z grows by the factor 1 + b, or by b where rays are parallel, so that depth changes affinely.
+/// central map: Z grows by the factor 1 + b, or by b if rays are parallel, so that depth changes affinely.
 fn target_from_central(views: &Views, bias_before: Option<f32>) -> Vec<Mat4> {
     let Views { central, targets, central_size, view_size, .. } = views;
     let mut matrices = Vec::with_capacity(central.len() * targets.len());
@@ -267,7 +267,7 @@ fn target_from_central(views: &Views, bias_before: Option<f32>) -> Vec<Mat4> {
         let faces = central.len();
         for target in (0..faces).flat_map(|face| targets.iter().skip(face).step_by(faces)) {
             let matrix = texels_from_world(target, *view_size) * world_from_texels;
-            // Any multiple is the same map; this one keeps w near 1.
+            // Any multiple is the same transform; this one keeps w near 1.
             let scale = matrix.w_axis.w.abs().max(matrix.row(3).abs().max_element());
             matrices.push(snapped(matrix * scale.recip(), *central_size).as_mat4());
         }
@@ -275,7 +275,7 @@ fn target_from_central(views: &Views, bias_before: Option<f32>) -> Vec<Mat4> {
     matrices
 }
 
-/// The matrix with a last row of exactly (0, 0, 0, 1), where it is that but for rounding.
+/// Returns the matrix with a last row of exactly (0, 0, 0, 1), if it differs from that only by rounding.
 fn snapped(mut matrix: DMat4, central_size: u32) -> DMat4 {
     let off = (matrix.row(3) - DVec4::W).abs();
     let size = f64::from(central_size);
@@ -288,8 +288,8 @@ fn snapped(mut matrix: DMat4, central_size: u32) -> DMat4 {
     matrix
 }
 
-/// For each central view and each face: metres from the light's middle along the face's axes, homogeneous, from texels
-/// and depth of the view.
+/// Matrices, for each central view and each face, from texels and depth of the view to metres from the centre of the central
+/// views along the face's axes, homogeneous.
 fn metres_from_central(views: &Views) -> Vec<Mat4> {
     let metres_from_world = |frame: &LightFrame| {
         let rows = [frame.right, frame.up, frame.axis].map(|axis| {
@@ -307,7 +307,7 @@ fn metres_from_central(views: &Views) -> Vec<Mat4> {
     matrices
 }
 
-/// Texels and depth of a view's map, homogeneous.
+/// Matrix from world space to texels and depth of a view's map, homogeneous.
 pub(super) fn texels_from_world(view: &LightView, size: u32) -> DMat4 {
     let half = 0.5 * f64::from(size);
     let texels_from_clip = DMat4::from_cols(

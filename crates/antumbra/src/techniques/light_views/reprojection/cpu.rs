@@ -4,32 +4,32 @@ use glam::{Mat4, Vec2, Vec3Swizzles, Vec4, Vec4Swizzles};
 
 use super::gpu_types::SplatBatch;
 
-/// A batch of square maps, as depth bits; 0 where nothing was stored.
+/// Batch of square maps, as depth bits; 0 in texels without a fragment.
 #[derive(Debug)]
 pub(crate) struct Targets {
     pub(crate) view_size: u32,
     pub(crate) texels: Vec<u32>,
 }
 
-/// As in `splat.wesl`.
+/// Maximum texels of a surfel to each side, as in `splat.wesl`.
 const MOST_TEXELS: f32 = 16.0;
 
-/// As in `splat_surfels.wesl`.
+/// Maximum difference of slopes within a flat piece, as in `surfels.wesl`.
 const FLAT: f32 = 0.0625;
 
-/// A square of the central image, and the plane that it lies in.
+/// Square of the central image, and the plane that it lies in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surfel {
     pub(crate) pos: Vec2,
     pub(crate) depth: f32,
-    /// Depth a central texel.
+    /// Depth per central texel.
     pub(crate) gradient: Vec2,
     /// Half the square's side, central texels.
     pub(crate) reach: f32,
 }
 
-/// The surfels of 2 × 2 fragments: one where they are one flat piece, else their own; `widths` is the depth that a texel
-/// is wide, (a, b) of a · depth + b.
+/// Surfels of 2 × 2 fragments: one if they are a flat piece, otherwise one for each; `widths` is a texel's width as a
+/// difference in depth, (a, b) of a · depth + b.
 pub(crate) fn surfels_of(quad: &[Surfel; 4], widths: (f32, f32)) -> Vec<Surfel> {
     let d = quad.map(|fragment| fragment.depth);
     let middle = 0.25 * ((d[0] + d[1]) + (d[2] + d[3]));
@@ -44,7 +44,7 @@ pub(crate) fn surfels_of(quad: &[Surfel; 4], widths: (f32, f32)) -> Vec<Surfel> 
     quad.iter().copied().filter(|fragment| fragment.depth > 0.0).collect()
 }
 
-/// As in `surfels.wesl`.
+/// Tolerance for receivers behind a plane, as in `surfels.wesl`.
 const ROOM_TEXELS: f32 = 0.125;
 
 /// Whether a surfel's plane has every receiver on the light's side.
@@ -68,15 +68,15 @@ impl Targets {
         Self { view_size, texels: vec![0; (view_size * view_size * map_count) as usize] }
     }
 
-    /// The nearest stays: reversed depths are positive, and their bits ordered as they are.
+    /// Keeps the nearest depth: reversed depths are positive, and their bits have the same order.
     fn keep(&mut self, map: usize, x: f32, y: f32, depth: f32) {
         let size = self.view_size as usize;
         let texel = &mut self.texels[(map * size + y as usize) * size + x as usize];
         *texel = (*texel).max(depth.min(1.0).to_bits());
     }
 
-    /// Stores a fragment in the texel of each target (its index, its matrix) that it falls in, within `reach` texels of
-    /// the centre.
+    /// Stores a fragment in the texel that it falls in, of each target (its index, its matrix), if it is within `reach`
+    /// texels of the texel's centre.
     pub(crate) fn scatter_point(
         &mut self,
         target_from_central: &[(usize, Mat4)],

@@ -1,7 +1,7 @@
 use crate::gpu::gpu_structs;
 
 gpu_structs! {
-    /// How one central view is scattered into the maps of a batch; see `splat.wesl`.
+    /// Parameters for scattering one central view into the maps of a batch; see `splat.wesl`.
     pub(crate) struct SplatBatch {
         view_size: u32,
         row_texels: u32,
@@ -42,7 +42,7 @@ gpu_structs! {
         padding: [[u32; 4]; 15],
     }
 
-    /// How the integer maps lie; see `draw.wesl`.
+    /// Layout of the integer maps; see `draw.wesl`.
     pub(crate) struct DrawMaps {
         view_size: u32,
         row_texels: u32,

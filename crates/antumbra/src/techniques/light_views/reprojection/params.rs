@@ -4,11 +4,11 @@ use super::settings::{ReprojectionFilter, ReprojectionPath, ReprojectionProjecti
 use crate::contract::{param_choice, params};
 
 param_choice! {
-    /// When [`Reprojection`](super::Reprojection) adds its bias.
+    /// Step at which [`Reprojection`](super::Reprojection) adds its bias.
     pub enum ReprojectionBias {
-        /// To the receiver's plane in each view.
+        /// After reprojection, to the receiver's plane in each view.
         After = "after",
-        /// To the central map's fragments.
+        /// Before reprojection, to the central map's fragments.
         Before = "before",
     }
 }
@@ -43,7 +43,7 @@ params! {
         filter: ReprojectionFilter = ReprojectionFilter::Manual,
             more "manual and copy compare each texel with the receiver's plane; draw compares one depth, as the paper \
                   does, and detaches grazing contacts.";
-        /// Place where the bias is added.
+        /// Step at which the bias is added.
         bias: ReprojectionBias = ReprojectionBias::After,
             more "before is the paper's counter-example: surfaces shadow themselves.";
         /// Shape of the central map.

@@ -2,7 +2,7 @@
 
 use crate::gpu::{Gpu, overrides, shader_module};
 
-/// A compute pipeline of group 1, the central map, and group 2, the splat.
+/// Creates a compute pipeline with group 1, the central map, and group 2, the splat.
 pub(super) fn compute_program(
     gpu: &Gpu,
     wgsl: &'static str,

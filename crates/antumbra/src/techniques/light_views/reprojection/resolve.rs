@@ -1,4 +1,4 @@
-//! A batch of integer maps, made filterable where that is asked for, and added into the mask.
+//! Resolve pass of a batch of integer maps, which are made filterable if requested, and added to the mask.
 
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ bindings! {
     }
 }
 
-/// From integer maps to the mask.
+/// Passes from integer maps to the mask.
 #[derive(Debug)]
 pub(super) struct Resolve {
     technique: &'static str,
@@ -42,7 +42,7 @@ pub(super) struct Resolve {
     filterable: Option<Filterable>,
 }
 
-/// The pipelines of a [`ReprojectionFilter`]; made when first asked for, since a host uses one.
+/// Pipelines of a [`ReprojectionFilter`]; created on first use, since a host uses one.
 #[derive(Debug)]
 struct Accumulate {
     layout: wgpu::BindGroupLayout,
@@ -51,7 +51,7 @@ struct Accumulate {
     draw: Option<(wgpu::BindGroupLayout, wgpu::RenderPipeline)>,
 }
 
-/// What the integers are copied or drawn into.
+/// Texture that the integers are copied or drawn into.
 #[derive(Debug)]
 struct Filterable {
     lease: Lease,
@@ -60,13 +60,13 @@ struct Filterable {
     slices: Vec<wgpu::TextureView>,
 }
 
-/// What `record` needs.
+/// Resolve pass of one frame.
 #[derive(Debug)]
 pub(super) struct PreparedResolve {
     accumulate: wgpu::ComputePipeline,
-    /// Of `accumulate`, one a batch.
+    /// Bind groups of `accumulate`, one per batch.
     batches: Vec<wgpu::BindGroup>,
-    /// Draws integer maps into textures.
+    /// Pipeline and bind group that draw integer maps into textures.
     draw: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
 }
 
@@ -129,7 +129,7 @@ impl Resolve {
         if self.filterable.as_ref().is_some_and(|f| f.texture.size() == size && f.texture.format() == format) {
             return;
         }
-        // What there is goes back to the budget before more is taken.
+        // The old texture goes back to the budget before a new one is taken.
         self.filterable = None;
         let bytes = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers) * 4;
         let lease = Lease::new(&stage.device, bytes);
@@ -172,7 +172,7 @@ impl Resolve {
         });
     }
 
-    /// Bytes of what the integers are copied or drawn into.
+    /// Bytes of the texture that the integers are copied or drawn into.
     pub(super) fn memory_bytes(&self) -> u64 {
         self.filterable.as_ref().map_or(0, |filterable| filterable.lease.own_bytes())
     }

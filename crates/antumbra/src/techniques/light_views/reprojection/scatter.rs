@@ -1,4 +1,4 @@
-//! Fragments of the central views, into a batch of integer maps.
+//! Scatter of the central views' fragments into a batch of integer maps.
 
 use std::sync::{Arc, LazyLock};
 
@@ -23,7 +23,7 @@ bindings! {
         0 central_depth: TextureArray(texels::DEPTH),
     }
 
-    /// For passes over a central map, of a group of views each.
+    /// Bindings of passes over a central map, each into one group of views.
     struct GroupSplat = "splat", COMPUTE | FRAGMENT,
         group 2 of [REPROJECTION_SPLAT_POINTS, REPROJECTION_SPLAT_SURFELS, REPROJECTION_SPLAT_SCREEN]
     {
@@ -32,7 +32,7 @@ bindings! {
         2 targets: ReadWrite,
     }
 
-    /// For the central rasterisation itself, over all groups.
+    /// Bindings of the central rasterisation itself, into all groups.
     struct RasterisedSplat = "splat while rasterising", COMPUTE | FRAGMENT,
         group 2 of [REPROJECTION_SPLAT_OPAQUE, REPROJECTION_SPLAT_CUTOUT]
     {
@@ -42,42 +42,42 @@ bindings! {
     }
 }
 
-/// The label of the scatter, its clearing included.
+/// Label of the scatter, including its clear.
 const REPROJECT: &str = "reprojected depth maps";
 
-/// Threads along each side of a scatter's workgroup, and texels of a thread.
+/// Texels along each side of a scatter's workgroup: 8 threads of 2 texels each.
 const TILE_TEXELS: u32 = 8 * 2;
 
-/// Texels along each side of a fragment, where fragments scatter.
+/// Texels along each side that one fragment scatters, if fragments scatter.
 const FRAGMENT_TEXELS: u32 = 2;
 
-/// Half a fragment's side, and a hundredth of it more: where both maps' texels fall on one grid, texel centres lie on
-/// fragments' edges, and rounding would leave cracks. Reaching farther closes the last cracks of curved surfaces, and
+/// Half a surfel's side, central texels: a hundredth more than a fragment's. If both maps' texels fall on one grid, texel
+/// centres lie on fragments' edges, and rounding would leave cracks. A longer reach closes the last cracks of curved surfaces, and
 /// widens every occluder: at .55 the leak on `shanty` falls by a third and the overshadow grows by a half.
 pub(crate) const SURFEL_REACH: f32 = 0.505;
 
-/// The integer maps of one batch: row after row, map after map.
+/// Integer maps of one batch, row by row and map by map.
 #[derive(Debug)]
 pub(super) struct Targets {
     pub(super) buffer: wgpu::Buffer,
     pub(super) view_size: u32,
-    /// From the start of a row to the next: rows start where copies into textures may.
+    /// Row pitch, texels: rows start at the alignment of copies to textures.
     pub(super) row_texels: u32,
     pub(super) map_count: u32,
 }
 
-/// From central maps to integer maps.
+/// Passes from central maps to integer maps.
 #[derive(Debug)]
 pub(super) struct Scatter {
     group_layout: wgpu::BindGroupLayout,
     rasterised_layout: wgpu::BindGroupLayout,
     central_layout: wgpu::BindGroupLayout,
     program: Option<(PipelineKey, Arc<Program>)>,
-    /// Of surfels by compute; made when such are first asked for.
+    /// List of surfels that compute scatters; created on first use.
     list: Option<SurfelList>,
     limits: Limits,
     groups: Option<wgpu::Buffer>,
-    /// Of a fragment pass over a central map, which that map cannot be while it is read.
+    /// Depth attachment of a fragment pass over a central map, which is not attached itself while it is read.
     no_depth: Option<NoDepth>,
 }
 
@@ -93,39 +93,39 @@ struct PipelineKey {
     brings_together: bool,
 }
 
-/// Where fragments are scattered.
+/// Stage in which fragments are scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Scattering {
     Compute,
     Screen,
-    /// Only the nearest, or all.
+    /// Rasterisation of the central view, of only the nearest fragments or all.
     Raster {
         nearest: bool,
     },
 }
 
-/// The pipelines of one choice; made when first asked for, since a host uses one.
+/// Pipelines of one key; created on first use, since a host uses one.
 #[derive(Debug)]
 enum Program {
-    /// One thread 2 × 2 texels.
+    /// Compute pass with one thread per 2 × 2 texels.
     Points(wgpu::ComputePipeline),
-    /// One thread one of the list.
+    /// Compute pass with one thread per surfel of the list.
     Surfels(wgpu::ComputePipeline),
     Screen(wgpu::RenderPipeline),
     Raster(CasterProgram),
 }
 
-/// What `record` needs.
+/// Scatter of one frame.
 #[derive(Debug)]
 pub(super) struct PreparedScatter {
     program: Arc<Program>,
     central: Option<wgpu::BindGroup>,
     list: Option<PreparedList>,
-    /// Batch by batch, central view by central view.
+    /// Scatters by batch and central view.
     batches: Vec<Vec<ViewSplat>>,
 }
 
-/// One central view into one batch.
+/// Scatter of one central view into one batch.
 #[derive(Debug)]
 struct ViewSplat {
     bind_group: wgpu::BindGroup,
@@ -146,7 +146,7 @@ impl Scatter {
         }
     }
 
-    /// Uploads `groups`, of which `ranges` tells what is whose, and makes what is missing.
+    /// Uploads `groups` and creates missing objects; `ranges` has the groups of each batch and central view.
     pub(super) fn prepare(
         &mut self,
         stage: &Stage<'_>,
@@ -239,13 +239,13 @@ impl Scatter {
         }
     }
 
-    /// Groups 1, the central map, and 2, the splat; group 0 is the casters' where there are any.
+    /// Layouts of groups 1, the central map, and 2, the splat; group 0 is the casters', if there are any.
     fn map_layouts(&self) -> [Option<&wgpu::BindGroupLayout>; 3] {
         [None, Some(&self.central_layout), Some(&self.group_layout)]
     }
 
-    /// `nearest`: with the depth test, before the fragment stage where the device can be told so. Elsewhere, and on
-    /// devices that cannot, hidden fragments are reprojected too.
+    /// Pipelines that scatter while rasterising. `nearest`: with the depth test, before the fragment stage if the device
+    /// supports that; otherwise hidden fragments are reprojected, too.
     fn raster_program(
         &self,
         gpu: &Gpu,
@@ -350,13 +350,13 @@ impl Scatter {
         }
     }
 
-    /// The list and its counts, where there is one.
+    /// List of surfels and its counts, if there is one.
     #[cfg(test)]
     pub(super) fn list_buffers(&self) -> Option<[&wgpu::Buffer; 2]> {
         self.list.as_ref()?.buffers()
     }
 
-    /// Less room for the list than there is.
+    /// Limits the list for a test.
     #[cfg(test)]
     pub(super) fn limit(&mut self, limits: Limits) {
         self.limits = limits;
@@ -406,7 +406,7 @@ fn splat_batch(
     let (width_of_depth, width) = views.central[view].depth_per_texel(views.central_size, 1.0);
     let middle = views.central[0].frame.center;
     let light_radius_m = points.iter().map(|point| point.xyz.distance(middle)).fold(0.0, f32::max);
-    // A flat piece's middle may lie a texel beyond what it covers.
+    // The centre of a flat piece may lie a texel beyond the texels that it covers.
     let face_half_size = views.central[0].window.half_size.x * (1.0 + 4.0 / views.view_size as f32);
     SplatBatch {
         view_size: targets.view_size,
@@ -427,6 +427,6 @@ fn splat_batch(
     }
 }
 
-/// The shaders with the depth test before the fragment stage.
+/// Shaders with the depth test before the fragment stage.
 static EARLY_OPAQUE: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_OPAQUE));
 static EARLY_CUTOUT: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_CUTOUT));

@@ -5,7 +5,7 @@ use crate::techniques::Coverage;
 use crate::techniques::light_views::PointChoice;
 
 param_choice! {
-    /// Which shader stage scatters the fragments.
+    /// Shader stage that scatters the fragments.
     pub enum ReprojectionPath {
         /// A compute pass over the central map.
         Compute = "compute",
@@ -17,21 +17,21 @@ param_choice! {
 }
 
 param_choice! {
-    /// How the integer maps are compared with receivers.
+    /// Comparison of the integer maps with receivers.
     pub enum ReprojectionFilter {
         /// Four loads from the integers.
         Manual = "manual",
-        /// Copied into a float texture, one gather.
+        /// A copy in a float texture, read by one gather.
         Copy = "copy",
-        /// Drawn into a depth texture, the hardware's comparison sampler.
+        /// A depth texture that they are drawn into, read by the hardware's comparison sampler.
         Draw = "draw",
     }
 }
 
 param_choice! {
-    /// What the central map is.
+    /// Shape of the central map.
     pub enum ReprojectionProjection {
-        /// A cube where the light's plane view would be cut, a plane elsewhere.
+        /// A cube if the light's plane view would be cut, otherwise a plane.
         Auto = "auto",
         /// One view along the light's axis.
         Plane = "plane",
@@ -41,8 +41,8 @@ param_choice! {
 }
 
 impl ReprojectionProjection {
-    /// A cube's faces hold all that is before the light, and all around it; six planes are less work, where the light
-    /// shines all around.
+    /// Directions that the central map covers. A cube's faces cover everything in front of the light, or all around it; six
+    /// planes are less work if the light shines all around.
     pub(crate) fn coverage(self) -> Coverage {
         match self {
             Self::Auto => Coverage::HalfSpace,
@@ -52,31 +52,31 @@ impl ReprojectionProjection {
     }
 }
 
-/// Where a fragment is stored.
+/// Texels in which a fragment is stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Splat {
-    /// In the texel that it falls in.
+    /// The texel that it falls in.
     Point,
-    /// There, if it is no farther from the texel's centre than this, texels.
+    /// The texel that it falls in, if it is at most this far from the texel's centre, texels.
     NearCentre(f32),
-    /// In every texel whose centre lies in its footprint, its slope held at this (depth per width).
+    /// Every texel whose centre lies in its footprint; its slope is limited to this, depth per width.
     Surfel(f32),
 }
 
-/// Which fragments there are.
+/// Source of the fragments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Source {
     /// The nearest layers, scattered from maps by compute.
     LayersByCompute(u32),
     /// The nearest layer, scattered from a map by a fragment pass.
     LayerByFragments,
-    /// While rasterising: what passes the depth test until then.
+    /// Fragments that pass the depth test, in the order of drawing, scattered while rasterising.
     NearestWhileRasterising,
-    /// While rasterising: everything.
+    /// All fragments, scattered while rasterising.
     AllWhileRasterising,
 }
 
-/// One frame's settings.
+/// Settings of one frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
     pub(crate) view_size: u32,
@@ -85,7 +85,7 @@ pub(crate) struct Settings {
     pub(crate) splat: Splat,
     pub(crate) source: Source,
     pub(crate) synchronized: bool,
-    /// Whether points that meet in a texel are brought together before they are stored.
+    /// Whether points that fall into one texel are merged before they are stored.
     pub(crate) brings_together: bool,
     pub(crate) filter: ReprojectionFilter,
     pub(crate) projection: ReprojectionProjection,
@@ -94,8 +94,8 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    /// Whether the central view may be from behind the light: points would leave gaps where views see them from nearer, and fragments
-    /// that are scattered while they are rasterised are not told from those behind the light.
+    /// Whether the central view may be from behind the light. Points would leave gaps in views that see them from nearer, and a
+    /// scatter while rasterising does not leave out fragments behind the light.
     pub(crate) fn may_be_from_behind(&self) -> bool {
         matches!((self.splat, self.source), (Splat::Surfel(_), Source::LayersByCompute(_)))
             && self.projection == ReprojectionProjection::Auto
@@ -103,12 +103,12 @@ impl Settings {
 }
 
 impl Source {
-    /// Whether the central views are drawn first, and scattered then.
+    /// Whether the central views are drawn to maps before they are scattered.
     pub(crate) fn needs_central_map(self) -> bool {
         matches!(self, Self::LayersByCompute(_) | Self::LayerByFragments)
     }
 
-    /// Layers of each central view that are kept.
+    /// Number of layers of each central view that are kept.
     pub(crate) fn layers(self) -> u32 {
         if let Self::LayersByCompute(layers) = self { layers } else { 1 }
     }

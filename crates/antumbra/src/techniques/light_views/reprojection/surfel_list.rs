@@ -1,12 +1,12 @@
-//! The list of a central map's surfels, which every group of views is scattered from.
+//! List of a central map's surfels, from which every group of views is scattered.
 //!
-//! Layers behind the first are mostly empty, and a batch of views is several groups: what is there is found once, and a
-//! group then costs by what there is. The list is made by [pieces](SurfelPiece), bands of rows of a slice, each of which
-//! has room for a surfel a texel, so that nothing is lost. Where all pieces have a place of their own within a budget,
-//! they are listed once a frame, else one after the other for each batch, in one place.
+//! Layers behind the first are mostly empty, and a batch of views has several groups: surfels are found once, and the cost of a
+//! group depends on their number. The list is made by [pieces](SurfelPiece), bands of rows of a slice, each with space for
+//! one surfel per texel, so that none is lost. If all pieces fit a budget, each has a place of its own and they are listed once
+//! per frame; otherwise they are listed one after the other for each batch, in one place.
 //!
-//! - `collected surfels` reads a central map's texels once, 8 bytes each, and writes 4 bytes a surfel.
-//! - `reprojected depth maps` reads for each surfel and group 4 bytes of name, and 20 of the map.
+//! - `collected surfels` reads a central map's texels once, 8 bytes each, and writes 4 bytes per surfel.
+//! - `reprojected depth maps` reads, for each surfel and group, 4 bytes of name and 20 bytes of the map.
 
 use super::gpu_types::SurfelPiece;
 use super::program::compute_program;
@@ -15,7 +15,7 @@ use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::shaders;
 
 bindings! {
-    /// What lists the surfels of a piece.
+    /// Bindings of the pass that lists the surfels of a piece.
     struct CollectSurfels = "collect surfels", COMPUTE, group 1 of [REPROJECTION_COLLECT_SURFELS] {
         0 central_depth: TextureArray(texels::DEPTH),
         1 central_gradient: TextureArray(texels::FLOAT),
@@ -24,7 +24,7 @@ bindings! {
         4 counts: ReadWrite,
     }
 
-    /// What scatters them.
+    /// Bindings of the pass that scatters listed surfels.
     struct ListedSurfels = "listed surfels", COMPUTE, group 1 of [REPROJECTION_SPLAT_SURFELS] {
         0 central_depth: TextureArray(texels::DEPTH),
         1 central_gradient: TextureArray(texels::FLOAT),
@@ -34,24 +34,24 @@ bindings! {
     }
 }
 
-/// The label of the listing.
+/// Label of the pass that lists surfels.
 const COLLECT: &str = "collected surfels";
 
 /// Texels along each side of a workgroup's share: 8 × 8 threads, 2 × 2 texels each.
 const TILE_TEXELS: u32 = 8 * 2;
 
-/// Room for names.
+/// Maximum numbers of names.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Of one piece.
+    /// Names of one piece.
     pub(super) piece: u32,
-    /// Of all pieces together, where each keeps its place.
+    /// Names of all pieces together, if each has its own place.
     pub(super) kept: u64,
 }
 
 impl Limits {
-    /// A piece of 16 MiB is half of what one dimension of workgroups scatters; 64 MiB in all are half of WebGPU's smallest
-    /// limit for a binding.
+    /// Default limits. A piece of 16 MiB is half of what one dimension of workgroups can scatter; 64 MiB in all are half of
+    /// WebGPU's smallest limit for a binding.
     pub(super) const DEFAULT: Self = Self { piece: 1 << 22, kept: 1 << 24 };
 }
 
@@ -68,25 +68,25 @@ pub(super) struct SurfelList {
     counts: Option<wgpu::Buffer>,
 }
 
-/// What `record` needs.
+/// Lists of one frame.
 #[derive(Debug)]
 pub(super) struct PreparedList {
     pieces: Pieces,
-    /// Of each piece, as arguments of a dispatch.
+    /// Counts of each piece, as arguments of an indirect dispatch.
     counts: wgpu::Buffer,
     collect: wgpu::BindGroup,
-    /// Group 1 of what scatters.
+    /// Bind group 1 of the scatter.
     pub(super) listed: wgpu::BindGroup,
 }
 
-/// How central maps are cut.
+/// Division of central maps into pieces.
 #[derive(Clone, Debug, PartialEq)]
 struct Pieces {
-    /// View by view, slice by slice, band by band.
+    /// Pieces by view, slice and band.
     all: Vec<Piece>,
-    /// Whether each has its own place in the list.
+    /// Whether each piece has its own place in the list.
     are_kept: bool,
-    /// Names that the list has room for.
+    /// Number of names that the list has space for.
     names: u64,
     size: u32,
 }
@@ -123,14 +123,14 @@ impl Pieces {
 }
 
 impl Piece {
-    /// Where its uniform lies, bytes.
+    /// Offset of the piece's uniform, bytes.
     fn offset(&self) -> u32 {
         self.gpu.first_count * 4 / COUNT_BYTES * size_of::<SurfelPiece>() as u32
     }
 }
 
 impl SurfelList {
-    /// `splat_layout` is of group 2: the batch.
+    /// Creates the pipeline; `splat_layout` is that of group 2, the batch.
     pub(super) fn new(gpu: &Gpu, splat_layout: &wgpu::BindGroupLayout) -> Self {
         let collect_layout = CollectSurfels::layout(gpu);
         let layouts = [None, Some(&collect_layout), Some(splat_layout)];
@@ -170,8 +170,8 @@ impl SurfelList {
         PreparedList { pieces, counts: counts.clone(), collect, listed }
     }
 
-    /// Before a batch: empties the counts where they are the frame before's or the batch before's, and lists the
-    /// surfels where that is done once a frame.
+    /// Records the work before a batch: clears counts of the frame or the batch before, and lists the surfels if that is
+    /// done once per frame.
     pub(super) fn record_collect(
         &self,
         recorder: &mut Recorder<'_>,
@@ -195,7 +195,7 @@ impl SurfelList {
 
     /// Scatters the surfels of all central views, as the last part of step `label`.
     ///
-    /// - `splats`: of each central view, group 2 and the offsets at which it has groups of views.
+    /// - `splats`: for each central view, group 2 and the offsets of its groups of views.
     pub(super) fn record_scatter(
         &self,
         recorder: &mut Recorder<'_>,
@@ -237,7 +237,7 @@ impl SurfelList {
         self.names.own_bytes() + self.counts.as_ref().map_or(0, wgpu::Buffer::size)
     }
 
-    /// The list, and each piece's count.
+    /// List, and counts of the pieces.
     #[cfg(test)]
     pub(super) fn buffers(&self) -> Option<[&wgpu::Buffer; 2]> {
         Some([self.names.buffer()?, self.counts.as_ref()?])

@@ -1,4 +1,4 @@
-//! The scatter against its CPU reference, the CPU reference against closed forms, and what the parameters promise.
+//! Tests of the scatter against its CPU reference, of the CPU reference against closed forms, and of the parameters.
 
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
@@ -18,12 +18,12 @@ use crate::testing::{
     read_texture, rmse, test_ground,
 };
 
-/// A fragment every texel of a slanted plane, by its depth: affine in the image.
+/// Depth of a slanted plane's fragment at a position; affine in the image.
 fn slanted(pos: Vec2) -> f32 {
     0.4 + 0.002 * pos.x - 0.001 * pos.y
 }
 
-/// A view moved sideways: texels shift with depth, as nearer surfaces do.
+/// Matrix to a view that is moved sideways: texels shift with depth, more for nearer surfaces.
 fn moved() -> Mat4 {
     Mat4::from_cols_array_2d(&[
         [0.5, 0.0, 0.0, 0.0],
@@ -74,7 +74,7 @@ fn twin_keeps_the_nearest_and_drops_what_is_outside() {
     for pos in [Vec2::new(-0.1, 1.0), Vec2::new(4.0, 1.0), Vec2::new(1.0, 4.2)] {
         targets.scatter_point(&[(0, Mat4::IDENTITY)], pos, 0.9, None);
     }
-    // Away from the centre by more than asked.
+    // Farther from the texel's centre than `reach`.
     targets.scatter_point(&[(0, Mat4::IDENTITY)], Vec2::new(1.1, 2.5), 0.95, Some(0.25));
     let stored: Vec<usize> = (0..16).filter(|i| targets.texels[*i] != 0).collect();
     assert_eq!(stored, [2 * 4 + 1]);
@@ -89,7 +89,7 @@ fn case(gpu: &Gpu) -> Case {
     case
 }
 
-/// The same with a sheet that is bent at every fragment or so, by little.
+/// The same scene with a sheet that is slightly bent at about every fragment.
 fn crumpled(gpu: &Gpu) -> Case {
     const ACROSS: u32 = 96;
     let mut case = case(gpu);
@@ -224,7 +224,7 @@ fn each_view_equals_the_twin_s() {
                 }
             }
         }
-        // A cube's surfels divide by what is itself a sum of products, which compilers may order as they like.
+        // A cube's surfels divide by a sum of products, which compilers may order as they like.
         let units = if matches!((splat, projection), (Splat::Surfel(_), ReprojectionProjection::Cube)) { 4 } else { 0 };
         let differing = texels.iter().zip(&twin.texels).filter(|(a, b)| a.abs_diff(**b) > units).count();
         let stored = twin.texels.iter().filter(|texel| **texel != 0).count();
@@ -237,7 +237,7 @@ fn each_view_equals_the_twin_s() {
     }
 }
 
-/// The names that a slice's surfels have, sorted: see `surfels.wesl`.
+/// Sorted names of a slice's surfels: see `surfels.wesl`.
 fn names_of(depths: &[f32], gradients: &[Vec2], size: usize, widths: (f32, f32)) -> Vec<u32> {
     let fragment = |(x, y): (usize, usize)| {
         let is_inside = x < size && y < size;
@@ -304,7 +304,7 @@ fn pieces_without_room_for_all_give_the_same_maps() {
         let whole = run(gpu, &case, &mut engine, &of_surfels);
         let all = engine.memory_bytes();
         assert!(whole.0.iter().any(|texel| *texel != 0));
-        // Bands of 16 and 32 rows: for all at once, and in one place.
+        // Bands of 16 rows, each with its own place, and of 32 rows, all in one place.
         for (piece, kept) in [(144 * 16, 1 << 24), (144 * 32, 0)] {
             engine.limit_list(piece, kept);
             assert!(run(gpu, &case, &mut engine, &of_surfels) == whole, "{projection:?}: {piece}, {kept}");
@@ -406,7 +406,7 @@ fn memory_does_not_grow_with_the_views() {
     case.with_frame(Casters::Meshes(&casters), |frame| technique.prepare(frame).map(drop)).expect("a good frame");
     let lists = 1024 * (96 + 192);
     let central = 512 * 512 * 4;
-    // What is uploaded passes through a buffer of a power of two bytes.
+    // Uploads pass through a buffer whose size is a power of two.
     let uploads = u64::next_power_of_two(lists);
     let bytes = technique.memory_bytes();
     assert!(bytes <= BATCH_BUDGET_BYTES + central + lists + uploads, "{bytes}");
@@ -442,7 +442,7 @@ fn jittered_frames_differ_and_their_mean_is_better() {
     assert!(of_mean < 0.4 * worst, "{of_mean} against {worst}");
 }
 
-/// A frame's mask and how many surfels were listed, where all that may receive lies above `lowest_m`. The views are fitted to one
+/// Mask of a frame and number of listed surfels, if all receivers lie above `lowest_m`. The views are fitted to one
 /// hull.
 fn run_above(gpu: &Gpu, lowest_m: f32, settings: &Settings) -> (Vec<f32>, u32) {
     let case = case(gpu);
@@ -473,7 +473,7 @@ fn ground_with_nothing_below_it_is_not_listed() {
         let (mask, listed) = run_above(gpu, 0.0, &of_surfels);
         let (mask_of_all, all) = run_above(gpu, -0.5, &of_surfels);
         assert!(listed > 100 && 2 * listed < all, "{projection:?}: {listed} of {all}");
-        // In a cube's coarse faces an occluder that lies within a texel of the ground is no longer carried on along it.
+        // In a cube's coarse faces an occluder within a texel of the ground does not continue along ground that is not listed.
         let apart =
             mask.iter().zip(&mask_of_all).map(|(v, of_all)| (v - of_all).abs()).sum::<f32>() / mask.len() as f32;
         let most = if projection == ReprojectionProjection::Plane { 0.0 } else { 1e-3 };
@@ -482,7 +482,7 @@ fn ground_with_nothing_below_it_is_not_listed() {
     }
 }
 
-/// Planes across the scene, as the central image has them, against the light's points and the box's corners in the world.
+/// Planes across the scene, given in the central image, against the light points and the box's corners in world space.
 #[test]
 fn what_hides_nothing_has_light_and_receivers_on_one_side() {
     let unit = |i: u32| antumbra_light::unit_f32(antumbra_light::hash_u32(i)) * 2.0 - 1.0;
@@ -521,7 +521,7 @@ fn what_hides_nothing_has_light_and_receivers_on_one_side() {
             let corners = bounds.corners().map(side_of);
             let lowest = corners.iter().copied().fold(f32::INFINITY, f32::min);
             let highest = corners.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-            // Of planes that run through the box by less than the room, nothing is said; nor of the light's own bounding box.
+            // Nothing is asserted of planes that cut the box by less than the tolerance, nor of the light's own bounding box.
             let room_m = 0.01;
             let surely_not = least * most < 0.0 || if least > 0.0 { lowest < -room_m } else { highest > room_m };
             let surely = if least > 0.0 { lowest > 0.0 } else { highest < 0.0 }

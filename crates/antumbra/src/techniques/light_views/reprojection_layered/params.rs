@@ -4,23 +4,23 @@ use crate::contract::{param_choice, params};
 use crate::techniques::light_views::reprojection::{ReprojectionFilter, ReprojectionProjection};
 
 param_choice! {
-    /// Where [`ReprojectionLayered`](super::ReprojectionLayered) stores a fragment.
+    /// Texels in which [`ReprojectionLayered`](super::ReprojectionLayered) stores a fragment.
     pub enum ReprojectionSplat {
-        /// In every texel whose centre lies in its footprint.
+        /// Every texel whose centre lies in its footprint.
         Surfel = "surfel",
-        /// In the texel that it falls in, if within a quarter of its side of the centre.
+        /// The texel that it falls in, if it is at most a quarter of a texel from its centre.
         NearCentre = "near_centre",
-        /// In the texel that it falls in.
+        /// The texel that it falls in.
         Point = "point",
     }
 }
 
 param_choice! {
-    /// Which fragments [`ReprojectionLayered`](super::ReprojectionLayered) reprojects.
+    /// Fragments that [`ReprojectionLayered`](super::ReprojectionLayered) reprojects.
     pub enum ReprojectionSource {
-        /// All that rasterisation makes, while it makes them.
+        /// All fragments, while they are rasterised.
         All = "all",
-        /// Those of the nearest layers.
+        /// Fragments of the nearest layers.
         Layers = "layers",
     }
 }

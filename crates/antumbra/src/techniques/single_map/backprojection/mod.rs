@@ -1,37 +1,37 @@
 //! `backprojection`: the area of the light that a map's texels hide, projected from the receiver.
 //!
 //! Gaël Guennebaud, Loïc Barthe, Mathias Paulin, "Real-time soft shadow mapping by backprojection", EGSR 2006, 227–234; the same,
-//! "High-quality adaptive soft shadow mapping", Computer Graphics Forum 26(3) (Eurographics 2007), 525–533. The map stands for
-//! the casters: each texel is a *micro-patch*, a square at the texel's depth (`micro_patches`), which hides an upright rectangle of the light's
-//! plane.
+//! "High-quality adaptive soft shadow mapping", Computer Graphics Forum 26(3) (Eurographics 2007), 525–533. The map represents
+//! the casters: each texel is a *micro-patch*, a square at the texel's depth (`micro_patches`), which hides a rectangle of the light's
+//! plane whose sides are parallel to the map's axes.
 //!
 //! For each receiver:
-//! 1. **Search area.** The part of the map through which the receiver sees the light, which a min/max pyramid of the map narrows down. Squares
-//!    of one size cover it, texels or more, so that there are at most so many along a side (`squares`). What blocks at half the scale lies in
-//!    the middle half of it: there the squares are half as large, and so on in rings, down to texels or until nothing inside blocks.
-//! 2. **Occluders** (`occluders`). `patches`, 2006: each square by itself, carried on to its left and its lower neighbour, so that no light
-//!    passes between two patches at different depths; their areas are added up. `outlines`, 2007: the boundary between squares that block and
-//!    squares that do not, by marching squares, each of its points at the depth of the blocking square beside it. An outline's area is
-//!    that of what it encloses, at whatever depths, counted once; and only the boundary is projected.
-//! 3. **Area** (`light_area.wesl`). An edge's part in the area that the outline has in common with the light, a rectangle or a disc, in closed
-//!    form. A sphere is the disc that faces the receiver. Where a light has no area of even weight (an ellipsoid, an emission texture, a
-//!    list of points, a light seen edge-on), points of it are counted for which the outline goes about them.
+//! 1. **Search area.** The part of the map through which the receiver sees the light, narrowed down by a min/max pyramid of the map.
+//!    Squares of one size cover it, of one texel or more, at most `squares` along a side. Blockers at up to half the scale lie in its
+//!    middle half: there the squares are half as large, and so on in rings, down to single texels or until nothing inside blocks.
+//! 2. **Occluders** (`occluders`). `patches` (2006): each square by itself, extended to its left and its lower neighbour, so that no light
+//!    passes between two patches at different depths; their areas are added up. `outlines` (2007): the boundary between squares that block
+//!    and squares that do not, by marching squares, each of its points at the depth of the blocking square beside it. What an outline
+//!    encloses counts once, whatever its depths; and only the boundary is projected.
+//! 3. **Area** (`light_area.wesl`). The area that an outline shares with the light, a rectangle or a disc, is a sum over the outline's
+//!    edges in closed form. A sphere is the disc that faces the receiver. For a light without an area of uniform weight (an ellipsoid, an
+//!    emission texture, a list of points, a light seen edge-on), the light points inside the outline are counted instead.
 //!
 //! # Departures from the papers
-//! `backprojection:paper` is the paper of 2006; the parameters' declarations list what it has otherwise.
-//! - Rings. In squares of one size, small occluders near the receiver would be lost beside a large one near the light, and a square that shows
-//!   a texel close before the receiver would hide all of the light.
-//! - Each square shows a texel of the full map that is random at each pixel: a coarser level's nearest depth would darken whatever is
+//! `backprojection:paper` is the paper of 2006; the parameters' declarations list the differences.
+//! - Rings. With squares of one size, small occluders near the receiver would be lost beside a large one near the light, and a square that
+//!   shows a texel just in front of the receiver would hide the whole light.
+//! - Each square shows one texel of the full map, chosen at random per pixel: a coarser level's nearest depth would darken whatever is
 //!   near a silhouette.
-//! - A texel blocks where it is in front of the receiver's plane at the texel's centre and nearer to the light than the receiver. What
-//!   blocks hides points above the receiver's horizon alone; those below are taken off in closed form.
+//! - A texel blocks if it is in front of the receiver's plane at the texel's centre and nearer to the light than the receiver. Blockers
+//!   hide only light points above the receiver's horizon; the part of the light below it is subtracted in closed form.
 //!
 //! # Limits
-//! One layer: what the map hides from the light's middle is missing, and light leaks in below stacked occluders. Two occluders that the map shows
-//! apart are added where they cover the same part of the light: too dark. An outline closes the opening between two that touch in the map at
-//! different depths (`gaps=surfaces` leaves it open, and is further from the truth on `overlap`, `columns`, `window` and `tree`). No penumbra is
-//! narrower than a texel. A closed shell close about a bulb lets light through (`shell_0.08`: rmse .075). Loops are bounded by the numbers of
-//! squares, of their sizes and of points.
+//! One layer: surfaces that the light's centre does not see are missing, so light leaks in below stacked occluders. Two occluders that are
+//! apart in the map are added where they cover the same part of the light: too dark. An outline closes the opening between two that touch
+//! in the map at different depths (`gaps=surfaces` leaves it open, and has larger errors on `overlap`, `columns`, `window` and `tree`). No
+//! penumbra is narrower than a texel. A closed shell close around a bulb lets light through (`shell_0.08`: rmse .075). Loops are bounded by
+//! the numbers of squares, of square sizes and of points.
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -50,7 +50,7 @@ mod tests;
 use gpu_types::{BackprojectionUniform, MOST_SQUARES};
 pub use params::{BackprojectionGaps, BackprojectionOccluders, BackprojectionParams};
 
-/// Squares besides: at either end two about those that are looked through, of a square of the ring outside, and one that shows nothing.
+/// Additional squares along a ring: at either end two of the size of one square of the ring outside, and one that shows nothing.
 const CUT_AND_EMPTY: u32 = 6;
 
 /// Soft shadow mapping by backprojection.
@@ -112,10 +112,10 @@ impl Technique for Backprojection {
     }
 }
 
-/// Of the resolve's shader, by their names.
+/// Override constants of the resolve shader, by name.
 fn constants(taps: TapsProgram, occluders: BackprojectionOccluders) -> [(&'static str, f64); 3] {
     let is_patches = occluders == BackprojectionOccluders::Patches;
-    // One layer; and points are walked to their end, whatever their order.
+    // The shader has one layer, and visits all points, whatever their order.
     let [kind, _, emission, _] = taps.constants();
     [kind, emission, ("IS_PATCHES", f64::from(u8::from(is_patches)))]
 }

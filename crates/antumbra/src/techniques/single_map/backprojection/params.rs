@@ -3,21 +3,21 @@ use antumbra_light::SampleSet;
 use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
-    /// What of a map [`Backprojection`](super::Backprojection) takes for one occluder.
+    /// Part of a map that [`Backprojection`](super::Backprojection) treats as one occluder.
     pub enum BackprojectionOccluders {
-        /// Each texel, a rectangle parallel to the map, carried on to its left and its lower neighbour.
+        /// Each texel: a rectangle parallel to the map, extended to its left and its lower neighbour.
         Patches = "patches",
-        /// All texels that lie side by side, inside one outline.
+        /// All adjacent texels, inside one outline.
         Outlines = "outlines",
     }
 }
 
 param_choice! {
-    /// Neighbours that [`Backprojection`](super::Backprojection) takes for the same occluder.
+    /// Neighbours that [`Backprojection`](super::Backprojection) treats as the same occluder.
     pub enum BackprojectionGaps {
-        /// Those of the same surface: the step between the two is no steeper than 83 degrees.
+        /// Neighbours on the same surface: the step between the two is no steeper than 83 degrees.
         Surfaces = "surfaces",
-        /// All that are in front of the receiver.
+        /// All neighbours in front of the receiver.
         All = "all",
     }
 }
@@ -26,23 +26,23 @@ params! {
     /// Parameters of [`Backprojection`](super::Backprojection).
     pub struct BackprojectionParams {
         shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// What is projected onto the light.
+        /// Occluders that are projected onto the light.
         occluders: BackprojectionOccluders = BackprojectionOccluders::Outlines,
             more "outlines counts no area twice within one surface; patches adds up what each texel hides, which darkens.";
-        /// Neighbours at another depth that an outline goes on to, or to which a patch is carried on.
+        /// Neighbours at another depth that an outline includes, or to which a patch is extended.
         gaps: BackprojectionGaps = BackprojectionGaps::All,
             more "surfaces lets light pass between two occluders, where the map hides what stands there, and counts twice what both hide.";
-        /// Number of squares along the part of the map through which a receiver sees the light, at the most, and along each ring of smaller ones
-        /// inside. One of several texels shows one of them.
+        /// Maximum number of squares along the part of the map through which a receiver sees the light, and along each inner ring of
+        /// smaller squares. A square of several texels shows one of them.
         squares: u32 = 16, in 4..=64, scale Log,
             more "Finer occluders in wide penumbrae and less noise; time grows with the square.";
-        /// Number of points of an ellipsoid, an emission texture, a list of points, or a light seen edge-on; others are areas.
+        /// Number of points of an ellipsoid, an emission texture, a list of points, or a light seen edge-on; other lights are areas.
         samples: u32 = 64, in 1..=256, scale Log,
             more "Smoother penumbrae of such lights; time grows in proportion.";
-        /// Distribution of these points.
+        /// Distribution of the points over such a light.
         sample_set: SampleSet = SampleSet::Sobol,
             more "sobol is the most even for powers of two, r2 and stratified for other numbers.";
-        /// Random choice, at each pixel, of the texel that a square of several shows; random offset of the points.
+        /// Random choice per pixel of the texel that a square of several shows, and random offset of the points.
         rotate: bool = true,
             more "true shows noise, false shows bands.";
         shared seed;

@@ -1,4 +1,4 @@
-//! Areas against closed forms: one surface, what hides twice, and edges of every slant.
+//! Tests of areas against closed forms: one surface, overlapping occluders, and edges of every slant.
 
 use antumbra_light::{EmissionTexture, Light, LightShape};
 use glam::{Vec2, Vec3};
@@ -11,7 +11,7 @@ use crate::testing::{Case, Mesh, RECTANGLE, View, gpu, half_plane_visibility, rm
 
 const KIND: TechniqueKind = TechniqueKind::Backprojection;
 
-/// Areas are exact: what is left is the map's resolution.
+/// Areas are exact: the remaining error is the map's resolution.
 #[test]
 fn one_surface_hides_its_area() {
     let Some(gpu) = gpu() else { return };
@@ -25,8 +25,8 @@ fn one_surface_hides_its_area() {
     }
 }
 
-/// A sheet that rises steeply towards the light: its texels at many depths hide each point of the light once by its outline, and some
-/// twice by patches that are carried on to their neighbours.
+/// A sheet rises steeply towards the light, its texels at many depths: its outline hides each light point once, and patches that are
+/// extended to their neighbours hide some twice.
 #[test]
 fn an_outline_counts_a_slanted_surface_once() {
     let Some(gpu) = gpu() else { return };
@@ -57,7 +57,7 @@ fn an_outline_counts_a_slanted_surface_once() {
 fn an_outline_goes_about_all_that_touches() {
     let Some(gpu) = gpu() else { return };
     let mut case = Case::half_plane(gpu, RECTANGLE);
-    // At 3 m, in the map up to where the first one shows. Up to 8 cm the first hides all that this one does.
+    // At 3 m; in the map it reaches up to the first occluder. Up to x = 8 cm the first one hides all that this one does.
     let pixels = case.ground_pixels(|p| (-2.0..0.08).contains(&p.x) && p.z.abs() < 2.5);
     case.meshes.push(Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(-0.1, 4.0), 3.0));
     let truth = |p: Vec3| half_plane_visibility(p.x, 1.0);
@@ -73,16 +73,16 @@ fn an_outline_goes_about_all_that_touches() {
     assert!(patches > 5.0 * outlines, "rmse {patches} by patches");
 }
 
-/// A light with its name, a bound on rmse, the share that lies beyond a line by the line's offset and angle, and what else it has.
+/// Light of a case: name, shape, bound on rmse, fraction beyond a line by the line's offset and angle, and changes to the light.
 type Lit<'a> = (&'a str, LightShape, f32, &'a dyn Fn(f32, f32) -> f32, &'a dyn Fn(&mut Light));
 
-/// The edge of a half plane, turned about the light's axis: Green's form of the square and of the disc for edges of every slant, and
-/// points where they have none.
+/// Edge of a half-plane, turned about the light's axis: Green's form of the square and of the disc for edges of every slant, and
+/// points for lights without such a form.
 #[test]
 fn edges_of_every_slant_have_their_area() {
     let Some(gpu) = gpu() else { return };
     let square = |offset: f32, angle: f32| {
-        // The share of the unit square beyond a line at a distance from its middle: a trapezium of its shadow on the normal.
+        // Fraction of the unit square beyond a line at a distance from its centre: its projection on the normal is a trapezium.
         let (a, b) = (0.5 * angle.cos().abs(), 0.5 * angle.sin().abs());
         let at = |d: f32| (offset + d).max(0.0).powi(2);
         (at(a + b) - at(a - b) - at(b - a) + at(-a - b)) / (8.0 * a * b)
@@ -122,8 +122,8 @@ fn edges_of_every_slant_have_their_area() {
     }
 }
 
-/// A plate close below the light, in which the light takes all of the map at every scale: rings are no larger than loops go. Half of the plate
-/// leaves half of the light.
+/// A plate just below the light, where the light takes up the whole map at every scale: rings stay within the bounds of the loops. Half
+/// of the plate leaves half of the light.
 #[test]
 fn a_cover_that_fills_the_map_hides_all() {
     let Some(gpu) = gpu() else { return };

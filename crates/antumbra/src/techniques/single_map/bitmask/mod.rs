@@ -1,41 +1,41 @@
 //! `bitmask`: a bit for each point of the light, set where a texel of the light map hides the point.
 //!
 //! Michael Schwarz, Marc Stamminger, "Bitmask Soft Shadows", Computer Graphics Forum 26(3) (Eurographics 2007), 515–524. The map
-//! stands for the casters: each texel is a *micro-patch*, a square at the texel's depth (`micro_patches`).
-//! Projected from the receiver onto the light's plane it hides an upright rectangle of the light; Guennebaud, Barthe, Paulin
-//! ("Real-time soft shadow mapping by backprojection", EGSR 2006) add such rectangles' areas up. A bit for each of a set of light points
-//! records what is hidden: where patches overlap, a point is counted once, however many hide it, and several layers of casters are
-//! one more set of patches each.
+//! represents the casters: each texel is a *micro-patch*, a square at the texel's depth (`micro_patches`). Projected from the receiver
+//! onto the light's plane it hides a rectangle of the light that is parallel to the map's axes; Guennebaud, Barthe, Paulin
+//! ("Real-time soft shadow mapping by backprojection", EGSR 2006) add up such rectangles' areas. Here each of a set of light points has a
+//! bit that records whether it is hidden: where patches overlap, a point counts once, and each further layer of casters is one more set
+//! of patches.
 //!
 //! For each receiver:
-//! 1. **Search area.** The part of the map through which the receiver sees the light, which a min/max pyramid of the map narrows down.
-//! 2. **Patches** (`window.wesl`). A quadtree over that part: a square whose nearest depth hides nothing of the light is skipped. Where one
-//!    surface in front of the receiver fills a square without a gap, by its nearest and its farthest depth, the square hides as a whole what
-//!    a segment reaches through it at all depths between, and its parts are left out if they can hide no other point. Else a square whose
+//! 1. **Search area.** The part of the map through which the receiver sees the light, narrowed down by a min/max pyramid of the map.
+//! 2. **Patches** (`window.wesl`). A quadtree over that part. A square whose nearest depth hides nothing of the light is skipped. If one
+//!    surface in front of the receiver fills a square without a gap, judged by its nearest and farthest depth, the square as a whole hides
+//!    what segments reach through it at all depths between; its parts are skipped if they can hide no other point. Otherwise a square whose
 //!    patch may be wider than the light's width / `patches` is split, down to texels. A square of several texels shows the depth of one of
-//!    them, at a place that is random at each pixel and evenly spread over squares: the share of squares that counts as covered is
-//!    then that of their area, where the nearest depth of each would darken whatever is near a silhouette. What is in front of the receiver's
-//!    plane is a patch. The map comes first, and then the layers behind it, for the points that it leaves open.
-//! 3. **Gaps** (`gaps`). The side that two squares share lies at two places of the light's plane where their depths differ. Each patch is
-//!    carried on to where its neighbours begin, corners included, as Guennebaud et al. fill gaps; bits make overlaps harmless. Between two
-//!    occluders the gap stays open, as it is in space: what one hides of the other is in the layers behind.
+//!    them, chosen at random per pixel and evenly spread over squares: the fraction of squares that count as covered is then that of
+//!    their area, whereas the nearest depth of each would darken whatever is near a silhouette. Surfaces in front of the receiver's plane
+//!    are patches. The map comes first, then the layers behind it for the points that the map leaves visible.
+//! 3. **Gaps** (`gaps`). The common side of two squares at different depths projects to two places on the light's plane. Each patch is
+//!    extended to where its neighbours begin, corners included, as Guennebaud et al. fill gaps; with bits, overlaps do no harm. Between two
+//!    occluders the gap stays open, as it is in space: the layers behind hold what one hides of the other.
 //! 4. **Bits** (`light_bits.wesl`). A table of the points, sorted into 32 bins along either axis, gives those that may lie in the
 //!    rectangle; they are tested one by one. The search ends when all are hidden.
 //!
 //! # Departures from the paper
-//! `bitmask:paper` turns off what a parameter names; the parameters' declarations list them.
-//! - The points are those of the other techniques of one map, moved at each pixel (`rotate`); the paper's are the same at all pixels, which
+//! `bitmask:paper` turns off the departures that have a parameter; the parameters' declarations list them.
+//! - The points are those of the other single-map techniques, moved per pixel (`rotate`); the paper's are the same at all pixels, which
 //!   shows bands.
 //! - The table holds prefixes of bins for a rectangle's, a disk's, a sun's or a sphere's points in their own coordinates, and the points
-//!   are tested exactly. An ellipsoid's and a list's points are all tested.
-//! - A patch is in front where it is in front of the receiver's plane at the texel's centre and nearer to the light than the receiver.
-//! - Squares of the quadtree take the place of one level of the map for all of the search area.
-//! - Points below the receiver's horizon are hidden. Receivers without blockers get the share above it in closed form.
+//!   are tested exactly. All points of an ellipsoid or a list are tested.
+//! - A patch blocks if it is in front of the receiver's plane at the texel's centre and nearer to the light than the receiver.
+//! - Squares of a quadtree replace the paper's single level of the map for the whole search area.
+//! - Points below the receiver's horizon are hidden. Receivers without blockers get the fraction of the light above it in closed form.
 //!
 //! # Limits
 //! Silhouettes are staircases of texels, and no penumbra is narrower than a texel. Nothing is known behind the last layer, nor behind
-//! a host's own depth map: light leaks in below stacked occluders. Micro-patches are parallel to the map: the paper's micro-quads, between
-//! texels' centres, are not here. Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide
+//! a host's own depth map: light leaks in below stacked occluders. Micro-patches are parallel to the map: the paper's micro-quads between
+//! texel centres are not implemented. Few points show as noise (`rotate`) or bands, and so do squares of several texels in wide
 //! penumbrae. On a software renderer it takes 7 times as long as `smrt` on `columns` and `overlap`, 12 times on `tree` (320 × 180).
 //! Loops are bounded by the counts of patches, layers and points.
 
@@ -63,7 +63,7 @@ pub struct Bitmask {
 }
 
 impl Bitmask {
-    /// The technique with another resolve shader.
+    /// Creates the technique with the given resolve shader.
     fn with_shader(gpu: &Gpu, wgsl: &'static str) -> Self {
         let defaults = BitmaskParams::default();
         let constants = constants(TapsProgram::usual(defaults.layers), defaults.samples);
@@ -123,9 +123,9 @@ impl Technique for Bitmask {
     }
 }
 
-/// Of the resolve's shader, by their names.
+/// Override constants of the resolve shader, by name.
 fn constants(taps: TapsProgram, samples: u32) -> [(&'static str, f64); 4] {
-    // Points are walked to their end, whatever their order.
+    // The shader visits all points, whatever their order.
     let [kind, layers, emission, _] = taps.constants();
     [kind, layers, emission, ("WORD_COUNT", f64::from(samples.div_ceil(32).min(MOST_WORDS)))]
 }

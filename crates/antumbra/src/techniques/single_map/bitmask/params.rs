@@ -5,11 +5,11 @@ use crate::contract::{MapSize, param_choice, params};
 param_choice! {
     /// Neighbours to which [`Bitmask`](super::Bitmask) extends a patch.
     pub enum BitmaskGaps {
-        /// None.
+        /// No neighbours: gaps stay open.
         Open = "open",
-        /// Those of the same surface: the step between the two is no steeper than 83 degrees.
+        /// Neighbours on the same surface: the step between the two is no steeper than 83 degrees.
         Surfaces = "surfaces",
-        /// All that are in front of the receiver.
+        /// All neighbours in front of the receiver.
         All = "all",
     }
 }
@@ -18,11 +18,11 @@ params! {
     /// Parameters of [`Bitmask`](super::Bitmask).
     pub struct BitmaskParams {
         shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
-        /// Number of points of the light, a bit for each.
+        /// Number of light points, one bit each.
         samples: u32 = 64, in 1..=256, scale Log,
             more "Smoother penumbrae; time grows more slowly than the number.";
         /// Number of patches along the light: squares of the map are split until each hides less of the light, or is a texel.
-        /// Those of several texels show one of them.
+        /// A square of several texels shows one of them.
         patches: u32 = 16, in 4..=64, scale Log,
             more "Finer occluders in wide penumbrae and less noise; time grows with the square.";
         /// Gaps that are filled between patches at different depths.
@@ -34,8 +34,8 @@ params! {
         /// Number of peeled layers of casters that hide points; one with a host's map.
         layers: u32 = 3, in 1..=4,
             more "Less light leaks below stacked occluders; each layer is one more pass over the casters and one more map.";
-        /// Random offset of a rectangle's points at each pixel, random rotation of other shapes', random choice of the texel
-        /// that a patch of several shows.
+        /// Random offset of a rectangle's points per pixel, random rotation of other shapes' points, and random choice of the
+        /// texel that a patch of several shows.
         rotate: bool = true,
             more "true shows noise, false shows bands.";
         shared seed;

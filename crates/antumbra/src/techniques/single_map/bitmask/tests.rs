@@ -1,4 +1,4 @@
-//! Bits against tests of every point, and what bits are for: occluders one behind another.
+//! Tests of the bits against tests of every point, and of occluders one behind another.
 
 use antumbra_light::{Light, LightShape};
 use glam::{Vec2, Vec3};
@@ -13,7 +13,7 @@ use crate::testing::{Case, Mesh, RECTANGLE, SIZE, View, gpu, half_plane_visibili
 
 const KIND: TechniqueKind = TechniqueKind::Bitmask;
 
-/// The mask of a technique that is made by hand.
+/// Mask of a technique that the test creates itself.
 fn mask_of(gpu: &Gpu, case: &Case, technique: &mut Bitmask, params: &BitmaskParams) -> Vec<f32> {
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     case.with_prepared(&casters, |frame| {
@@ -25,7 +25,7 @@ fn mask_of(gpu: &Gpu, case: &Case, technique: &mut Bitmask, params: &BitmaskPara
     })
 }
 
-/// Every shape's points, few and many, found by the table are those that a test of all finds.
+/// The table finds the same points as a test of all, for every shape and for few and many points.
 #[test]
 fn the_table_leaves_no_point_out() {
     let Some(gpu) = gpu() else { return };
@@ -38,7 +38,7 @@ fn the_table_leaves_no_point_out() {
         LightShape::Sun { angular_diameter_rad: 0.2 },
     ] {
         let mut case = Case::half_plane(gpu, shape.clone());
-        // Neither upright nor in the middle.
+        // Tilted and off-centre.
         case.light = Light::new(shape.clone(), Vec3::new(0.7, 4.0, -0.4), Vec3::new(0.1, 0.0, 0.3));
         for (key, value) in [("samples", "64"), ("samples", "200"), ("rotate", "false"), ("gaps", "open")] {
             let masks = [shaders::BITMASK_RESOLVE, shaders::BITMASK_RESOLVE_EXHAUSTIVE].map(|wgsl| {
@@ -56,12 +56,12 @@ fn the_table_leaves_no_point_out() {
     }
 }
 
-/// A square that one surface fills hides what its texels hide, one by one, and leaves no part out that hides more.
+/// A square that one surface fills hides what its texels hide one by one, and no part that hides more is skipped.
 #[test]
 fn whole_squares_hide_what_their_texels_hide() {
     let Some(gpu) = gpu() else { return };
     let mut case = Case::half_plane(gpu, RECTANGLE);
-    // A strip, so tilted that few texels, and not many, are whole squares.
+    // A strip so tilted that squares of few texels hide as a whole, and larger ones do not.
     let corners =
         [Vec3::new(0.4, 2.15, -1.5), Vec3::new(0.4, 2.15, 1.5), Vec3::new(-0.2, 2.0, 1.5), Vec3::new(-0.2, 2.0, -1.5)];
     case.meshes.push(Mesh::new(gpu, &corners, &[0, 1, 2, 0, 2, 3]));
@@ -82,8 +82,8 @@ fn whole_squares_hide_what_their_texels_hide() {
     }
 }
 
-/// A second occluder inside the first one's shadow changes nothing, and one that reaches beyond hides what it hides alone: their areas
-/// are not added up.
+/// A second occluder inside the first one's shadow changes nothing, and one that reaches beyond it hides only what it hides by itself:
+/// areas are not added up.
 #[test]
 fn what_is_hidden_twice_counts_once() {
     let Some(gpu) = gpu() else { return };
@@ -104,7 +104,7 @@ fn what_is_hidden_twice_counts_once() {
     assert!(one > 5.0 * two, "rmse {one} without those behind");
 }
 
-/// Below a sheet that rises steeply towards the light, texels lie one above another, and the receiver sees between them.
+/// Below a sheet that rises steeply towards the light, adjacent texels differ in depth, and the receiver sees the light between them.
 #[test]
 fn filled_gaps_keep_light_out() {
     let Some(gpu) = gpu() else { return };
@@ -128,12 +128,12 @@ fn filled_gaps_keep_light_out() {
     assert!(filled < 1e-4 && open > 0.01, "{open} through gaps, {filled} where they are filled");
 }
 
-/// Fewer and larger patches cost noise and no light: the mean over pixels stays.
+/// Fewer and larger patches add noise, but no bias: the mean over pixels stays the same.
 #[test]
 fn larger_patches_keep_the_mean() {
     let Some(gpu) = gpu() else { return };
     let mut case = Case::half_plane(gpu, RECTANGLE);
-    // Beside the occluder's edge, which lies on the sides of squares otherwise.
+    // Offset of the light, because otherwise the occluder's edge lies on the sides of squares.
     const BESIDE_M: f32 = 0.37;
     case.light = Light::new(RECTANGLE, Vec3::new(BESIDE_M, 4.0, 0.1), Vec3::new(BESIDE_M, 0.0, 0.1));
     let pixels = case.ground_pixels(test_ground);

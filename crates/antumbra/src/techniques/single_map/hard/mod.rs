@@ -1,4 +1,4 @@
-//! `hard`: one depth comparison a receiver.
+//! `hard`: one depth comparison per receiver.
 //!
 //! Lance Williams, "Casting Curved Shadows on Curved Surfaces", SIGGRAPH 1978. The scene is rendered from the light;
 //! a receiver is lit where nothing in its texel is nearer. Here the comparison is with the receiver's plane at the

@@ -9,15 +9,15 @@ pub(crate) struct Patch {
     pub(crate) high: Vec2,
 }
 
-/// Where the light's plane, z = 0, is hidden by a point of the map at `texel` and depth `z_m` from a receiver at `receiver_m`. The map
-/// shows tangents about the light's centre, so many texels for each.
+/// Point of the light's plane, z = 0, that a point of the map at `texel` and depth `z_m` hides from a receiver at `receiver_m`. The map
+/// shows tangents about the light's centre, `texels_per_tangent` texels for each.
 pub(crate) fn hidden_point(receiver_m: Vec3, texel: Vec2, z_m: f32, texels_per_tangent: f32) -> Vec2 {
     let point = (texel / texels_per_tangent * z_m).extend(z_m);
     let along = receiver_m.z / (receiver_m.z - z_m);
     (receiver_m + along * (point - receiver_m)).truncate() * texels_per_tangent
 }
 
-/// Squares of the map with the depths of what they show, `None` where that hides nothing.
+/// Squares of the map with the depths that they show; `None` if a square hides nothing.
 pub(crate) struct Squares<'a> {
     pub(crate) receiver_m: Vec3,
     pub(crate) texels_per_tangent: f32,
@@ -32,13 +32,13 @@ impl Squares<'_> {
         })
     }
 
-    /// The patch of a square that hides something.
+    /// Patch of a square that hides something.
     pub(crate) fn alone(&self, x: i32, y: i32) -> Patch {
         let z_m = (self.depth_m)(x, y).expect("a depth");
         box_of(&self.corners(x, y, z_m))
     }
 
-    /// The same, carried on to where its eight neighbours begin: outwards, to the sides and corners that it shares with them.
+    /// Patch extended outwards to where its eight neighbours begin, at the sides and corners that it shares with them.
     pub(crate) fn joined(&self, x: i32, y: i32) -> Patch {
         let mut patch = self.alone(x, y);
         for (beside, above) in (-1..=1).flat_map(|beside| (-1..=1).map(move |above| (beside, above))) {
@@ -58,7 +58,7 @@ impl Squares<'_> {
         patch
     }
 
-    /// What the patches of a square at two depths, and at all between, hide in common.
+    /// Intersection of a square's patches at two depths and at all depths between.
     pub(crate) fn innermost(&self, x: i32, y: i32, ends_m: [f32; 2]) -> Patch {
         const STEPS: i32 = 64;
         let depths_m = (0..=STEPS).map(|i| ends_m[0] + (ends_m[1] - ends_m[0]) * i as f32 / STEPS as f32);

@@ -1,4 +1,4 @@
-//! Patches against rays in space.
+//! Tests of patches against rays in space.
 
 use antumbra_light::{hash_u32, unit_f32};
 use glam::{Vec2, Vec3};
@@ -8,7 +8,7 @@ use crate::gpu::{Bindings, Gpu, bindings, compute_pipeline};
 use crate::shaders;
 use crate::testing::{gpu, read_storage};
 
-/// In [0, 1).
+/// Pseudorandom number in [0, 1).
 fn random(i: u32, of: u32) -> f32 {
     unit_f32(hash_u32(i ^ hash_u32(of + 0x51ed)))
 }
@@ -30,7 +30,7 @@ bindings! {
 /// `ProbedSquare` of the shader, as words.
 type ProbedSquare = [f32; 16];
 
-/// The shader's patches of squares: alone, joined, and what those at two depths have in common.
+/// Patches of squares, computed by the shader: alone, joined, and the intersection of those at two depths.
 fn probed(gpu: &Gpu, squares: &[ProbedSquare]) -> Vec<[Patch; 3]> {
     let buffer = |bytes: usize, usage| {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -69,7 +69,7 @@ fn patches_are_what_rays_through_their_corners_hit() {
             let hides = (x, y) == (0, 0) || unit_f32(hash_u32(square)) > 0.25;
             hides.then(|| 1.0 + 3.0 * unit_f32(square))
         };
-        // Of a surface that is nearly parallel to the map.
+        // Second depth of a surface that is nearly parallel to the map.
         let tilted_m = depth_m(0, 0).expect("it hides") * (0.995 + 0.01 * random(i, 3));
         (receiver_m, depth_m, tilted_m)
     };

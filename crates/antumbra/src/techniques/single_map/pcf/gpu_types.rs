@@ -4,7 +4,7 @@ gpu_structs! {
     /// Parameters of `resolve.wesl`.
     pub(crate) struct PcfUniform {
         kernel_size_texels: f32,
-        /// Entries of the taps; 0 for the box.
+        /// Number of taps; 0 for the box.
         tap_count: u32,
         rotate: u32,
         bias_scale: f32,

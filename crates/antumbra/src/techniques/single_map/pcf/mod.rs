@@ -5,13 +5,13 @@
 //! shadow themselves.
 //!
 //! Three kernels: the exact box of n × n texels; a Poisson disc (Mitchell 1991's best candidates); Vogel's spiral
-//! (Vogel 1979). The two discs are optionally turned by a random angle at each pixel, which trades banding for noise.
+//! (Vogel 1979). The two discs are optionally rotated by a random angle per pixel, which trades banding for noise.
 //!
-//! Contacts stay sharp (`attach_contacts`; false is as published): the kernel is narrowed until it holds no blocker that is
-//! too near the receiver to blur so much. A blocker nearer by a gap `d` blurs by d · tan β to either side under a light of
-//! half angle β, which is held at that of a light 11° wide, and at the light's elevation above the receiver, so that no
-//! kernel reaches past the line where blocker and receiver meet. With the light 5 to 90° above `tilted-planes` umbrae at
-//! contacts let through .043–.068 as published and .015–.027 so.
+//! Contacts stay sharp (`attach_contacts`; false is as published): the kernel is narrowed until it contains no blocker that is
+//! too near the receiver to blur so much. A blocker in front of the receiver by a gap `d` blurs by d · tan β to either side under
+//! a light of half angle β. This angle is limited to that of a light 11° wide, and to the light's elevation above the receiver, so
+//! that no kernel reaches past the line where blocker and receiver meet. With the light 5 to 90° above `tilted-planes`, umbrae at
+//! contacts leak .043–.068 as published and .015–.027 with narrowed kernels.
 //!
 //! # Limits
 //! The width is in texels, the same for every occluder that is not at a contact, and does not depend on the light's size. The

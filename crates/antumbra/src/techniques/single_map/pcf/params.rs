@@ -1,7 +1,7 @@
 use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
-    /// The kernel of [`Pcf`](super::Pcf).
+    /// Kernel of [`Pcf`](super::Pcf).
     pub enum PcfKernel {
         /// Every texel of a square, weighted by its overlap: exact.
         Box = "box",
@@ -16,7 +16,7 @@ params! {
     /// Parameters of [`Pcf`](super::Pcf).
     pub struct PcfParams {
         shared map_size, more "Finer edges and a narrower blur; memory and fill grow with the square.";
-        /// Samples of the kernel.
+        /// Shape and samples of the kernel.
         kernel: PcfKernel = PcfKernel::Box,
             more "box is exact and costs its area; poisson and vogel cost their samples, whatever the width.";
         /// Width of the kernel.
@@ -25,7 +25,7 @@ params! {
         /// Number of samples of the poisson and vogel kernels.
         samples: u32 = 32, in 1..=1024, scale Log,
             more "Less banding or noise; time grows in proportion.";
-        /// Rotation of the poisson and vogel kernels by a random angle at each pixel.
+        /// Rotation of the poisson and vogel kernels by a random angle per pixel.
         rotate: bool = true,
             more "true shows noise, false shows bands.";
         /// Narrower kernel where the blocker is near the receiver.

@@ -1,4 +1,4 @@
-//! The kernels' points, in closed form.
+//! Tests of the kernels' points against closed forms.
 
 use glam::Vec2;
 

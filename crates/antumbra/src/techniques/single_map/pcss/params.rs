@@ -3,21 +3,21 @@ use antumbra_light::SampleSet;
 use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
-    /// What [`Pcss`](super::Pcss) compares a texel with.
+    /// Depth that [`Pcss`](super::Pcss) compares a texel with.
     pub enum PcssCompare {
         /// The receiver's plane at the texel's centre.
         Plane = "plane",
-        /// The receiver's own depth, as the sketch does and papers measure against.
+        /// The receiver's own depth, as in the sketch; papers compare against this form.
         Flat = "flat",
     }
 }
 
 param_choice! {
-    /// What [`Pcss`](super::Pcss) takes a mean depth of.
+    /// Blockers of which [`Pcss`](super::Pcss) takes a mean depth.
     pub enum PcssMeans {
-        /// Each layer's blockers.
+        /// The blockers of each layer.
         Layers = "layers",
-        /// The blockers of each quarter of the range of depths, of all layers.
+        /// The blockers of all layers in each quarter of the range of depths.
         Ranges = "ranges",
     }
 }
@@ -47,7 +47,7 @@ params! {
         /// Blockers that share a mean depth; needs `attach_contacts`.
         means: PcssMeans = PcssMeans::Layers,
             more "ranges gives a near and a far occluder separate widths, and reads every layer for each.";
-        /// Random offset of a rectangle's samples at each pixel, random rotation of other shapes'.
+        /// Random offset of a rectangle's samples per pixel, random rotation of other shapes' samples.
         rotate: bool = true,
             more "true shows noise, false shows bands.";
         shared seed;

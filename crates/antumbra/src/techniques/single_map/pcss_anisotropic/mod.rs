@@ -2,17 +2,17 @@
 //!
 //! Li Shen, Gaël Guennebaud, Baoguang Yang, Jieqing Feng, "Predicted Virtual Soft Shadow Maps with High Quality
 //! Filtering", Computer Graphics Forum 30(2), 2011. A pixel far away covers many texels of the map, along one direction
-//! more than along the other; a filter of the light's shape alone lets what lies between its taps alias. Here the pixel's
+//! more than along the other; a filter of the light's shape alone aliases, because its taps miss what lies between. Here the pixel's
 //! square, projected to the map through the receiver's plane, and the light's shape at the blockers' depth add their
 //! covariances, and the filter is a parallelogram of the sum with two horizontal sides, or for round lights an ellipse
 //! (`kernel = parallelogram` is the paper's for all), sampled by brute force.
 //!
-//! The search is [`pcss`](super::pcss)'s. Where we depart from the paper: its virtual shadow maps of predicted resolution
-//! are not part of this technique.
+//! The search is that of [`pcss`](super::pcss). The paper's virtual shadow maps of predicted resolution are not part of this
+//! technique.
 //!
 //! # Limits
-//! Those of `pcss`; and since the filter takes the receiver for a plane as large as the pixel, less a quarter of each half
-//! towards a neighbour that sees another surface, a shadow runs on by a part of a pixel beyond an edge of its receiver.
+//! Those of `pcss`. The filter treats the receiver as a plane as large as the pixel, less a quarter of each half towards a
+//! neighbour that sees another surface: so a shadow extends by part of a pixel beyond an edge of its receiver.
 //! A kernel that covers many texels needs more taps than the default 64.
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};

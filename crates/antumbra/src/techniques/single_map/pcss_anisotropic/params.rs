@@ -3,7 +3,7 @@ use antumbra_light::SampleSet;
 use crate::contract::{MapSize, param_choice, params};
 
 param_choice! {
-    /// The shape that is sampled.
+    /// Shape that [`PcssAnisotropic`](super::PcssAnisotropic) samples.
     pub enum AnisotropicKernel {
         /// A parallelogram for a rectangle, an ellipse for everything else.
         Light = "light",
@@ -24,13 +24,13 @@ params! {
         /// Number of samples of the blocker search.
         search_samples: u32 = 64, in 1..=4096, scale Log,
             more "Fewer thin occluders missed; time grows in proportion.";
-        /// The shape that is sampled.
+        /// Shape that is sampled.
         kernel: AnisotropicKernel = AnisotropicKernel::Light,
             more "parallelogram is as published; light is more exact for disks, ellipse softer at a rectangle's corners.";
         /// Distribution of the samples.
         sample_set: SampleSet = SampleSet::R2,
             more "stratified, r2 and sobol converge equally fast; poisson looks more even and converges more slowly.";
-        /// Random offset of the samples at each pixel.
+        /// Random offset of the samples per pixel.
         rotate: bool = true,
             more "true shows noise, false shows bands.";
         shared seed;

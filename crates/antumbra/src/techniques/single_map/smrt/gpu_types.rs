@@ -5,25 +5,25 @@ use crate::gpu::gpu_structs;
 gpu_structs! {
     /// Parameters of `resolve.wesl`.
     pub(crate) struct SmrtUniform {
-        /// The first taps are the search's,
+        /// Number of search taps of a tile, the first taps.
         tile_search_count: u32,
-        /// of which a pixel takes so many.
+        /// Number of search taps that a pixel takes.
         search_count: u32,
-        /// The rest are the rays' ends.
+        /// Number of rays, whose ends are the remaining taps.
         ray_count: u32,
-        /// Reads along a ray at the most.
+        /// Maximum number of reads along a ray.
         most_steps: u32,
         rotate: u32,
         bias_scale: f32,
         /// Bound on the light points' offsets along right and up from the map's origin, metres (tangents for a sun).
         light_extent: Vec2,
-        /// Bound on their offsets along the axis.
+        /// Bound on the light points' offsets along the axis.
         light_extent_axis: f32,
-        /// Cells of equal numbers of the rays' ends along each side of a rectangle.
+        /// Number of cells along each side of a rectangle, each with the same number of ray ends.
         cells: f32,
-        /// How thick a surface counts as, and one of the last layer; widths of a texel.
+        /// Assumed thickness of a surface, and of one in the last layer; texel widths.
         thickness_texels: Vec2,
-        /// Half the light's narrow side, metres (a sun's tangent).
+        /// Half the light's narrow side, metres (tangent for a sun).
         narrow_half_extent: f32,
         padding: u32,
     }

@@ -31,7 +31,7 @@ params! {
         /// Assumed thickness of the last layer, behind which nothing is known, in texel widths.
         last_thickness: f32 = 1024.0, in 0.0..=65536.0, unit "texels",
             more "Less light leaks through surfaces that no layer holds; more light is lost behind thin ones.";
-        /// Random offset of a rectangle's samples at each pixel, random rotation of other shapes'.
+        /// Random offset of a rectangle's samples per pixel, random rotation of other shapes' samples.
         rotate: bool = true,
             more "true shows noise, false shows bands.";
         shared seed;
