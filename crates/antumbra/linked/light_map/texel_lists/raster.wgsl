@@ -233,17 +233,24 @@ fn value_at_mip(uv: vec2f, mip: u32) -> vec4f {
     }
 }
 
+fn mip_count() -> u32 {
+    let begins_at_first = all(textureDimensions(surface_texture) == vec2u(surface.size_texels));
+    return select(1u, min(surface.mip_count, textureNumLevels(surface_texture)), begins_at_first);
+}
+
 fn value_of_footprint(uv: vec2f, footprint_texels: f32) -> vec4f {
-    let level = clamp(log2(max(footprint_texels, 1e-6)), 0.0, f32(surface.mip_count - 1u));
+    let last = mip_count() - 1u;
+    let level = clamp(log2(max(footprint_texels, 1e-6)), 0.0, f32(last));
     let finer = u32(level);
-    let coarser = min(finer + 1u, surface.mip_count - 1u);
+    let coarser = min(finer + 1u, last);
     return mix(value_at_mip(uv, finer), value_at_mip(uv, coarser), fract(level));
 }
 
 fn surface_opacity(uv: vec2f) -> vec3f {
     let across = dpdx(uv);
     let along = dpdy(uv);
-    let footprint = max(length(across * surface.size_texels), length(along * surface.size_texels));
+    let size_texels = vec2f(textureDimensions(surface_texture));
+    let footprint = max(length(across * size_texels), length(along * size_texels));
     if surface.coverage != caster_surface_COVERAGE_CUTOFF {
         var stopped = vec3f();
         for (var i = 0u; i < 4u; i++) {

@@ -27,6 +27,10 @@ fn leave_out_inner(points: &mut Vec<Vec2>) {
         .map(|i| (corners[i], corners[(i + 1) % 8] - corners[i]))
         .filter(|(_, side)| side.length_squared() > 0.0)
         .collect();
+    // All points coincide.
+    if sides.is_empty() {
+        return;
+    }
     points.retain(|p| !sides.iter().all(|(corner, side)| side.perp_dot(*p - *corner) > 1e-5 * size * side.length()));
 }
 

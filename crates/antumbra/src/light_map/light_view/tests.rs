@@ -315,7 +315,7 @@ fn hulls_have_the_windows_of_their_points() {
             (super::window::PlaneWindow::of(finite, roll), super::window::PlaneWindow::of(hull.clone(), roll));
         assert!(of_points.min.abs_diff_eq(of_hull.min, 1e-6) && of_points.max.abs_diff_eq(of_hull.max, 1e-6));
     }
-    for few in [vec![], vec![Vec2::X], vec![Vec2::X, Vec2::Y], vec![Vec2::X; 5]] {
+    for few in [vec![], vec![Vec2::X], vec![Vec2::X, Vec2::Y], vec![Vec2::X; 5], vec![Vec2::X; 100]] {
         let mut once = few.clone();
         once.sort_by(|a, b| a.x.total_cmp(&b.x));
         once.dedup();

@@ -337,16 +337,16 @@ fn what_is_seen_from_the_side_stays_at_its_depths() {
     }
 }
 
-/// Masked and translucent panes with a texture far finer than the map stop the mean of their mip levels, the same
-/// everywhere.
-#[test]
-fn minified_textures_stop_their_mean() {
-    let Some(gpu) = gpu() else { return };
+/// Light that a textured pane stops in each texel of the map that it covers. 47 repeats of the texture lie across some 96 texels.
+fn stopped_by_pane(
+    gpu: &Gpu,
+    view: &wgpu::TextureView,
+    opacity: impl Fn(SurfaceTexture<'_>) -> Opacity<'_>,
+) -> Vec<[f32; 3]> {
     let (_, light, _) = scenes().swap_remove(2);
     let pane = TestMesh::sheets(1, 2.0, 1.0, 0.0);
     let on_gpu = Mesh::new(gpu, &pane.positions, &pane.indices);
     let from_light = view_of(&light, &[pane]);
-    // 3000 texels across some 96 of the map.
     let uvs = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("test uvs"),
         size: 32,
@@ -355,32 +355,42 @@ fn minified_textures_stop_their_mean() {
     });
     let corners = [[0.0f32, 0.0], [0.0, 47.0], [47.0, 47.0], [47.0, 0.0]];
     gpu.queue().write_buffer(&uvs, 0, bytemuck::cast_slice(&corners));
-    let texture = checkered_texture(gpu, 64);
-    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
     let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: wgpu::AddressMode::Repeat,
         address_mode_v: wgpu::AddressMode::Repeat,
         ..wgpu::SamplerDescriptor::default()
     });
-    let texture = SurfaceTexture { uvs: &uvs, view: &view, sampler: &sampler };
+    let opacity = opacity(SurfaceTexture { uvs: &uvs, view, sampler: &sampler });
+    let casters = [MeshCaster { opacity, ..on_gpu.caster() }];
+    let mut block = TexelLists::new(gpu);
+    let prepared = block.prepare(&Stage::at_once(gpu), &from_light, &casters, &options(Gather::Arrays, true));
+    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    block.record(&mut Recorder::new(&mut encoder, None), &casters, &prepared);
+    gpu.queue().submit([encoder.finish()]);
+    let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.fragments);
+    let lists: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists);
+    lists.iter().filter(|list| list[1] == 1).map(|list| fragments[list[0] as usize][1]).map(rgb8e4).collect()
+}
+
+/// Masked and translucent panes with a texture far finer than the map stop the mean of their mip levels, the same
+/// everywhere.
+#[test]
+fn minified_textures_stop_their_mean() {
+    let Some(gpu) = gpu() else { return };
+    let checkers = alpha_texture(gpu, 64, |level, x, y| match level {
+        0 if (x + y).is_multiple_of(2) => 255,
+        0 => 0,
+        _ => 128,
+    });
+    let view = checkers.create_view(&wgpu::TextureViewDescriptor::default());
     // Half of the texels stop a half of red, and all of green and blue; of the mask, all.
-    let tinted = Opacity::Translucent {
+    let tinted = stopped_by_pane(gpu, &view, |texture| Opacity::Translucent {
         coverage: SurfaceCoverage::Alpha(1.0),
         transmitted: Vec3::new(0.5, 0.0, 0.0),
         texture: Some(texture),
-    };
-    let masked = Opacity::Masked { texture, alpha_factor: 1.0, cutoff: 0.5 };
-    for (what, opacity, want) in [("tinted", tinted, [0.25f32, 0.5, 0.5]), ("masked", masked, [0.5; 3])] {
-        let casters = [MeshCaster { opacity, ..on_gpu.caster() }];
-        let mut block = TexelLists::new(gpu);
-        let prepared = block.prepare(&Stage::at_once(gpu), &from_light, &casters, &options(Gather::Arrays, true));
-        let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        block.record(&mut Recorder::new(&mut encoder, None), &casters, &prepared);
-        gpu.queue().submit([encoder.finish()]);
-        let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.fragments);
-        let lists: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists);
-        let stopped: Vec<[f32; 3]> =
-            lists.iter().filter(|list| list[1] == 1).map(|list| fragments[list[0] as usize][1]).map(rgb8e4).collect();
+    });
+    let masked = stopped_by_pane(gpu, &view, |texture| Opacity::Masked { texture, alpha_factor: 1.0, cutoff: 0.5 });
+    for (what, stopped, want) in [("tinted", tinted, [0.25f32, 0.5, 0.5]), ("masked", masked, [0.5; 3])] {
         assert!(stopped.len() > 4000, "{what}: {} texels", stopped.len());
         for stopped in stopped {
             let differs = stopped.iter().zip(&want).any(|(got, want)| (got - want).abs() > 0.01);
@@ -389,11 +399,29 @@ fn minified_textures_stop_their_mean() {
     }
 }
 
-/// Checkerboard of white and clear texels; mip levels hold their mean.
-fn checkered_texture(gpu: &Gpu, size: u32) -> wgpu::Texture {
+/// A host that streams textures binds a view of the mip levels that it has. The others are not read.
+#[test]
+fn levels_outside_the_host_s_view_are_not_read() {
+    let Some(gpu) = gpu() else { return };
+    for level in [0, 1] {
+        let texture = alpha_texture(gpu, 64, |of, _, _| if of == level { 255 } else { 0 });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor {
+            base_mip_level: level,
+            mip_level_count: Some(1),
+            ..wgpu::TextureViewDescriptor::default()
+        });
+        let stopped =
+            stopped_by_pane(gpu, &view, |texture| Opacity::Masked { texture, alpha_factor: 1.0, cutoff: 0.5 });
+        assert!(stopped.len() > 4000, "level {level}: {} texels", stopped.len());
+        assert!(stopped.iter().flatten().all(|part| *part > 0.99), "level {level}");
+    }
+}
+
+/// White texture with a full mip chain, of the given alpha by level and texel.
+fn alpha_texture(gpu: &Gpu, size: u32, alpha: impl Fn(u32, u32, u32) -> u8) -> wgpu::Texture {
     let levels = size.ilog2() + 1;
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("test checkers"),
+        label: Some("test texture"),
         size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
         mip_level_count: levels,
         sample_count: 1,
@@ -404,12 +432,8 @@ fn checkered_texture(gpu: &Gpu, size: u32) -> wgpu::Texture {
     });
     for level in 0..levels {
         let side = size >> level;
-        let alpha = |i: u32| match level {
-            0 if (i % side + i / side).is_multiple_of(2) => 255,
-            0 => 0,
-            _ => 128,
-        };
-        let texels: Vec<u8> = (0..side * side).flat_map(|i| [255, 255, 255, alpha(i)]).collect();
+        let texels: Vec<u8> =
+            (0..side * side).flat_map(|i| [255, 255, 255, alpha(level, i % side, i / side)]).collect();
         gpu.queue().write_texture(
             wgpu::TexelCopyTextureInfo { mip_level: level, ..texture.as_image_copy() },
             &texels,
