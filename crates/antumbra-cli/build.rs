@@ -1,4 +1,4 @@
-//! Tells the program which commit it was built from, for the reports that it writes.
+//! Sets the commit from which the program was built, for its reports.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,7 +11,7 @@ fn main() {
     let commit = git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
     println!("cargo::rustc-env=ANTUMBRA_COMMIT={commit}");
     println!("cargo::rerun-if-changed=build.rs");
-    // The log of HEAD grows with every commit and checkout; cargo would run us on every build if it were missing.
+    // The log of HEAD changes with every commit and checkout. A missing file would make cargo run this script in every build.
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]).filter(|log| Path::new(log).exists()) {
         println!("cargo::rerun-if-changed={log}");
     }

@@ -1,4 +1,4 @@
-//! Declaration of the command line. All texts of `--help` are here and in the modules below, one for each larger command.
+//! Command line declaration. All texts of `--help` are here and in the modules below, one per larger command.
 
 mod advise;
 mod bench;
@@ -51,7 +51,7 @@ Exit codes: 0 success; 2 wrong arguments or input file; 3 no usable adapter or f
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
-    /// No progress and no notes: results and errors alone
+    /// Prints results and errors only, without progress and notes
     #[arg(short, long, global = true)]
     pub quiet: bool,
 }
@@ -77,7 +77,7 @@ pub enum Command {
 #[derive(Debug, Args)]
 #[command(after_help = techniques_help())]
 pub struct TechniquesArgs {
-    /// A technique
+    /// Name of a technique
     #[arg(value_name = "NAME", value_parser = values::kind)]
     pub name: Option<TechniqueKind>,
     /// Prints JSON: every technique, or the named one, with parameters and qualities
@@ -133,7 +133,7 @@ pub struct CompletionsArgs {
 Examples:
   antumbra man -o ~/.local/share/man/man1        then: man antumbra-compare")]
 pub struct ManArgs {
-    /// Folder to write to; it is created where it does not exist
+    /// Folder to write to; created if it does not exist
     #[arg(short, long, value_name = "man1")]
     pub output: PathBuf,
 }

@@ -1,4 +1,4 @@
-//! How a command fails: one line, and the exit code that goes with it.
+//! Failures of a command: a message in one line, and an exit code.
 
 use std::fmt;
 use std::path::Path;
@@ -10,16 +10,16 @@ use antumbra_lab::output_files::FileError;
 use antumbra_reference::ReferenceError;
 use antumbra_scene::SceneError;
 
-/// Why a command failed. The variants are the exit codes of the command line's contract.
+/// Failure of a command. The variants are the exit codes that the documentation promises.
 #[derive(Debug)]
 pub enum Failure {
-    /// The arguments or an input file are wrong: 2.
+    /// Invalid arguments or input file: exit code 2.
     Input(String),
-    /// No usable adapter, or a feature is missing: 3.
+    /// No usable adapter, or a missing feature: exit code 3.
     Device(String),
-    /// The deadline came before the end, and what was measured is written: 4.
+    /// The deadline ended the run; results so far are written: exit code 4.
     Incomplete(String),
-    /// Anything else: 1.
+    /// Any other failure: exit code 1.
     Other(String),
 }
 
@@ -35,21 +35,21 @@ impl Failure {
 }
 
 impl fmt::Display for Failure {
-    /// One line, whatever the message was made of.
+    /// Formats the message as one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Self::Input(message) | Self::Device(message) | Self::Incomplete(message) | Self::Other(message)) = self;
         f.write_str(&message.split_whitespace().collect::<Vec<_>>().join(" "))
     }
 }
 
-/// Where a run that ended early left what it measured.
+/// Location of the results of a run that ended early.
 #[derive(Debug)]
 pub enum Kept<'a> {
-    /// Nowhere.
+    /// No results were written.
     Nothing,
-    /// In a file that is not resumed.
+    /// A file that cannot be resumed.
     Alone(&'a Path),
-    /// In a file or folder that `--resume` continues.
+    /// A file or folder that `--resume` continues.
     ToResume(&'a Path),
 }
 
@@ -66,7 +66,7 @@ impl fmt::Display for Kept<'_> {
 }
 
 impl Failure {
-    /// Failure of a run that its deadline ended: what is missing of how many, and where what was measured is.
+    /// Failure of a run that its deadline ended: names what is missing, out of how many, and where the results are.
     pub fn incomplete<T: AsRef<str>>(missing: &[T], of: usize, kept: &Kept<'_>) -> Self {
         const NAMED: usize = 8;
         let mut names: Vec<&str> = missing.iter().take(NAMED).map(AsRef::as_ref).collect();

@@ -1,6 +1,6 @@
-//! The command `antumbra`: scenes in; pictures, truth, comparisons and times out.
+//! The command `antumbra`: reads scenes; writes images, ground truth, comparisons and times.
 //!
-//! What each command does is the laboratory's business; here are arguments, messages, exit codes and progress.
+//! The laboratory implements the commands; this crate adds arguments, messages, exit codes and progress.
 
 mod args;
 mod commands;
@@ -59,11 +59,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// Mesa's device-select layer asks the Wayland session which GPU it runs on, and where there is no session libwayland
-/// complains on stderr, once for every question. There is nobody to ask then, so the layer is left out.
+/// Disables Mesa's device-select layer without a Wayland session. The layer asks the session which GPU it uses, and
+/// libwayland prints an error for each question if there is none.
 fn keep_wayland_quiet() {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        // SAFETY: no other thread has been started yet, so nobody else looks at the environment.
+        // SAFETY: no other thread has been started yet, so no other code reads the environment.
         #[expect(unsafe_code, reason = "the Vulkan loader takes this from the environment alone")]
         unsafe {
             std::env::set_var("NODEVICE_SELECT", "1");
@@ -71,7 +71,7 @@ fn keep_wayland_quiet() {
     }
 }
 
-/// The handler of Ctrl-C: no half-written file stays, and the exit code says so.
+/// Handler of Ctrl-C: removes unfinished files and exits with [`INTERRUPTED`].
 fn stop() {
     antumbra_lab::output_files::remove_unfinished();
     match &*KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
@@ -81,21 +81,21 @@ fn stop() {
     leave_at_once(INTERRUPTED);
 }
 
-/// Where results are that an interruption leaves; none before the first is written.
+/// Path of the results that remain after an interruption; `None` before the first is written.
 static KEPT: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-/// Says where results are, should the user interrupt.
+/// Sets the path of the results that remain after an interruption.
 fn keep(path: &Path) {
     *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.to_path_buf());
 }
 
-/// 128 + SIGINT, as shells report it.
+/// Exit code 128 + SIGINT, as shells report it.
 const INTERRUPTED: i32 = 130;
 
-/// Ends the process without the destructors of libraries: a driver's threads still draw by what those would take away.
+/// Ends the process without the destructors of libraries, because a driver's threads may still use what they would free.
 fn leave_at_once(code: i32) -> ! {
     #[cfg(unix)]
-    // SAFETY: `_exit` takes any number, returns never and touches no memory of this process.
+    // SAFETY: `_exit` accepts any number, never returns and touches no memory of this process.
     #[expect(unsafe_code, reason = "the standard library ends a process only with its destructors, or by an abort")]
     unsafe {
         libc::_exit(code)
@@ -104,11 +104,11 @@ fn leave_at_once(code: i32) -> ! {
     std::process::exit(code)
 }
 
-/// Help and version as clap writes them; a mistake as one line, like every other error.
+/// Prints help and version as clap formats them, and an error in one line.
 fn report_usage(error: &clap::Error) -> ExitCode {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            // A reader that closed the pipe has read enough.
+            // A closed pipe is no error.
             let _ = error.print();
             ExitCode::SUCCESS
         }
@@ -121,7 +121,7 @@ fn report_usage(error: &clap::Error) -> ExitCode {
         },
         _ => {
             let text = error.to_string();
-            // Everything before the usage: what is wrong, where, and clap's tips.
+            // The text before the usage has the error, its place and clap's tips.
             let end = text.find("\n\nUsage:").or_else(|| text.find("\n\nFor more information")).unwrap_or(text.len());
             let message = text[..end].trim_start_matches("error: ").replace("\n\n  tip: ", "; ");
             refused(&message)
@@ -129,7 +129,7 @@ fn report_usage(error: &clap::Error) -> ExitCode {
     }
 }
 
-/// Says in one line what is wrong with the arguments.
+/// Reports invalid arguments in one line.
 fn refused(message: &str) -> ExitCode {
     let help = given_command().map_or_else(|| "antumbra --help".to_owned(), |word| format!("antumbra {word} --help"));
     let failure = Failure::Input(format!("{message}; see `{help}`"));
@@ -137,12 +137,12 @@ fn refused(message: &str) -> ExitCode {
     failure.exit_code()
 }
 
-/// A line on stderr, which may be closed or full.
+/// Prints a line to stderr; ignores errors, because stderr may be closed or full.
 fn tell(what: &dyn std::fmt::Display) {
     let _ = writeln!(std::io::stderr(), "antumbra: {what}");
 }
 
-/// The command that the arguments begin with. Arguments need not be Unicode.
+/// The command at the start of the arguments, which need not be Unicode.
 fn given_command() -> Option<String> {
     let first = std::env::args_os().nth(1)?.into_string().ok()?;
     is_command(&first).then_some(first)

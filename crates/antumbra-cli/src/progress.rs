@@ -1,4 +1,4 @@
-//! Progress bars on stderr, where that is a terminal.
+//! Progress bars on stderr if it is a terminal.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::tell;
 
-/// One bar at a time. Where stderr is no terminal only the notes are printed; nothing is where the user asked for quiet.
+/// Progress bar, one at a time. Prints only notes if stderr is no terminal, and nothing in quiet mode.
 #[derive(Debug)]
 pub struct Bars {
     current: Mutex<Option<ProgressBar>>,
@@ -16,7 +16,7 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Bars that print notes and progress, or neither.
+    /// Creates bars that print notes and progress, or nothing if `is_quiet`.
     pub fn new(is_quiet: bool) -> Self {
         Self { current: Mutex::new(None), is_quiet }
     }
@@ -37,7 +37,7 @@ impl Progress for Bars {
         } else {
             "{msg:32!} {spinner} {elapsed}"
         };
-        // The template is ours and known to parse; a plain bar is no reason to stop work.
+        // The template is constant and parses; a plain bar is an acceptable fallback.
         bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_message(stage.to_owned());
         bar.enable_steady_tick(Duration::from_millis(100));

@@ -1,9 +1,9 @@
-//! Standard output, which may be a pipe that nobody reads any more, or a file on a full disk.
+//! Standard output with error handling: a closed pipe, a full disk.
 
 use std::fmt;
 use std::io::{self, ErrorKind, Write};
 
-/// `println!` for whoever still listens.
+/// Like `println!`, but a closed pipe is no error.
 macro_rules! say {
     ($($text:tt)*) => {
         $crate::stdout::write(format_args!("{}\n", format_args!($($text)*)))
@@ -11,8 +11,8 @@ macro_rules! say {
 }
 pub(crate) use say;
 
-/// Writes `text`. A reader that closed the pipe has read enough: the command goes on with what it makes. What could not
-/// be written for another reason is an error in one line.
+/// Writes `text`. A closed pipe is ignored, so the command still writes its files. Any other error is reported in one line
+/// and ends the process.
 pub fn write(text: fmt::Arguments<'_>) {
     let mut stdout = io::stdout().lock();
     match stdout.write_fmt(text).and_then(|()| stdout.flush()) {

@@ -1,20 +1,20 @@
-//! "Did you mean": the known name nearest to one that was typed.
+//! Suggestions for misspelt names ("did you mean").
 
-/// The known name that `typed` most likely meant; `None` where nothing is near.
+/// Returns the known name nearest to `typed`; `None` if none is similar.
 pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let typed = normalised(typed);
-    // Of names equally near, the one that begins alike: a word is left unfinished more often than it ends wrongly.
+    // Of equally near names the one with the longer common prefix wins: incomplete words are more common than wrong endings.
     let rank = |name: &str| {
         let name = normalised(name);
-        // Neighbouring letters that are swapped are one slip.
+        // Swapping two neighbouring letters counts as one error.
         (strsim::osa_distance(&typed, &name), usize::MAX - common_prefix(&typed, &name))
     };
     let ((distance, _), name) = known.into_iter().map(|name| (rank(name), name)).min_by_key(|(rank, _)| *rank)?;
-    // A third of the letters wrong is still recognisable; more is a different word.
+    // More wrong letters than a third make it a different word.
     (distance <= 1.max(typed.chars().count() / 3)).then_some(name)
 }
 
-/// ` (did you mean `x`?)`, or nothing.
+/// Returns ` (did you mean `x`?)`, or an empty string.
 pub fn did_you_mean<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     nearest(typed, known).map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }

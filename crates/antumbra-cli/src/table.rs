@@ -2,8 +2,8 @@
 
 use crate::stdout;
 
-/// Rows of cells, the first row the heading; columns are as wide as their widest cell, numbers to the right. The last cell
-/// of a row that ends early is a note, which runs on over the columns that it has no cells for.
+/// Prints rows of cells; the first row is the heading. Columns fit their widest cell, and numeric columns are
+/// right-aligned. The last cell of a row that is shorter than others is a note, which extends over the remaining columns.
 pub fn print(rows: &[Vec<String>]) {
     stdout::write(format_args!("{}", layout(rows)));
 }
@@ -14,7 +14,7 @@ fn layout(rows: &[Vec<String>]) -> String {
         rows.iter().filter_map(|row| cell(row, column, columns)).map(|cell| cell.chars().count()).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..columns).map(width).collect();
-    // A column of numbers reads best with its digits below one another.
+    // Right-aligned numbers are easy to compare.
     let is_number = |cell: &String| cell.is_empty() || cell == "–" || cell.parse::<f64>().is_ok();
     let numeric: Vec<bool> = (0..columns)
         .map(|column| rows.len() > 1 && rows[1..].iter().filter_map(|row| cell(row, column, columns)).all(is_number))
@@ -30,7 +30,7 @@ fn layout(rows: &[Vec<String>]) -> String {
     text
 }
 
-/// A cell of one column, of so many; no note.
+/// Returns a row's cell in one of `columns` columns; `None` for a note.
 fn cell(row: &[String], column: usize, columns: usize) -> Option<&String> {
     let is_note = row.len() < columns && column + 1 == row.len();
     row.get(column).filter(|_| !is_note)

@@ -1,13 +1,13 @@
-//! Facts of techniques as plain text.
+//! Descriptions of techniques as plain text.
 
 use antumbra::TechniqueKind;
 
-/// Text without Markdown's marks of code.
+/// Removes Markdown's code marks.
 pub fn plain(text: &str) -> String {
     text.replace('`', "")
 }
 
-/// List of all techniques for `--help`: names with what each is for.
+/// List of all techniques with their uses, for `--help`.
 pub fn techniques_help() -> String {
     let rows = TechniqueKind::ALL.iter().map(|kind| format!("  {:20} {}\n", kind.name(), plain(kind.facts().good_for)));
     format!("Good for:\n{}\n`antumbra techniques` says where each fails, too.", rows.collect::<String>())

@@ -1,4 +1,4 @@
-//! What the values of options may be. Each parser's message says what would be right; clap puts the option in front.
+//! Parsers of option values. A parser's message describes valid values; clap prefixes the option.
 
 use std::path::Path;
 use std::time::Duration;
@@ -17,26 +17,25 @@ use glam::UVec2;
 
 use crate::suggest::did_you_mean;
 
-/// Pictures up to this wide and high fit the texture limits of every WebGPU device.
+/// Maximum width and height of images: the texture limit of every WebGPU device.
 const MAX_SIDE_PX: u32 = 8192;
 
-/// `KEY=VALUE` or `NAME.KEY=VALUE`.
+/// Parameter setting: `KEY=VALUE` or `NAME.KEY=VALUE`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
-    /// The one technique that it is for, and the one quality; `None` is every chosen technique that has the key.
+    /// Technique and optional quality that the setting applies to; `None` for every chosen technique with the key.
     pub technique: Option<(TechniqueKind, Option<Quality>)>,
     pub key: String,
     pub value: String,
 }
 
-/// A technique, how much it may spend, and passes beside its own: `pcss`, `pcss:fast`, `pcss:fast+half+denoised`; or as a preset file
-/// has it: `advice.toml`.
+/// A technique with quality and additional passes: `pcss`, `pcss:fast`, `pcss:fast+half+denoised`; or a preset file: `advice.toml`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Technique {
     pub kind: TechniqueKind,
     pub quality: Quality,
     pub extras: Extras,
-    /// What a preset sets; `--set` comes after it.
+    /// Settings of a preset; `--set` overrides them.
     pub settings: Vec<(String, String)>,
 }
 
@@ -51,7 +50,7 @@ pub fn size(text: &str) -> Result<UVec2, String> {
     Ok(UVec2::new(side(width)?, side(height)?))
 }
 
-/// A scene's name; a built-in's as it is declared, whatever case it is given in.
+/// Parses a scene's name; a built-in's name is returned as declared, whatever its case.
 pub fn scene(text: &str) -> Result<String, String> {
     Ok(builtin::declared_name(text))
 }
@@ -72,7 +71,7 @@ pub fn warm_up(text: &str) -> Result<u32, String> {
     whole_number(text, 0, 10_000)
 }
 
-/// A time limit of up to eleven days.
+/// Parses a time limit in seconds, up to about eleven days.
 pub fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0 && *seconds <= 1e6);
     seconds.map(Duration::from_secs_f64).ok_or_else(|| "it takes seconds above 0, such as 60 or 0.5".into())
@@ -95,7 +94,7 @@ pub fn truth(text: &str) -> Result<Truth, String> {
     }
 }
 
-/// What moves.
+/// Motions to measure.
 #[derive(Clone, Debug)]
 pub struct Motions(pub Vec<Motion>);
 
@@ -108,7 +107,7 @@ pub fn motions(text: &str) -> Result<Motions, String> {
     Ok(Motions(motions))
 }
 
-/// The word for whatever there is.
+/// Whether a name is `all`.
 pub fn is_all(name: &str) -> bool {
     name.eq_ignore_ascii_case("all")
 }
@@ -123,7 +122,7 @@ pub fn suite_part(text: &str) -> Result<Part, String> {
         .map_err(|(near, list)| format!("`{text}` is no table of the suite{near}; it has {list}"))
 }
 
-/// The one of that name, or which may have been meant and what there is.
+/// Finds a value by its name. The error has a suggestion and the list of names.
 fn named<T: Copy>(name: &str, all: &[T], name_of: impl Fn(T) -> &'static str) -> Result<T, (String, String)> {
     let names = || all.iter().copied().map(&name_of);
     let found = all.iter().copied().find(|one| name_of(*one).eq_ignore_ascii_case(name));
@@ -201,14 +200,14 @@ pub fn techniques(text: &str) -> Result<Techniques, String> {
             Some((all, step)) if is_all(all) => all_of(quality(step)?, extras),
             _ => vec![technique(name)?],
         };
-        // Twice the same row would only confuse.
+        // A duplicate row would be useless.
         techniques.extend(named.into_iter().filter(|technique| !techniques.contains(technique)).collect::<Vec<_>>());
     }
     Ok(Techniques(techniques))
 }
 
-/// A paper's techniques, each as published there, and then what it measures them against, at its defaults or as its own paper
-/// has it.
+/// Returns a paper's techniques as published there, followed by the techniques that it compares with, at their paper
+/// quality or else at their defaults.
 pub fn techniques_of(preset: &Preset) -> Vec<Technique> {
     let of = |kind: &TechniqueKind| Technique {
         kind: *kind,
@@ -224,7 +223,7 @@ fn all_of(quality: Quality, extras: Extras) -> Vec<Technique> {
     all.map(|kind| Technique { kind: *kind, quality, extras, settings: Vec::new() }).collect()
 }
 
-/// Techniques without qualities, among which to choose.
+/// Techniques to choose from, without qualities.
 #[derive(Clone, Debug)]
 pub struct Kinds(pub Vec<TechniqueKind>);
 
@@ -259,13 +258,13 @@ pub fn memory(text: &str) -> Result<u64, String> {
     UNITS.iter().find_map(of).ok_or_else(|| "it takes a size, such as 512KiB, 64MiB or 1GiB".into())
 }
 
-/// Rms of a visibility, above 0 and at most 1.
+/// Parses a root-mean-square error of visibility, above 0 and at most 1.
 pub fn roughness(text: &str) -> Result<f64, String> {
     let right = || "it takes a fraction above 0 and at most 1, such as 0.01".to_owned();
     text.parse().ok().filter(|v| *v > 0.0 && *v <= 1.0).ok_or_else(right)
 }
 
-/// Gigabytes a second.
+/// Parses a memory bandwidth, gigabytes per second.
 pub fn bandwidth(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
@@ -315,7 +314,7 @@ mod tests {
         }
     }
 
-    /// Names are names, however they are typed.
+    /// Names match in any case.
     #[test]
     fn names_in_any_case() {
         assert_eq!(scene("BUILTIN:Overlap"), Ok("builtin:overlap".into()));

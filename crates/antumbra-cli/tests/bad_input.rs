@@ -1,5 +1,5 @@
-//! Bad input: one line that says which, where and what would be right; the documented exit code; nothing left behind.
-//! None of this needs an adapter: what can be known to be wrong is said before one is looked for.
+//! Bad input gives one line that names the option, the file and valid values, and the documented exit code; no file
+//! remains. No test needs an adapter, because arguments are checked before an adapter is requested.
 
 mod common;
 
@@ -8,7 +8,7 @@ use std::path::Path;
 
 use common::{antumbra, names_in, run};
 
-/// Runs in an empty folder and holds the outcome to the contract. `parts` are what the line must say.
+/// Runs in an empty folder and checks that the input is refused; the message must contain `parts`.
 #[track_caller]
 fn refuses(words: &[&str], parts: &[&str]) {
     let dir = tempfile::tempdir().unwrap();
@@ -30,7 +30,7 @@ fn refuses_in(dir: &Path, words: &[&str], parts: &[&str]) {
     assert_eq!(names_in(dir), before, "nothing is left behind");
 }
 
-/// What somebody else keeps in a folder is neither mixed with pages nor taken for them.
+/// `reproduce` refuses a folder with other files in it.
 #[test]
 fn reproductions_go_into_folders_of_their_own() {
     let dir = tempfile::tempdir().unwrap();
@@ -40,7 +40,7 @@ fn reproductions_go_into_folders_of_their_own() {
     refuses_in(dir.path(), &words, &["cannot write notes", "nothing that was reproduced", "another folder"]);
 }
 
-/// Files of other formats are answered with how to convert them.
+/// Files of other formats are refused with a hint how to convert them.
 #[test]
 fn other_formats_are_to_be_converted() {
     let dir = tempfile::tempdir().unwrap();
@@ -52,7 +52,7 @@ fn other_formats_are_to_be_converted() {
     }
 }
 
-/// Before a window opens.
+/// Errors are reported before a window opens.
 #[test]
 #[cfg(feature = "viewer")]
 fn a_window_on_nothing() {
@@ -112,7 +112,7 @@ fn advice() {
     in_dir("file", &["it is a file"]);
 }
 
-/// Presets are read wherever a technique is named.
+/// Presets are read wherever a technique can be named.
 #[test]
 fn preset_files() {
     let dir = tempfile::tempdir().unwrap();
@@ -280,7 +280,7 @@ fn without_arguments_it_explains_itself() {
     }
 }
 
-/// The loader of Vulkan drivers looks where this variable says, and there is nothing.
+/// The Vulkan loader looks for drivers where these variables point, and finds none.
 #[cfg(target_os = "linux")]
 #[test]
 fn without_an_adapter() {
@@ -306,7 +306,7 @@ fn without_an_adapter() {
         assert!(line.contains("no usable adapter"), "{line}");
         assert!(names_in(dir.path()).is_empty());
     }
-    // Rays need no adapter; nor does what is wrong with the arguments.
+    // Ray tracing needs no adapter; neither does checking the arguments.
     let traced = run(&["reference", "builtin:overlap", "--size", "16x9", "--samples", "4", "-o", "a.png"]);
     assert_eq!(traced.status.code(), Some(0), "{}", String::from_utf8_lossy(&traced.stderr));
     assert_eq!(names_in(dir.path()), ["a.png"]);

@@ -1,7 +1,7 @@
-//! Every command of the book, run: what stands in the blocks of `sh` of `docs/` and of the READMEs.
+//! Runs every command of the book: those in `sh` blocks of `docs/` and of the READMEs.
 //!
-//! The commands of a page run in their order, in a folder of their own with a `scene.glb` and an `evening.toml`, and small, as
-//! `docs/reproducibility.md` says: [`small`] is the rule. Those of `cargo xtask` are held against its usage by a test of its own.
+//! The commands of a page run in order, in a folder of their own with a `scene.glb` and an `evening.toml`. Sizes are reduced by [`small`],
+//! as `docs/reproducibility.md` says. Another test compares commands of `cargo xtask` with its usage text.
 
 mod common;
 
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use antumbra_testing::book::{Command, Page, blocks, book_pages, commands, page, root, spans};
 use common::{adapter, antumbra, run};
 
-/// Options that make a command small, for each command that draws or traces.
+/// Options that reduce the work of a command, for each command that draws or traces.
 const SMALL: [(&str, &[(&str, &str)]); 6] = [
     ("advise", &[("--size", "48x27"), ("--samples", "4")]),
     ("bench", &[("--sizes", "48x27"), ("--frames", "1"), ("--warm-up", "0")]),
@@ -23,10 +23,10 @@ const SMALL: [(&str, &[(&str, &str)]); 6] = [
     ("reproduce", &[("--size", "48x27"), ("--frames", "1")]),
 ];
 
-/// The same for the first step of a sweep.
+/// Options that reduce the work of `sweep plan`.
 const SMALL_PLAN: &[(&str, &str)] = &[("--sizes", "48x27"), ("--samples", "4"), ("--frames", "1")];
 
-/// A test for each page that has commands, and one that none is left out.
+/// Declares a test for each page with commands, and one that no page is omitted.
 macro_rules! pages {
     ($( $test:ident = $path:literal $( , $why:literal )?; )+) => {
         $( #[test] $( #[ignore = $why] )? fn $test() { run_page(&page($path)); } )+
@@ -61,7 +61,7 @@ pages! {
     viewer = "docs/viewer.md";
 }
 
-/// Runs a page's commands, each after the other.
+/// Runs a page's commands in order.
 fn run_page(page: &Page) {
     let dir = tempfile::tempdir().unwrap();
     if adapter().is_none() {
@@ -78,7 +78,7 @@ fn run_page(page: &Page) {
     }
 }
 
-/// What commands of the book find: a scene of the reader's, a setup, folders that they name.
+/// Creates the files that commands of the book need: a scene, a setup, folders.
 fn furnish(dir: &Path) {
     for folder in ["path/to", "docs/figures"] {
         fs::create_dir_all(dir.join(folder)).unwrap();
@@ -93,7 +93,7 @@ fn furnish(dir: &Path) {
     fs::write(dir.join("evening.toml"), lines.join("\n")).unwrap();
 }
 
-/// The words behind `antumbra`, once for each time that a line runs it; none where a line runs something that other tests run.
+/// Returns the arguments of `antumbra`, once for each time that a line runs it; empty if other tests run the line.
 fn ours(command: &Command) -> Vec<Vec<String>> {
     let words: Vec<&str> = command.words.iter().map(String::as_str).collect();
     let place = &command.place;
@@ -102,7 +102,7 @@ fn ours(command: &Command) -> Vec<Vec<String>> {
         ["cargo", "run", "--bin", "antumbra", "--", ref rest @ ..] => {
             vec![rest.iter().map(|word| (*word).to_owned()).collect()]
         }
-        // A job for each of the words at the end.
+        // `parallel` runs a job for each of the words after `:::`.
         ["parallel", "antumbra", ref rest @ ..] => {
             let end = rest.iter().position(|word| *word == ":::").unwrap_or_else(|| panic!("{place}: no `:::`"));
             let (job, each) = (&rest[..end], &rest[end + 1..]);
@@ -114,7 +114,7 @@ fn ours(command: &Command) -> Vec<Vec<String>> {
             assert_eq!(name, env!("CARGO_PKG_NAME"), "{place}");
             Vec::new()
         }
-        // The workspace's build makes it, and a test of the laboratory runs what it draws.
+        // The workspace's build includes the examples, and a test of the laboratory runs their drawing.
         ["cargo", "run", "--example", name] => {
             let declares = |package: &str| {
                 let manifest = fs::read_to_string(root().join("crates").join(package).join("Cargo.toml")).unwrap();
@@ -127,12 +127,12 @@ fn ours(command: &Command) -> Vec<Vec<String>> {
     }
 }
 
-/// A word as the second of four jobs of an array reads it.
+/// Replaces a job array's variables as in the second of four jobs.
 fn of_an_array(word: &str) -> String {
     word.replace("$SLURM_ARRAY_TASK_ID", "2").replace("$SLURM_ARRAY_TASK_COUNT", "4")
 }
 
-/// The command on small pictures, by few light points and frames, and by two techniques where it takes all of them.
+/// Reduces a command: small images, few light samples and frames, and two techniques in place of all.
 fn small(words: &[&str]) -> Vec<String> {
     let mut small: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
     let mut set = |option: &str, value: &str| match small.iter().position(|word| word == option) {
@@ -156,7 +156,7 @@ fn small(words: &[&str]) -> Vec<String> {
     small
 }
 
-/// Runs a command, which is to do what it says.
+/// Runs a command and checks that it succeeds and produces output.
 fn run_one(dir: &Path, place: &str, words: &[String]) {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let line = format!("{place}: antumbra {}", words.join(" "));
@@ -175,7 +175,7 @@ fn run_one(dir: &Path, place: &str, words: &[String]) {
     assert!(!(written.is_empty() && output.stdout.is_empty()), "{line}: it says nothing and writes nothing");
 }
 
-/// Starts what takes minutes, and stops it as a reader would once it has something to show.
+/// Starts a command that takes minutes, and interrupts it once it has written its file.
 #[cfg(unix)]
 fn interrupt(dir: &Path, line: &str, words: &[&str]) {
     let file = words.iter().skip_while(|word| !matches!(**word, "--suite" | "-o")).nth(1).expect("a file to write");
@@ -196,7 +196,7 @@ fn interrupt(_: &Path, line: &str, _: &[&str]) {
     antumbra_testing::skip(format!("{line}: nothing here interrupts it"));
 }
 
-/// Opens a window as far as a machine without a display can: the arguments, scene and setup are right, and it says what it lacks.
+/// Runs `view` without a display: arguments, scene and setup are valid, and the error names the missing display.
 #[cfg(target_os = "linux")]
 fn view(dir: &Path, line: &str, words: &[&str]) {
     let mut command = antumbra(dir);
@@ -214,7 +214,7 @@ fn view(_: &Path, line: &str, _: &[&str]) {
     antumbra_testing::skip(format!("{line}: a window would open"));
 }
 
-/// Commands within sentences have placeholders, and are not run; what they name is there.
+/// Commands within sentences have placeholders and are not run, but their commands and options exist.
 #[test]
 fn commands_within_sentences_name_what_there_is() {
     let dir = tempfile::tempdir().unwrap();
@@ -223,7 +223,7 @@ fn commands_within_sentences_name_what_there_is() {
         for span in spans(&page.text) {
             let words: Vec<&str> = span.split(' ').collect();
             let ["antumbra", command, rest @ ..] = words.as_slice() else { continue };
-            // A placeholder, a setting, a test of the library's.
+            // These are a placeholder, a setting and a test of the library.
             if *command == "COMMAND" || *command == "=" || command.contains("::") {
                 continue;
             }
@@ -239,8 +239,8 @@ fn commands_within_sentences_name_what_there_is() {
     assert!(found >= 10, "{found}");
 }
 
-/// The two commands come first, and what follows them is what the first has built: another profile would build all of it again, and a package
-/// alone, whose dependencies have fewer features, much of it.
+/// The README starts with two commands, and the next command reuses their build. Another profile would rebuild everything;
+/// a single package, whose dependencies have fewer features, would rebuild much of it.
 #[test]
 fn the_readme_has_two_commands_and_one_build() {
     let readme = page("README.md");

@@ -1,7 +1,7 @@
-//! Every command without its optional parts, and with all of them; in the long tier with each of them alone: it works, and never panics.
+//! Every command works without its optional arguments and with all of them; in the long tier with each alone. None panics.
 //!
-//! What is optional the commands' own help says: an option that is declared and not walked here fails the test. Pictures are of some
-//! pixels, and truths of a light point or two.
+//! The options come from the commands' own help: an option that is declared but not covered here fails the test. Images
+//! have few pixels, and ground truths one or two light samples.
 
 mod common;
 
@@ -12,13 +12,13 @@ use std::time::Instant;
 
 use common::{adapter, antumbra, run};
 
-/// A command, and what may stand behind it.
+/// A command with its optional arguments.
 struct Walk {
-    /// The least that it needs, and what keeps it small.
+    /// Required arguments, and those that reduce the work.
     base: &'static str,
-    /// Its optional parts.
+    /// Optional arguments that can be combined.
     parts: &'static [&'static str],
-    /// Parts that go with no others, or take long with them.
+    /// Arguments that exclude others, or are slow in combination.
     alone: &'static [&'static str],
 }
 
@@ -66,13 +66,13 @@ const WALKS: &[Walk] = &[
         ],
         alone: &["--motion all", "--motion camera --motion-frames 1 --step 0"],
     },
-    // Of a run that is there already.
+    // These arguments need an existing run.
     Walk {
         base: "compare builtin:overlap --size 16x9 --samples 1 --techniques hard -o again",
         parts: &["--deadline 600", "--technique-limit 600", "--resume", "--baseline again/metrics.json"],
         alone: &[],
     },
-    // A whole preset in the techniques' place, and what a kernel of fixed width is held against.
+    // A preset in place of techniques, then the ground truth for kernels of fixed width.
     Walk { base: "compare builtin:overlap --size 16x9 --samples 1 --preset marrs-2014 -o out", parts: &[], alone: &[] },
     Walk {
         base: "compare builtin:overlap builtin:window --size 16x9 --samples 1 --techniques vsm -o out",
@@ -80,8 +80,8 @@ const WALKS: &[Walk] = &[
         alone: &[],
     },
     Walk {
-        // In which only small maps are worth a look. Each is a search of its own: options of its request stand in one line, and those of
-        // the scene and of what is written in another.
+        // A budget for which only small maps are tried. Each line is a search of its own: options of the search share a
+        // line, those of the scene and the output others.
         base: "advise builtin:overlap --budget 1ms --size 24x24 --samples 1 --techniques hard",
         parts: &[
             "--memory 64MiB --roughness 0.5 --prefer motion",
@@ -126,7 +126,7 @@ const WALKS: &[Walk] = &[
         ],
         alone: &[],
     },
-    // Of the plan that was written last.
+    // This runs the last plan.
     Walk { base: "sweep run sweep", parts: &["--shard 1/1", "--adapter ADAPTER"], alone: &[] },
     Walk { base: "sweep merge sweep -o results.json", parts: &[], alone: &[] },
     Walk { base: "techniques", parts: &["pcss", "--json"], alone: &[] },
@@ -135,7 +135,7 @@ const WALKS: &[Walk] = &[
     Walk { base: "completions zsh", parts: &[], alone: &[] },
     Walk { base: "man -o man1", parts: &[], alone: &[] },
     Walk { base: "reproduce", parts: &[], alone: &[] },
-    // A figure of debug views, of errors, and of times.
+    // Figures with debug views, with errors, and with times.
     Walk {
         base: "reproduce lauritzen-2008/figure5 --size 16x9",
         parts: &[
@@ -161,15 +161,15 @@ const WALKS: &[Walk] = &[
     },
 ];
 
-/// Options that no line above has: they need minutes, or a window, or what the others are refused with; other tests have them.
+/// Options not covered here: they need minutes, a window or excluded arguments. Other tests cover them.
 const ELSEWHERE: &[(&str, &[&str])] =
     &[("bench", &["--suite", "--parts", "--tables", "--cards"]), ("reproduce", &["--all"])];
 
-/// A camera and a light with a name.
+/// Setup with a camera and a named light.
 const SETUP: &str = "[camera]\neye = [4.0, 4.0, 6.0]\ntarget = [0.0, 0.5, 0.0]\n[[light]]\nname = \"lamp\"\nshape = \"disk\"\n\
                      radius = 0.2\ncenter = [0.0, 5.0, 0.0]\ntarget = [0.0, 0.0, 0.0]\n";
 
-/// A test for each command, and one that none is left out.
+/// Declares a test for each command, and one that no command is omitted.
 macro_rules! commands {
     ($( $test:ident = $command:literal; )+) => {
         $( #[test] fn $test() { walk($command, Parts::Together); } )+
@@ -207,27 +207,27 @@ fn is_of(walk: &Walk, command: &str) -> bool {
     walk.base == command || walk.base.starts_with(&format!("{command} "))
 }
 
-/// Which of a line's optional parts stand behind its base.
+/// Selection of a line's optional arguments.
 #[derive(Clone, Copy)]
 enum Parts {
-    /// None, and all that go together.
+    /// None, and then all that can be combined.
     Together,
     /// One at a time.
     EachAlone,
 }
 
-/// Runs a command as all of its lines say.
+/// Runs all lines of a command.
 fn walk(command: &str, parts: Parts) {
     let Some(adapter) = adapter() else { return };
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("s.toml"), SETUP).unwrap();
     for walk in WALKS.iter().filter(|walk| is_of(walk, command)) {
         let with = |part: &str| {
-            // The light that is named is the setup's.
+            // The named light exists only in the setup.
             let setup = if part.starts_with("--light") { " --setup s.toml" } else { "" };
             format!("{} {part}{setup}", walk.base)
         };
-        // The base comes first: later lines may go on with what it wrote.
+        // The base comes first, because later lines may resume its output.
         let mut lines = vec![walk.base.to_owned()];
         match parts {
             Parts::Together => {
@@ -244,7 +244,7 @@ fn walk(command: &str, parts: Parts) {
                 line.split_whitespace().map(|word| if word == "ADAPTER" { adapter.as_str() } else { word }).collect();
             works(&line, &run(dir.path(), &words));
             println!("{line}: {:.1} s", began.elapsed().as_secs_f32());
-            // A sweep is planned anew each time; an advice and papers would be gone on with.
+            // These folders would be resumed instead of written.
             for folder in ["advice", "papers", "more", "other"] {
                 let _ = std::fs::remove_dir_all(dir.path().join(folder));
             }
@@ -259,7 +259,7 @@ fn works(line: &str, output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{line}: {told}");
 }
 
-/// What a command's help lists: `--size`, `--frames`.
+/// Returns the options in a command's help, such as `--size` and `--frames`.
 fn declared(dir: &Path, command: &[&str]) -> BTreeSet<String> {
     let output = run(dir, &[command, &["--help"]].concat());
     assert_eq!(output.status.code(), Some(0), "{command:?}");
@@ -304,7 +304,7 @@ fn every_option_is_walked() {
         let elsewhere = ELSEWHERE.iter().find(|(command, _)| *command == name).map_or(&[][..], |(_, options)| *options);
         let options = declared(dir.path(), command);
         assert!(options.contains("--help"), "{name}: {options:?}");
-        // Every command has these two; `outputs.rs` has the second.
+        // Every command has these two; `outputs.rs` covers the second.
         for option in options.iter().filter(|option| !["--help", "--quiet"].contains(&option.as_str())) {
             let short = if option == "--output" { " -o " } else { option.as_str() };
             let is_walked = walked.split([' ', '=']).any(|word| word == option) || walked.contains(short);
@@ -313,7 +313,7 @@ fn every_option_is_walked() {
     }
 }
 
-/// What is asked for without what it needs is refused in one line, before anything is made.
+/// A missing argument is refused in one line, before any file is written.
 #[test]
 fn what_is_missing_is_said_in_one_line() {
     let dir = tempfile::tempdir().unwrap();
@@ -351,7 +351,7 @@ fn what_is_missing_is_said_in_one_line() {
     }
 }
 
-/// A path is any bytes on Unix, and need not be text.
+/// Paths on Unix are arbitrary bytes and need not be Unicode.
 #[cfg(target_os = "linux")]
 #[test]
 fn paths_need_not_be_unicode() {

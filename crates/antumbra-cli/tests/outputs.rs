@@ -1,4 +1,4 @@
-//! What the commands write: whole files, in the agreed formats.
+//! Output files of the commands are complete and have the documented formats.
 
 mod common;
 
@@ -33,7 +33,7 @@ fn render_writes_a_picture_its_visibility_and_its_times() {
     assert!(timings["adapter"].as_str().is_some_and(|name| !name.is_empty()));
 }
 
-/// Pictures are by the part of the irradiance that arrives, and what is written beside them is visibility all the same.
+/// The image is shaded by the irradiance ratio, while the file beside it has visibility.
 #[test]
 fn render_shades_by_the_ratio_and_writes_visibility() {
     let dir = tempfile::tempdir().unwrap();
@@ -88,7 +88,7 @@ fn names_say_what_is_written() {
     assert_eq!(visibility("x.gltf.exr"), visibility("x.glb.exr"), "text and container are one scene");
 }
 
-/// An advice is gone on with, and its preset is a technique like any other.
+/// A search is resumed, and its preset can be used like a technique.
 #[test]
 fn an_advice_writes_a_preset_that_other_commands_read() {
     let dir = tempfile::tempdir().unwrap();
@@ -154,8 +154,8 @@ fn a_sweep_is_a_comparison_in_parts() {
     }
 }
 
-/// Ten kilometres from the world's origin, where 32-bit floats are a millimetre apart, a scene is what it is at the origin, and
-/// what is written of it is in the world's coordinates.
+/// Ten kilometres from the world's origin, where 32-bit floats are a millimetre apart, a scene gives the same results as at
+/// the origin, and files have world coordinates.
 #[test]
 fn a_scene_far_from_the_origin_is_as_at_it() {
     let dir = tempfile::tempdir().unwrap();
@@ -203,7 +203,7 @@ fn a_scene_far_from_the_origin_is_as_at_it() {
     }
 }
 
-/// The first light's visibility is where it was asked for, and every other's beside it.
+/// The first light's visibility is written to the given path, and each other light's beside it.
 #[test]
 fn each_light_has_its_visibility() {
     let dir = tempfile::tempdir().unwrap();
@@ -227,7 +227,7 @@ fn each_light_has_its_visibility() {
     assert_ne!(bytes("v.exr"), bytes("v.fill.exr"));
 }
 
-/// By an option and by a setup file alike.
+/// The shadow distance works as an option and in a setup file.
 #[test]
 fn shadows_end_where_they_are_told_to() {
     let dir = tempfile::tempdir().unwrap();
@@ -238,7 +238,7 @@ fn shadows_end_where_they_are_told_to() {
     let light = "[[light]]\nshape = \"disk\"\nradius = 0.2\n";
     fs::write(dir.path().join("all.toml"), format!("{setup}{light}")).unwrap();
     fs::write(dir.path().join("near.toml"), format!("{setup}shadow_distance = 8\n{light}")).unwrap();
-    // How dark the picture's pixels are, all together.
+    // Sum of occlusion over the image's pixels.
     let darkness = |words: &str| {
         let words = format!("render builtin:overlap --technique hard --size 64x36 -o a.png --visibility v.exr {words}");
         let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
@@ -318,7 +318,7 @@ fn what_moves_is_measured_and_shown() {
             assert!(out.join(figures["image"].as_str().unwrap()).is_file());
         }
     }
-    // A name that no mesh has is said before the long work, and leaves the report of before.
+    // An unknown mesh name is reported before the long work, and the earlier report stays.
     let unknown =
         ["compare", "builtin:overlap", "--motion", "caster", "--caster", "board", "--size", "64x36", "-o", "out"];
     let output = run(dir.path(), &unknown);
@@ -399,7 +399,7 @@ fn what_is_assumed_of_a_scene_is_said() {
         assert_eq!(output.status.code(), Some(0), "{told}");
         told
     };
-    // One triangle, and nothing to see it by.
+    // One triangle without camera and lights.
     let triangle = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
         "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],
@@ -414,7 +414,7 @@ fn what_is_assumed_of_a_scene_is_said() {
     let bare = told("reference t.gltf --samples 4 --size 32x18 -o a.png --ground=no");
     assert!(!bare.contains("put on a ground"), "{bare}");
     assert!(plain.contains("--time 3: nothing in the scene is animated"), "{plain}");
-    // From where its shadow falls.
+    // The camera looks from the side to which the shadow falls.
     let setup = "[camera]\neye = [2.0, 2.0, -2.0]\ntarget = [0.5, 0.0, -0.3]\n[[light]]\nshape = \"sphere\"\nradius = 0.1\n\
                  center = [-1.0, 3.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
     fs::write(dir.path().join("s.toml"), setup).unwrap();
@@ -492,7 +492,7 @@ fn lists_are_json_where_asked_for() {
     }
 }
 
-/// Every command has a page, and shells know every option.
+/// Manual pages exist for every command, and shell completions for every option.
 #[test]
 fn manual_pages_and_completions_have_every_command() {
     let dir = tempfile::tempdir().unwrap();
@@ -511,7 +511,7 @@ fn manual_pages_and_completions_have_every_command() {
     }
 }
 
-/// Ctrl-C while the truth is traced: exit code 130, and nothing in the folder.
+/// Ctrl-C during tracing gives exit code 130 and leaves the folder empty.
 #[cfg(unix)]
 #[test]
 fn an_interruption_leaves_nothing() {
@@ -530,7 +530,7 @@ fn an_interruption_leaves_nothing() {
     assert!(names_in(dir.path()).is_empty());
 }
 
-/// `antumbra techniques pcss | head -1` is no error; a full disk is one, in one line.
+/// A closed pipe, as in `antumbra techniques pcss | head -1`, is no error; a full disk is an error in one line.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_closed_pipe_is_no_error_and_a_full_disk_is_one() {

@@ -1,4 +1,4 @@
-//! Runs that end early, and those that resume them: a deadline, a limit for each technique, an interruption; and what is refused.
+//! Runs that end early, by deadline, technique limit or interruption, their resumption, and refused combinations.
 
 mod common;
 
@@ -10,12 +10,12 @@ use std::time::{Duration, Instant};
 use common::{adapter, antumbra, names_in, run};
 use serde_json::Value;
 
-/// Few pixels of a scene of few triangles, by two cheap techniques.
+/// Small runs: few pixels, few triangles, two cheap techniques.
 const BENCH: &str = "bench builtin:overlap --techniques hard,pcf --sizes 32x18 --frames 2 --warm-up 0 --json t.json";
 const COMPARE: &str = "compare builtin:overlap --techniques hard,pcf --size 32x18 --samples 4 --frames 1 -o out";
 const REPRODUCE: &str = "reproduce lauritzen-2008/figure6 --size 16x9 --samples 1 --frames 1 -o papers";
 
-/// Techniques whose programs compile quickly, in the order of all: two for each of three interruptions, and more that are left.
+/// Techniques that compile quickly, in the order of the full list: two for each of three interruptions, and some more.
 #[cfg(unix)]
 const SOON_COMPILED: [&str; 9] = ["hard", "pcf", "pcss", "multi_view", "vsm", "evsm", "esm", "convolution", "moment"];
 
@@ -40,14 +40,14 @@ fn read(path: &Path) -> Value {
     serde_json::from_slice(&fs::read(path).unwrap()).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Names of rows that have a result.
+/// Names of the rows with a result.
 fn measured(json: &Value) -> Vec<String> {
     let rows = json["rows"].as_array().unwrap().iter();
     let done = rows.filter(|row| row["ran"].is_object() || row["status"] == "measured");
     done.map(|row| row["technique"].as_str().unwrap().to_owned()).collect()
 }
 
-/// Refused in one line with these parts, before anything is drawn or written.
+/// Checks that a line is refused in one line that contains `parts`, before anything is drawn or written.
 #[track_caller]
 fn refuses(dir: &Path, line: &str, parts: &[&str]) {
     let before = names_in(dir);
@@ -60,7 +60,7 @@ fn refuses(dir: &Path, line: &str, parts: &[&str]) {
     assert_eq!(names_in(dir), before, "{line}");
 }
 
-/// Starts a command, waits until `is_there`, and ends it by a signal.
+/// Starts a command, waits for `is_there`, and ends the command by a signal.
 #[cfg(unix)]
 #[track_caller]
 fn stop(dir: &Path, line: &str, signal: &str, is_there: impl Fn() -> bool) -> Option<i32> {
@@ -77,7 +77,7 @@ fn stop(dir: &Path, line: &str, signal: &str, is_there: impl Fn() -> bool) -> Op
     child.wait().unwrap().code()
 }
 
-/// Rows of a file that may not be there yet.
+/// Number of measured rows in a file; 0 if it does not exist yet.
 #[cfg(unix)]
 fn rows_so_far(path: &Path) -> usize {
     fs::read(path).map_or(0, |bytes| measured(&serde_json::from_slice(&bytes).expect("whole at any moment")).len())
@@ -97,7 +97,7 @@ fn a_bench_of_all_techniques_that_is_stopped_is_resumed() {
     stop_and_resume_a_bench("all", &all);
 }
 
-/// A `bench` of the techniques that `asked` names, `planned`: ended by three signals, and resumed.
+/// Interrupts a `bench` of the techniques `asked`, which expand to `planned`, by three signals, and resumes it each time.
 #[cfg(unix)]
 fn stop_and_resume_a_bench(asked: &str, planned: &[&str]) {
     let dir = tempfile::tempdir().unwrap();
@@ -133,7 +133,7 @@ fn a_comparison_that_is_stopped_is_resumed() {
     let line = "compare builtin:overlap --techniques hard,pcf,pcss,vsm,moment --size 32x18 --samples 4 --frames 1 \
                 --motion light --motion-frames 2";
     works(dir.path(), &format!("{line} -o whole"));
-    // What stood there before is replaced.
+    // The new run replaces an earlier report.
     works(dir.path(), "compare builtin:overlap --techniques esm --size 32x18 --samples 4 --frames 1 -o out");
     let out = dir.path().join("out");
     let path = out.join("metrics.json");
@@ -144,7 +144,7 @@ fn a_comparison_that_is_stopped_is_resumed() {
     works(dir.path(), &format!("{line} --resume -o out"));
     let (whole, resumed) = (read(&dir.path().join("whole/metrics.json")), read(&path));
     assert_eq!(resumed["missing"], serde_json::json!([]));
-    // All but times, which no two runs have in common.
+    // Everything but times must be equal.
     for key in ["scene", "scene_facts", "size", "settings", "warnings"] {
         assert_eq!(whole[key], resumed[key], "{key}");
     }
@@ -204,14 +204,14 @@ fn a_deadline_ends_in_time_and_says_what_is_missing() {
         format!("compare builtin:overlap {techniques} --size 32x18 --samples 4 -o out"),
         "reproduce lauritzen-2008 --size 16x9 --samples 1 -o papers --json r.json".to_owned(),
     ] {
-        // A slow machine has nothing to show after a few seconds.
+        // A slow machine needs a longer deadline to have a result.
         let ends = |seconds: &u64| {
             let began = Instant::now();
             let (code, _, told) = code(dir.path(), &format!("{line} --quiet --deadline {seconds}"));
             assert_eq!((code, told.lines().count()), (Some(4), 1), "{line}: {told}");
             assert!(told.contains("the deadline left out ") && told.contains(" of "), "{told}");
             assert!(told.contains("; and ") && told.contains(" more"), "{told}");
-            // A frame or a compilation that runs is not stopped.
+            // A running frame or compilation is not interrupted.
             assert!(began.elapsed() < Duration::from_secs(60 + seconds), "{line}: {:?}", began.elapsed());
             told.contains(" --resume continues")
         };
@@ -245,7 +245,7 @@ fn a_deadline_that_is_long_enough_changes_nothing() {
     assert_eq!(measured(&read(&dir.path().join("out/metrics.json"))), ["hard", "pcf"]);
 }
 
-/// One that exceeds its limit is a row with the reason, be it of any command, and is measured again with a longer one.
+/// A technique that exceeds its limit gets a row with the reason in every command, and is measured again with a longer limit.
 #[test]
 fn a_technique_that_takes_too_long_is_cut_short_and_said() {
     let dir = tempfile::tempdir().unwrap();
@@ -321,7 +321,7 @@ fn a_baseline_gives_ratios_and_differences() {
     works(dir.path(), COMPARE);
     let reproduce = format!("{REPRODUCE} --json r.json");
     works(dir.path(), &reproduce);
-    // Twice as fast, and of another card.
+    // The baseline is twice as fast, and of another card.
     let mut bench = read(&dir.path().join("t.json"));
     bench["adapter"] = "another card".into();
     let here_ms = |row: &Value| row["ran"]["timings"]["total_ms"].as_f64().unwrap();
@@ -365,7 +365,7 @@ fn a_baseline_gives_ratios_and_differences() {
     refuses(dir.path(), &format!("{two} --baseline m.json"), &["--baseline m.json", "give the folder"]);
 }
 
-/// What is shared has what the device says of itself and the times, and nothing else.
+/// A shared file contains the device's description and times, and nothing about the user.
 #[test]
 fn a_shared_file_is_of_the_card_and_of_nobody() {
     let home = tempfile::tempdir().unwrap();

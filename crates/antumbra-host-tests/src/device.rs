@@ -1,4 +1,4 @@
-//! The host's device, and its validation messages.
+//! The host's device with its validation messages.
 
 use std::sync::OnceLock;
 
@@ -13,10 +13,10 @@ pub struct Device {
 }
 
 impl Device {
-    /// A new device; `None` where there is no adapter and none is required.
+    /// Creates a device; `None` if there is no adapter and none is required.
     ///
     /// # Panics
-    /// Where the adapter gives no device.
+    /// Panics if the adapter gives no device.
     pub fn new() -> Option<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapter = match pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) {
@@ -31,25 +31,25 @@ impl Device {
         Some(Self::of(adapter, features, limits))
     }
 
-    /// A device that does nothing, within WebGPU's default limits: for what the processor does, on any machine.
+    /// Creates wgpu's no-op device, within WebGPU's default limits: for tests of CPU work, on any machine.
     ///
     /// # Panics
-    /// Where wgpu has none.
+    /// Panics if wgpu has no such device.
     pub fn idle() -> Self {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
         descriptor.backends = wgpu::Backends::NOOP;
         descriptor.backend_options.noop.enable = true;
-        // wgpu's shaders that look at indirect draws ask alignments of the driver that this one has not.
+        // wgpu's validation of indirect draws uses shaders with alignments that this driver lacks.
         descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
         let instance = wgpu::Instance::new(descriptor);
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
         Self::of(adapter.expect("wgpu's own"), wgpu::Features::empty(), wgpu::Limits::default())
     }
 
-    /// Another device of the same adapter.
+    /// Creates another device on the same adapter.
     ///
     /// # Panics
-    /// As [`new`](Self::new).
+    /// Panics like [`new`](Self::new).
     pub fn another(&self) -> Self {
         Self::of(self.adapter.clone(), self.wgpu().features(), self.wgpu().limits())
     }
@@ -62,7 +62,7 @@ impl Device {
         Self { gpu: Gpu::new(&device, &queue), adapter }
     }
 
-    /// The one device of the process; `None` as for [`new`](Self::new).
+    /// The device shared by the process; `None` as for [`new`](Self::new).
     pub fn shared() -> Option<&'static Self> {
         static DEVICE: OnceLock<Option<Device>> = OnceLock::new();
         DEVICE.get_or_init(Self::new).as_ref()
@@ -78,7 +78,7 @@ impl Device {
         self.gpu.queue()
     }
 
-    /// What `run` gives, and the first validation message of this thread meanwhile.
+    /// Calls `run`. Returns its result and the first validation message of this thread during the call.
     pub fn with_messages<T>(&self, run: impl FnOnce() -> T) -> (T, Option<String>) {
         let scope = self.wgpu().push_error_scope(wgpu::ErrorFilter::Validation);
         let value = run();
@@ -86,22 +86,22 @@ impl Device {
         (value, message)
     }
 
-    /// What `run` gives.
+    /// Calls `run` and returns its result.
     ///
     /// # Panics
-    /// Where wgpu has a validation message meanwhile.
+    /// Panics on a validation message during the call.
     pub fn validated<T>(&self, what: &str, run: impl FnOnce() -> T) -> T {
         let (value, message) = self.with_messages(run);
         assert!(message.is_none(), "{what}: {}", message.unwrap_or_default());
         value
     }
 
-    /// An encoder.
+    /// Creates a command encoder.
     pub fn encoder(&self) -> wgpu::CommandEncoder {
         self.wgpu().create_command_encoder(&wgpu::CommandEncoderDescriptor::default())
     }
 
-    /// A buffer with these bytes, of any number.
+    /// Creates a buffer with these bytes, padded to a multiple of four.
     pub fn buffer(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let mut padded = bytes.to_vec();
         padded.resize(bytes.len().max(4).next_multiple_of(4), 0);
@@ -115,18 +115,18 @@ impl Device {
         buffer
     }
 
-    /// Waits for all that was submitted.
+    /// Waits for all submitted work.
     ///
     /// # Panics
-    /// Where the device is lost.
+    /// Panics if the device is lost.
     pub fn wait(&self) {
         self.wgpu().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
     }
 
-    /// One layer of a texture of 32-bit floats in one component, row by row.
+    /// Reads a layer of a texture with one 32-bit float per texel, row by row.
     ///
     /// # Panics
-    /// Where the texture cannot be copied from.
+    /// Panics if the texture lacks usage `COPY_SRC`.
     pub fn read_layer(&self, texture: &wgpu::Texture, layer: u32) -> Vec<f32> {
         let (width, height) = (texture.width(), texture.height());
         let row_bytes = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);

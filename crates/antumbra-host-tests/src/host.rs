@@ -1,4 +1,4 @@
-//! Casters in the host's own buffers, frames, and masks as numbers.
+//! Casters in the host's own buffers, frames, and masks as arrays.
 
 use antumbra::casters::{
     Caster, CasterId, Indices, InstanceBuffer, InstanceLayout, Instances, Mesh as LibraryMesh, MeshId, PositionFormat,
@@ -13,7 +13,7 @@ use glam::Mat4;
 use crate::device::Device;
 use crate::scene::{Mesh, Object, Scene};
 
-/// Interleaved vertex: position and a colour that casts nothing.
+/// Interleaved vertex: position, and a colour that the library ignores.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Vertex {
@@ -24,33 +24,34 @@ struct Vertex {
 /// A caster set with the handles of its objects.
 #[derive(Debug)]
 pub struct HostCasters {
-    /// The library's.
+    /// The library's caster set.
     pub set: CasterSet,
-    /// Of each object.
+    /// Handles of each object.
     pub ids: Vec<(MeshId, CasterId)>,
 }
 
 impl HostCasters {
-    /// The objects of a scene, whose matrices the processor knows; brought to the GPU.
+    /// Adds the objects of a scene, with matrices from the CPU, and uploads them.
     ///
     /// # Panics
-    /// Where the library refuses them.
+    /// Panics if the library refuses them.
     pub fn new(device: &Device, scene: &Scene) -> Self {
         Self::with(device, scene, |_, _| None)
     }
 
-    /// The same for another handle on the device.
+    /// Adds the objects of a scene to a set of another handle of the device.
     ///
     /// # Panics
-    /// Where the library refuses them.
+    /// Panics if the library refuses them.
     pub fn for_gpu(device: &Device, gpu: &Gpu, scene: &Scene) -> Self {
         Self::of_set(device, CasterSet::new(gpu), scene, |_, _| None)
     }
 
-    /// The same, with the matrices of some objects in buffers: `instances` gives them for an object's number and its matrix.
+    /// Adds the objects of a scene, some with matrices in GPU buffers: `instances` returns the buffer for an object's index
+    /// and the object.
     ///
     /// # Panics
-    /// Where the library refuses them.
+    /// Panics if the library refuses them.
     pub fn with<'b>(
         device: &Device,
         scene: &Scene,
@@ -77,34 +78,34 @@ impl HostCasters {
         casters
     }
 
-    /// Moves an object.
+    /// Sets an object's matrix.
     ///
     /// # Panics
-    /// Where the library refuses the matrix.
+    /// Panics if the library refuses the matrix.
     pub fn set_matrix(&mut self, object: usize, matrix: Mat4) {
         self.set.set_instances(self.ids[object].1, Instances::Matrices(&[matrix])).expect("a good matrix");
     }
 
-    /// Brings changes to the GPU.
+    /// Uploads changes.
     ///
     /// # Panics
-    /// Where the library refuses.
+    /// Panics if the library refuses them.
     pub fn update(&mut self, device: &Device) {
         let mut encoder = device.encoder();
         self.set.update(&mut Recorder::new(&mut encoder, None)).expect("a good set");
         device.queue().submit([encoder.finish()]);
     }
 
-    /// All of them, for a frame.
+    /// All casters, for a frame.
     pub fn all(&self) -> Casters<'_> {
         Casters::Set { set: &self.set, layers: u32::MAX }
     }
 }
 
-/// Adds a mesh, interleaved and with 16-bit indices.
+/// Adds a mesh with interleaved vertices and 16-bit indices.
 ///
 /// # Panics
-/// Where the library refuses it.
+/// Panics if the library refuses it.
 pub fn add_mesh(device: &Device, set: &mut CasterSet, mesh: &Mesh) -> MeshId {
     let vertices: Vec<Vertex> =
         mesh.positions.iter().map(|p| Vertex { position: p.to_array(), color: u32::MAX }).collect();
@@ -129,20 +130,20 @@ pub fn add_mesh(device: &Device, set: &mut CasterSet, mesh: &Mesh) -> MeshId {
     .expect("a good mesh")
 }
 
-/// A buffer with matrices, as a GPU-driven host has them.
+/// Creates a buffer of matrices, as GPU-driven hosts have.
 pub fn matrix_buffer(device: &Device, matrices: &[Mat4]) -> wgpu::Buffer {
     device.buffer(bytemuck::cast_slice(matrices), wgpu::BufferUsages::STORAGE)
 }
 
-/// Where matrices lie in such a buffer, `count` of them from `first` on, in a box that may be unknown.
+/// Describes `count` matrices of such a buffer from index `first`, with bounds that may be unknown.
 pub fn in_buffer(buffer: &wgpu::Buffer, first: u64, count: u32, bounds: Option<Aabb>) -> InstanceBuffer<'_> {
     InstanceBuffer { buffer, offset: 64 * first, stride: 64, layout: InstanceLayout::Columns4x4, count, bounds }
 }
 
-/// A technique with settings, those that it has no parameter for left out.
+/// Creates a technique with settings; settings without a parameter are ignored.
 ///
 /// # Panics
-/// Where the device lacks something, or a value is out of range.
+/// Panics if the device lacks a feature, or a value is out of range.
 pub fn shadow_with(device: &Device, kind: TechniqueKind, settings: &[(&str, &str)]) -> AnyShadow {
     let mut shadow = kind.create(&device.gpu).unwrap_or_else(|error| panic!("{error}"));
     for (key, value) in settings {
@@ -153,16 +154,16 @@ pub fn shadow_with(device: &Device, kind: TechniqueKind, settings: &[(&str, &str
     shadow
 }
 
-/// A technique as small as it goes, for tests that ask what is recorded and not how well.
+/// Creates a technique at minimal cost, for tests of the recorded work rather than of quality.
 pub fn small_shadow(device: &Device, kind: TechniqueKind) -> AnyShadow {
     let settings = [("map_size", "64"), ("view_size", "32"), ("samples", "4"), ("search_samples", "4")];
     shadow_with(device, kind, &settings)
 }
 
-/// A technique of a name.
+/// Returns the technique of a name.
 ///
 /// # Panics
-/// Where there is none.
+/// Panics if there is none.
 pub fn kind_of(name: &str) -> TechniqueKind {
     TechniqueKind::from_name(name).unwrap_or_else(|| panic!("no technique is called {name}"))
 }
@@ -170,7 +171,7 @@ pub fn kind_of(name: &str) -> TechniqueKind {
 /// Prepares and records one frame, submits it, and waits.
 ///
 /// # Errors
-/// Where the library refuses the frame.
+/// Fails if the library refuses the frame.
 pub fn draw(device: &Device, shadow: &mut AnyShadow, frame: &Frame<'_>) -> Result<(), Error> {
     let mut encoder = device.encoder();
     shadow.prepare(frame)?.record(&mut Recorder::new(&mut encoder, None));
@@ -179,10 +180,10 @@ pub fn draw(device: &Device, shadow: &mut AnyShadow, frame: &Frame<'_>) -> Resul
     Ok(())
 }
 
-/// A light's mask, of 32 bits and one channel, as numbers.
+/// Draws a frame and reads its mask of one 32-bit channel.
 ///
 /// # Panics
-/// Where the library refuses the frame, or wgpu has a validation message.
+/// Panics if the library refuses the frame, or on a validation message.
 pub fn mask_of(
     device: &Device,
     shadow: &mut AnyShadow,

@@ -1,4 +1,4 @@
-//! Depth and normals of a scene, as this host draws them.
+//! The host's rasteriser of depth and normals.
 
 use antumbra::{DepthConvention, Receivers};
 use glam::{Mat4, UVec2, Vec3};
@@ -31,28 +31,28 @@ const SHADER: &str = "
     }
 ";
 
-/// What a camera sees of a scene.
+/// Depth and normals of a scene from a camera.
 #[derive(Debug)]
 pub struct Picture {
-    /// Depth.
+    /// Depth texture.
     pub depth: wgpu::Texture,
-    /// All of the depth, of its depth aspect.
+    /// View of the whole texture, depth aspect only.
     pub depth_view: wgpu::TextureView,
     /// World-space geometric normals, `Rgba32Float`.
     pub normals: wgpu::Texture,
-    /// All of them.
+    /// View of the whole texture.
     pub normals_view: wgpu::TextureView,
-    /// What has seen it.
+    /// The camera.
     pub camera: Camera,
 }
 
 impl Picture {
-    /// Draws depth and normals, and waits for neither.
+    /// Draws depth and normals without waiting for the GPU.
     pub fn draw(device: &Device, scene: &Scene, camera: &Camera) -> Self {
         Self::draw_as(device, scene, camera, wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::TEXTURE_BINDING)
     }
 
-    /// Draws depth of any format, whose texture has these usages besides that of an attachment.
+    /// Draws depth in any format; `usage` is added to that of an attachment.
     pub fn draw_as(
         device: &Device,
         scene: &Scene,
@@ -91,7 +91,7 @@ impl Picture {
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }],
         });
-        // Attachments have all aspects.
+        // Views of attachments must have all aspects.
         let attachment = self.depth.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = device.encoder();
         {
@@ -169,7 +169,7 @@ impl Picture {
         })
     }
 
-    /// The receivers of the picture: with normals, and without anything that a host may leave out.
+    /// Receivers of the image, with normals and without any other optional input.
     pub fn receivers(&self) -> Receivers<'_> {
         let camera = antumbra::Camera {
             view_from_world: self.camera.view_from_world(),
@@ -184,7 +184,7 @@ impl Picture {
     }
 }
 
-/// A texture that is drawn to.
+/// Creates a render target.
 pub fn texture(
     device: &Device,
     size_px: UVec2,

@@ -1,5 +1,4 @@
-//! Visibility by brute force: every segment from a receiver to a point of the light against every triangle, in double
-//! precision.
+//! Visibility by brute force: every shadow ray is tested against every triangle in double precision.
 
 use std::f64::consts::TAU;
 
@@ -8,13 +7,13 @@ use glam::{DMat4, DVec2, DVec3, UVec2};
 
 use crate::scene::{Camera, Scene};
 
-/// What is right at a pixel; `None` where it sees no surface, or more than one.
+/// Reference visibility by pixel; `None` if the pixel sees no surface, or more than one.
 pub type Truth = Vec<Option<f32>>;
 
-/// A pixel's primary ray sees one surface where four rays so many pixels about it see the same plane.
+/// Distance in pixels of four rays around a pixel's primary ray. All must see the same plane for the pixel to be judged.
 const ABOUT_PX: f64 = 0.05;
 
-/// Triangles to cast rays at.
+/// A scene's triangles for ray casting.
 #[derive(Clone, Debug)]
 pub struct Rays {
     triangles: Vec<Triangle>,
@@ -27,7 +26,7 @@ struct Triangle {
     normal: DVec3,
 }
 
-/// A surface that a ray meets.
+/// Intersection of a ray with a surface.
 #[derive(Clone, Copy, Debug)]
 struct Hit {
     distance: f64,
@@ -35,7 +34,7 @@ struct Hit {
 }
 
 impl Rays {
-    /// Of a scene.
+    /// Collects the triangles of a scene.
     pub fn new(scene: &Scene) -> Self {
         let triangle = |[a, b, c]: [glam::Vec3; 3]| {
             let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
@@ -45,7 +44,7 @@ impl Rays {
         Self { triangles: scene.triangles().into_iter().map(triangle).collect() }
     }
 
-    /// Visibility at every pixel, of so many points of the light; each pixel has others.
+    /// Computes visibility at every pixel, with `points` light samples that differ between pixels.
     pub fn visibility(&self, camera: &Camera, light: &Light, points: u32) -> Truth {
         let size = camera.size_px;
         let mut truth = vec![None; size.element_product() as usize];
@@ -79,7 +78,7 @@ impl Rays {
         Some(self.light_seen(light, x, normal, hit.triangle, pixel, points))
     }
 
-    /// The surface behind a place of the picture, and the direction of the ray that sees it.
+    /// Returns the surface at an image position, with the direction of the primary ray.
     fn seen(&self, camera: &Camera, place_px: DVec2) -> Option<(DVec3, Hit, DVec3)> {
         let ndc = place_px / camera.size_px.as_dvec2() * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
         let aspect = f64::from(camera.size_px.x) / f64::from(camera.size_px.y);
@@ -109,7 +108,7 @@ impl Rays {
         nearest
     }
 
-    /// Whether anything but a triangle that the origin lies on is in the way, `to` times the direction from the origin.
+    /// Whether any triangle but `own`, on which the origin lies, is nearer than `to` times the direction.
     fn is_blocked(&self, origin: DVec3, direction: DVec3, own: usize, to: f64) -> bool {
         let least = 1e-7 / direction.length();
         self.triangles.iter().enumerate().any(|(i, triangle)| {
@@ -117,7 +116,7 @@ impl Rays {
         })
     }
 
-    /// The part of the light that a place on a surface sees.
+    /// Returns the visible fraction of the light at a surface point.
     fn light_seen(&self, light: &Light, x: DVec3, normal: DVec3, own: usize, pixel: UVec2, points: u32) -> f32 {
         if !reaches(light, x) {
             return 0.0;
@@ -138,7 +137,7 @@ impl Rays {
 }
 
 impl Triangle {
-    /// Where along a ray it is met (Möller and Trumbore, "Fast, minimum storage ray-triangle intersection", 1997).
+    /// Returns the ray parameter of an intersection (Möller and Trumbore, "Fast, minimum storage ray-triangle intersection", 1997).
     fn meets(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let [e, f] = self.edges;
         let across = direction.cross(f);
@@ -154,7 +153,7 @@ impl Triangle {
     }
 }
 
-/// Whether a place is before a light that has a front, and inside the frustum or cone that it is held to.
+/// Whether a point is on the emitting side of the light and inside its frustum or cone.
 fn reaches(light: &Light, x: DVec3) -> bool {
     if light.is_distant() {
         return true;
@@ -171,7 +170,7 @@ fn reaches(light: &Light, x: DVec3) -> bool {
     in_frustum && in_cone && (!has_front || axis > 0.0)
 }
 
-/// Points of a light as a place sees them.
+/// Samples of a light for one receiver.
 struct Sampler<'a> {
     light: &'a Light,
     x: DVec3,
@@ -183,7 +182,7 @@ impl<'a> Sampler<'a> {
         let frame = light.frame();
         let own = [frame.right, frame.up, frame.axis].map(|axis| axis.as_dvec3());
         let axes = if let LightShape::Sphere { .. } = light.shape {
-            // The disc that faces the place.
+            // The disc of the sphere that faces the receiver.
             let towards = (x - light.center.as_dvec3()).normalize_or(own[2]);
             let (right, up) = towards.any_orthonormal_pair();
             [right, up, towards]
@@ -197,7 +196,7 @@ impl<'a> Sampler<'a> {
         if let LightShape::Points { positions_m } = &self.light.shape { positions_m.len() as u32 } else { points }
     }
 
-    /// The way to point `i` of `count`, and its weight: a Hammersley set, moved on the unit torus by `shift`.
+    /// Returns the vector to sample `i` of `count` and its weight: a Hammersley set, shifted on the unit torus by `shift`.
     fn point(&self, i: u32, count: u32, shift: DVec3) -> (DVec3, f64) {
         let u = (DVec3::new((f64::from(i) + 0.5) / f64::from(count), radical_inverse(i, 2), radical_inverse(i, 3))
             + shift)
@@ -240,7 +239,7 @@ impl<'a> Sampler<'a> {
     }
 }
 
-/// The digits of a number in a base, mirrored about the point.
+/// Radical inverse of a number: its digits in a base, mirrored about the point.
 fn radical_inverse(mut i: u32, base: u32) -> f64 {
     let (mut value, mut digit) = (0.0, 1.0 / f64::from(base));
     while i > 0 {
@@ -251,7 +250,7 @@ fn radical_inverse(mut i: u32, base: u32) -> f64 {
     value
 }
 
-/// A number for each pixel and dimension, from a hash (Jarzynski and Olano, "Hash functions for GPU rendering", 2020: `pcg3d`).
+/// Random shift of each pixel, from a hash (Jarzynski and Olano, "Hash functions for GPU rendering", 2020: `pcg3d`).
 fn shift_of(pixel: UVec2) -> DVec3 {
     let mut v = [pixel.x, pixel.y, 0x9e37].map(|x| x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     for _ in 0..2 {
@@ -263,10 +262,10 @@ fn shift_of(pixel: UVec2) -> DVec3 {
     DVec3::from(v.map(f64::from)) / f64::from(u32::MAX)
 }
 
-/// Root mean square of a mask's differences from the truth.
+/// Root-mean-square difference of a mask and the reference.
 ///
 /// # Panics
-/// Where fewer than a tenth of the pixels can be judged.
+/// Panics if fewer than a tenth of the pixels can be judged.
 pub fn rmse(mask: &[f32], truth: &Truth) -> f64 {
     let squares: Vec<f64> =
         mask.iter().zip(truth).filter_map(|(had, right)| Some(f64::from(had - (*right)?).powi(2))).collect();
@@ -274,10 +273,10 @@ pub fn rmse(mask: &[f32], truth: &Truth) -> f64 {
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
-/// Darkness of a mask, mean over the pixels that see all of the light.
+/// Mean occlusion of a mask over the pixels that see the whole light.
 ///
 /// # Panics
-/// Where fewer than a tenth of the pixels do.
+/// Panics if fewer than a tenth of the pixels do.
 pub fn lit_loss(mask: &[f32], truth: &Truth) -> f64 {
     let lit = mask.iter().zip(truth).filter(|(_, right)| **right == Some(1.0));
     let losses: Vec<f64> = lit.map(|(had, _)| 1.0 - f64::from(*had)).collect();
@@ -285,10 +284,10 @@ pub fn lit_loss(mask: &[f32], truth: &Truth) -> f64 {
     losses.iter().sum::<f64>() / losses.len() as f64
 }
 
-/// The mean of a mask over what is dark.
+/// Mean visibility of a mask over the umbra.
 ///
 /// # Panics
-/// Where less than a tenth of the pixels is dark: then it says nothing.
+/// Panics if less than a tenth of the pixels is in the umbra.
 pub fn umbra_leak(mask: &[f32], truth: &Truth) -> f64 {
     let dark = mask.iter().zip(truth).filter(|(_, right)| **right == Some(0.0));
     let leaks: Vec<f64> = dark.map(|(had, _)| f64::from(*had)).collect();
@@ -296,7 +295,7 @@ pub fn umbra_leak(mask: &[f32], truth: &Truth) -> f64 {
     leaks.iter().sum::<f64>() / leaks.len() as f64
 }
 
-/// The share of judged pixels in a range of visibility.
+/// Fraction of judged pixels within a range of visibility.
 pub fn share_between(truth: &Truth, low: f32, high: f32) -> f64 {
     let judged: Vec<f32> = truth.iter().flatten().copied().collect();
     judged.iter().filter(|v| (low..=high).contains(*v)).count() as f64 / judged.len().max(1) as f64

@@ -9,9 +9,9 @@ use glam::{Mat4, UVec2, Vec2, Vec3};
 pub struct Mesh {
     /// Object-space positions.
     pub positions: Vec<Vec3>,
-    /// Three a triangle, counter-clockwise from outside.
+    /// Three indices per triangle, counter-clockwise from outside.
     pub indices: Vec<u16>,
-    /// Whether the triangles bound a solid.
+    /// Whether the mesh is watertight.
     pub closed: bool,
 }
 
@@ -35,7 +35,7 @@ impl Mesh {
         }
     }
 
-    /// Object-space box.
+    /// Object-space bounding box.
     pub fn bounds(&self) -> Aabb {
         Aabb::of(self.positions.iter().copied())
     }
@@ -45,22 +45,22 @@ fn pick(bit: u32, min: f32, max: f32) -> f32 {
     if bit == 0 { min } else { max }
 }
 
-/// A mesh at a place.
+/// A mesh with a transform.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// What is there.
+    /// The mesh.
     pub mesh: Mesh,
     /// World-from-object matrix.
     pub world_from_object: Mat4,
 }
 
 impl Object {
-    /// A mesh where it was made.
+    /// Creates an object with the identity transform.
     pub fn of(mesh: Mesh) -> Self {
         Self { mesh, world_from_object: Mat4::IDENTITY }
     }
 
-    /// World-space corners of each triangle.
+    /// World-space vertices of each triangle.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
         let corner = |i: u16| self.world_from_object.transform_point3(self.mesh.positions[usize::from(i)]);
         self.mesh.indices.chunks_exact(3).map(move |t| [corner(t[0]), corner(t[1]), corner(t[2])])
@@ -70,17 +70,17 @@ impl Object {
 /// Objects that cast and receive.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// All of them.
+    /// All objects.
     pub objects: Vec<Object>,
 }
 
 impl Scene {
-    /// World-space corners of every triangle.
+    /// World-space vertices of every triangle.
     pub fn triangles(&self) -> Vec<[Vec3; 3]> {
         self.objects.iter().flat_map(Object::triangles).collect()
     }
 
-    /// World-space box of all triangles.
+    /// World-space bounding box of all triangles.
     pub fn bounds(&self) -> Aabb {
         Aabb::of(self.triangles().into_iter().flatten())
     }
@@ -102,22 +102,22 @@ impl Scene {
     }
 }
 
-/// A camera and its picture.
+/// A camera with its image size.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
-    /// Place, metres.
+    /// Position, metres.
     pub eye: Vec3,
-    /// What it looks at.
+    /// Target position, metres.
     pub target: Vec3,
     /// Full vertical angle of a perspective camera, radians.
     pub fov_y_rad: f32,
-    /// Height of what an orthographic camera sees, metres; `None` is a perspective.
+    /// Height of an orthographic camera's view, metres; `None` for a perspective camera.
     pub height_m: Option<f32>,
     /// Near plane, metres.
     pub near_m: f32,
     /// Far plane, metres; `None` is infinite.
     pub far_m: Option<f32>,
-    /// Whether near is 1.
+    /// Whether depth is reversed: 1 at the near plane.
     pub is_reversed: bool,
     /// Width and height, pixels.
     pub size_px: UVec2,
@@ -138,15 +138,15 @@ impl Camera {
         }
     }
 
-    /// The camera's pose.
+    /// View matrix.
     pub fn view_from_world(&self) -> Mat4 {
         look_at_mat4(self.eye, self.target, Vec3::Y)
     }
 
-    /// The camera's projection.
+    /// Projection matrix.
     ///
     /// # Panics
-    /// Where an orthographic camera has no far plane.
+    /// Panics if an orthographic camera has no far plane.
     pub fn clip_from_view(&self) -> Mat4 {
         let aspect = self.size_px.x as f32 / self.size_px.y as f32;
         if let Some(height_m) = self.height_m {
@@ -158,13 +158,13 @@ impl Camera {
         match (self.far_m, self.is_reversed) {
             (None, true) => directx::perspective_infinite_reverse(self.fov_y_rad, aspect, self.near_m),
             (Some(far_m), false) => directx::perspective(self.fov_y_rad, aspect, self.near_m, far_m),
-            // Near and far exchanged reverse depth.
+            // Exchanging near and far plane reverses depth.
             (Some(far_m), true) => directx::perspective(self.fov_y_rad, aspect, far_m, self.near_m),
             (None, false) => directx::perspective_infinite(self.fov_y_rad, aspect, self.near_m),
         }
     }
 
-    /// What depth is cleared to.
+    /// Clear value of the depth buffer.
     pub fn background_depth(&self) -> f32 {
         if self.is_reversed { 0.0 } else { 1.0 }
     }
@@ -175,7 +175,7 @@ pub fn base_light() -> Light {
     base_light_of(LightShape::Rectangle { size_m: Vec2::new(1.2, 0.8) })
 }
 
-/// A light of another shape where the base scene's is.
+/// A light of another shape at the base light's position.
 pub fn base_light_of(shape: LightShape) -> Light {
     Light::new(shape, Vec3::new(-3.0, 6.0, 3.0), Vec3::ZERO)
 }

@@ -1,8 +1,7 @@
-//! What frames cost the processor once a scene is set up: eight lights of all shapes over five hundred casters, with lights,
-//! camera and some casters on the move.
+//! CPU cost of steady frames: eight lights of all shapes and five hundred casters, with moving lights, camera and some moving casters.
 //!
-//! `steady_frames_make_nothing` counts objects and the heap with small maps and pictures. `processor_time` prints the time
-//! that preparing and recording take, with the techniques' own sizes of maps:
+//! `steady_frames_make_nothing` counts wgpu resources and heap bytes with small maps and images. `processor_time` prints
+//! the time of preparing and recording with the techniques' default map sizes:
 //! `cargo test --workspace --test steady_frames -- --ignored --nocapture`.
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -24,12 +23,12 @@ use antumbra_light::{EmissionTexture, Light, LightShape};
 use antumbra_scene::{LoadOptions, Scene, Setup, load};
 use glam::{Affine2, Mat4, UVec2, Vec2, Vec3};
 
-/// The system's allocator, counting the bytes that are held.
+/// The system's allocator with a count of the allocated bytes.
 struct Counting;
 
 static HELD_BYTES: AtomicI64 = AtomicI64::new(0);
 
-/// Whoever counts is alone.
+/// Serialises the tests that count.
 static COUNTING: Mutex<()> = Mutex::new(());
 
 #[allow(unsafe_code, reason = "an allocator that counts can be written in no other way")]
@@ -61,14 +60,14 @@ fn device() -> Option<LabDevice> {
     }
 }
 
-/// A scene of five hundred objects as those of a street, some of them with holes, and eight lights above it.
+/// Five hundred objects of a street, some alpha-tested, and eight lights above.
 struct Street {
     set: CasterSet,
     casters: Vec<(CasterId, Mat4)>,
     lights: Vec<Light>,
     images: ReceiverImages,
     view_from_world: Mat4,
-    /// What the set's meshes were packed from.
+    /// Source buffers of the set's meshes.
     _buffers: Vec<wgpu::Buffer>,
 }
 
@@ -143,7 +142,7 @@ impl Street {
         Self { set, casters, lights, images, view_from_world, _buffers: buffers }
     }
 
-    /// Moves every tenth caster and every light a little, and brings casters to the GPU.
+    /// Moves every tenth caster, every light and the camera, and uploads the casters.
     fn step(&mut self, frame: u32, recorder: &mut Recorder<'_>) {
         let turn = 0.01 * frame as f32;
         for (id, matrix) in self.casters.iter().step_by(10) {
@@ -164,17 +163,17 @@ impl Street {
     }
 }
 
-/// A part of the street with vertices of its own, as of a host whose casters share none.
+/// A part of the street with vertices of its own, as in hosts whose casters share none.
 struct Object {
     positions: Vec<Vec3>,
     indices: Vec<u32>,
     matrix: Mat4,
 }
 
-/// Triangles of an object: what the processor does depends on objects, and what the adapter does should not take long.
+/// Triangles per object. CPU time depends on the number of objects; few triangles keep the GPU fast.
 const OBJECT_TRIANGLES: usize = 12;
 
-/// Five hundred parts of the street, from all over it.
+/// Returns five hundred parts from all over the street.
 fn objects(scene: &Scene) -> Vec<Object> {
     let placed = scene.instances.iter().map(|instance| (&scene.meshes[instance.mesh], instance.world_from_object));
     let parts: Vec<(&antumbra_scene::Mesh, &[u32], Mat4)> = placed
@@ -192,7 +191,7 @@ fn objects(scene: &Scene) -> Vec<Object> {
     (0..CASTERS).map(part).collect()
 }
 
-/// Eight lights of all shapes, about one.
+/// Eight lights of all shapes around the given one.
 fn lights(first: &Light) -> Vec<Light> {
     let at = |i: usize| first.center + Vec3::new(0.4 * i as f32 - 1.4, 0.1 * i as f32, 0.0);
     let of = |i: usize, shape: LightShape| Light { shape, center: at(i), ..first.clone() };
@@ -229,7 +228,7 @@ fn white(lab: &LabDevice) -> Texture {
     }
 }
 
-/// One frame of every light: milliseconds for the casters, for preparing and for recording.
+/// Draws one frame of every light. Returns milliseconds for updating casters, preparing and recording.
 fn frame(lab: &LabDevice, street: &mut Street, shadows: &mut [AnyShadow], masks: &[Mask], i: u32) -> [f64; 3] {
     let mut encoder = lab.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut recorder = Recorder::new(&mut encoder, None);
@@ -294,13 +293,13 @@ fn steady_frames_make_nothing() {
             }
         }
         assert_eq!(gpu.objects_made(), counts, "{kind}");
-        // Maps that are filled in turn grow once in a while, and not with every frame.
+        // Hash maps may grow occasionally, but not in every frame.
         let grown = held[held.len() - 1] - held[0];
         assert!(grown < 64 << 10, "{kind}: the heap grew by {grown} bytes over {} frames: {held:?}", held.len() - 1);
     }
 }
 
-/// A technique that is made, used and dropped again and again, as a search for settings does, leaves nothing on the heap.
+/// Repeatedly creating, using and dropping a technique, as a parameter search does, leaves nothing on the heap.
 #[test]
 fn techniques_that_go_leave_nothing() {
     let _alone = COUNTING.lock().unwrap_or_else(PoisonError::into_inner);

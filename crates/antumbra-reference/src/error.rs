@@ -1,25 +1,25 @@
-//! What can go wrong.
+//! Errors of the ray tracer.
 
 use antumbra_light::LightError;
 
-/// Why there is no reference.
+/// Error of the ray tracer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReferenceError {
-    /// The light's numbers make no sense.
+    /// The light is invalid.
     #[error(transparent)]
     Light(#[from] LightError),
-    /// A scene refers to something that it does not hold.
+    /// A scene has an index that is out of range.
     #[error(
         "reference: scene `{scene}`: {what} {index} is out of range: there are {count}; the scene's loader is at fault"
     )]
     OutOfRange {
         /// The scene's name.
         scene: String,
-        /// What kind of thing.
+        /// Kind of the indexed object.
         what: &'static str,
-        /// Which was asked for.
+        /// Index out of range.
         index: usize,
-        /// How many there are.
+        /// Number of objects.
         count: usize,
     },
     /// A world position is not a finite number.
@@ -32,25 +32,25 @@ pub enum ReferenceError {
         /// Index into the scene's instances.
         instance: usize,
     },
-    /// More triangles than the tracer's indices can count.
+    /// The scene has more triangles than the tracer's indices can address.
     #[error("reference: scene `{scene}` has {count} triangles as drawn; the tracer takes at most {most}")]
     TooManyTriangles {
         /// The scene's name.
         scene: String,
-        /// How many.
+        /// Number of triangles.
         count: usize,
-        /// How many would do.
+        /// Largest number allowed.
         most: usize,
     },
-    /// No light points were asked for.
+    /// The number of light samples is zero or too large.
     #[error("reference: `samples` is {samples}, and must be from 1 to {most}")]
     Samples {
-        /// What was asked for.
+        /// Number requested.
         samples: u32,
-        /// The largest number allowed.
+        /// Largest number allowed.
         most: u32,
     },
-    /// The caller asked to stop.
+    /// The caller cancelled.
     #[error("reference: cancelled")]
     Cancelled,
 }

@@ -1,4 +1,4 @@
-//! A scene as the tracer holds it: flat lists of world-space triangles, sorted by what they do to light.
+//! Scene representation of the tracer: flat lists of world-space triangles, sorted by their effect on light.
 
 use antumbra_scene::Scene;
 use glam::Vec3;
@@ -13,25 +13,25 @@ pub(crate) struct Triangle {
     pub(crate) corners: [Vec3; 3],
     /// Index into the scene's instances.
     pub(crate) instance: u32,
-    /// Which triangle of the instance's mesh.
+    /// Triangle index within the instance's mesh.
     pub(crate) index: u32,
-    /// What it does to light.
+    /// Effect on light.
     pub(crate) surface: Surface,
 }
 
-/// Triangles by what they do to light: those that block and translucent ones have separate trees, because a blocked
-/// ray may stop at the first and one that is let through must meet all.
+/// Triangles by their effect on light. Blocking and translucent ones have separate trees, because a blocked ray can stop
+/// at the first hit, while a transmitted one must meet all translucent triangles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Geometry {
     /// Opaque and masked triangles, in the order of the scene.
     pub(crate) blockers: Vec<Triangle>,
     /// Translucent triangles, in the order of the scene.
     pub(crate) translucents: Vec<Triangle>,
-    /// What surfaces need.
+    /// Data of surfaces that are not simply opaque.
     pub(crate) surfaces: Surfaces,
 }
 
-/// Indices of blocks of triangles are 31 bits wide (see `tree.rs`); this keeps far from them.
+/// Largest number of triangles: far below the 31 bits of a block's index (see `tree.rs`).
 const MOST_TRIANGLES: usize = 1 << 30;
 
 impl Geometry {
@@ -43,7 +43,7 @@ impl Geometry {
                 let instance = triangle.instance as usize;
                 return Err(ReferenceError::NotFinite { scene: scene.name.clone(), instance });
             }
-            // No area, no shadow: such a triangle would only cost time.
+            // Triangles without area cast no shadow and would only cost time.
             let [a, b, c] = triangle.positions.map(Vec3::as_dvec3);
             if (b - a).cross(c - a).length_squared() == 0.0 {
                 continue;
@@ -63,7 +63,7 @@ impl Geometry {
     }
 }
 
-/// Every index of a scene lies within what it points into.
+/// Checks that every index of a scene is in range.
 fn check(scene: &Scene) -> Result<(), ReferenceError> {
     let within = |what: &'static str, index: usize, count: usize| {
         if index < count {

@@ -1,21 +1,21 @@
-//! Eight floats, or four doubles, at a time: the one place that knows instruction sets, and the one with `unsafe`.
+//! Vectors of eight floats or four doubles: the only module that depends on instruction sets, and the only one with `unsafe`.
 //!
-//! An algorithm is written once, generic over [`Lanes`], as a [`Kernel`]; [`Simd::run`] compiles it once for AVX2 with
-//! FMA and once portably, and picks by what the processor has. Both give the same bits: every operation used is
-//! correctly rounded by IEEE 754, fused multiply-add included (where a processor lacks it, the C library computes it),
-//! and Rust never contracts or reorders floating point.
+//! An algorithm is written once, generic over [`Lanes`], as a [`Kernel`]. [`Simd::run`] compiles it for AVX2 with FMA and
+//! portably, and picks by the processor's features. Both give the same bits: every operation used is correctly rounded by
+//! IEEE 754, fused multiply-add included (the C library computes it if the processor lacks it), and Rust never contracts
+//! or reorders floating point.
 
-/// Which instructions to use.
+/// Instruction set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Simd {
-    /// Whatever the target's baseline is.
+    /// The target's baseline.
     Portable,
-    /// AVX2, FMA and the bit counting that comes with them. Holding this value is proof that the processor has them: only [`Simd::detect`] makes it.
+    /// AVX2, FMA and bit counting. A value proves that the processor has them, because only [`Simd::detect`] creates one.
     #[cfg(target_arch = "x86_64")]
     Avx2(Detected),
 }
 
-/// Only this module can make one.
+/// Proof of detection, which only this module can create.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Detected(());
@@ -62,7 +62,7 @@ pub(crate) trait Lanes: Copy {
     fn min(self, other: Self) -> Self;
     /// The larger; neither may be NaN.
     fn max(self, other: Self) -> Self;
-    /// Without its sign.
+    /// Absolute value.
     fn abs(self) -> Self;
     /// Bitwise or: the sign bit of a lane is set where either is.
     fn or(self, other: Self) -> Self;
@@ -72,15 +72,15 @@ pub(crate) trait Lanes: Copy {
 
 /// An algorithm to be compiled for each instruction set.
 pub(crate) trait Kernel {
-    /// What it returns.
+    /// Result of the algorithm.
     type Output;
-    /// The algorithm. Implementations are `#[inline(always)]`, and so is what they call, or else the inner loops do
-    /// not see the instruction set.
+    /// Runs the algorithm. Implementations and everything they call must be `#[inline(always)]`; otherwise the inner loops are
+    /// not compiled for the instruction set.
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
 impl Simd {
-    /// The best this processor has.
+    /// Returns the best instruction set of this processor.
     pub(crate) fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
@@ -98,14 +98,14 @@ impl Simd {
         match self {
             Self::Portable => kernel.run::<PortableLanes>(),
             #[cfg(target_arch = "x86_64")]
-            // SAFETY: the variant is made only where the processor was seen to have every feature of `run_avx2`.
+            // SAFETY: the variant exists only if every feature of `run_avx2` was detected.
             #[allow(unsafe_code)]
             Self::Avx2(_) => unsafe { x86::run_avx2(kernel) },
         }
     }
 }
 
-/// Eight floats without any instruction in particular.
+/// Eight floats in portable code.
 #[derive(Clone, Copy)]
 pub(crate) struct PortableLanes([f32; 8]);
 
@@ -116,7 +116,7 @@ impl PortableLanes {
     }
 }
 
-/// Four doubles without any instruction in particular.
+/// Four doubles in portable code.
 #[derive(Clone, Copy)]
 pub(crate) struct PortableDoubles([f64; 4]);
 
@@ -242,17 +242,17 @@ mod x86 {
 
     use super::{Doubles, Kernel, Lanes};
 
-    /// The kernel with everything it inlines, compiled for AVX2 and FMA.
+    /// Runs a kernel, with everything it inlines, compiled for AVX2 and FMA.
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     pub(super) fn run_avx2<K: Kernel>(kernel: K) -> K::Output {
         kernel.run::<Avx2Lanes>()
     }
 
-    /// Eight floats in one register. Used by kernels under [`run_avx2`] alone.
+    /// Eight floats in one register. Only kernels under [`run_avx2`] use it.
     #[derive(Clone, Copy)]
     struct Avx2Lanes(__m256);
 
-    /// Four doubles in one register. Used as [`Avx2Lanes`] is.
+    /// Four doubles in one register. Used like [`Avx2Lanes`].
     #[derive(Clone, Copy)]
     pub(super) struct Avx2Doubles(__m256d);
 
@@ -302,8 +302,8 @@ mod x86 {
         }
     }
 
-    // SAFETY, for every block below: the type is private and reaches only kernels under `run_avx2`, which runs only
-    // where AVX2 and FMA were detected; loads and stores are unaligned forms over arrays of exactly eight floats.
+    // SAFETY, for every block below: the type is private and only reaches kernels under `run_avx2`, which runs only if AVX2
+    // and FMA were detected; loads and stores are unaligned forms over arrays of exactly eight floats.
     impl Lanes for Avx2Lanes {
         type Doubles = Avx2Doubles;
 

@@ -1,9 +1,9 @@
-//! Ray-traced truth for soft shadows, on the CPU.
+//! Ray-traced ground truth of soft shadows, on the CPU.
 //!
-//! A [`Tracer`] takes in a scene; [`Tracer::primary`] finds what a camera sees, [`Tracer::visibility`] how much of a
-//! light each pixel sees, as `docs/formats.md` defines it: the fraction of the light's emitting area along segments
-//! that no opaque triangle blocks, whichever way it faces, with alpha masks, and with the product of what each translucent
-//! surface lets through.
+//! A [`Tracer`] is built from a scene. [`Tracer::primary`] finds what a camera sees, [`Tracer::visibility`] the visibility
+//! of a light from each pixel, as `docs/formats.md` defines it: the fraction of the light's emitting area along segments
+//! that no opaque triangle blocks, whichever way it faces, with alpha masks, and with the product of the transmittances
+//! of translucent surfaces.
 //!
 //! ```
 //! use antumbra_light::{Light, LightShape};
@@ -32,8 +32,8 @@
 //! # Ok::<(), antumbra_reference::ReferenceError>(())
 //! ```
 //!
-//! How it is fast: the segments of one receiver are traced together (`walk.rs`). How it is right: every shortcut keeps
-//! the bits that testing each triangle against each light point gives.
+//! Performance: the segments of one receiver are traced together (`walk.rs`). Correctness: every shortcut gives the same
+//! bits as testing each triangle against each light point.
 
 mod error;
 mod geometry;
@@ -57,5 +57,5 @@ pub use sampled_light::SampledLight;
 pub use tracer::Tracer;
 pub use visibility::{VisibilityImage, VisibilityOptions};
 
-/// Told how much is done, from 0 to 1.
+/// Progress callback, which receives the completed fraction from 0 to 1.
 pub type Progress<'a> = &'a (dyn Fn(f32) + Sync);

@@ -1,8 +1,8 @@
-//! The triangle test: four planes through the rays' common origin.
+//! Triangle test with four planes through the rays' common origin.
 //!
-//! All shadow rays of a receiver start at one point `o`, so a triangle's part in the test can be worked out once and
-//! used for every light point. With the corners relative to the origin, `a, b, c`, the segment `o + t·d` meets the
-//! triangle's interior where `d` has the same sign against the three planes through `o` and an edge (Plücker
+//! All shadow rays of a receiver start at one point `o`, so the part of the test that depends on the triangle is computed
+//! once and used for every light point. With the corners relative to the origin, `a, b, c`, the segment `o + t·d` meets
+//! the triangle's interior where `d` has the same sign against the three planes through `o` and an edge (Plücker
 //! coordinates with a shared origin; Davidovič, Engelhardt, Georgiev, Slusallek and Dachsbacher, "3D Rasterization: A
 //! Bridge between Rasterization and Ray Tracing", Graphics Interface 2012, sec. 3):
 //!
@@ -14,25 +14,25 @@
 //!
 //! Multiplying by `s` makes the test two-sided: a segment is blocked whichever way a triangle faces (`docs/formats.md`).
 //!
-//! A light point is `d = d₀ + α·e₁ + β·e₂ + γ·e₃` in the light's frame about its centre, so each plane becomes four
-//! numbers, `n·d₀, n·e₁, n·e₂, n·e₃`, and a test of one light point is two fused multiply-adds a plane (three for a
+//! A light point is `d = d₀ + α·e₁ + β·e₂ + γ·e₃` in the light's frame about its centre. Each plane thus becomes four
+//! numbers, `n·d₀, n·e₁, n·e₂, n·e₃`, and a test of one light point takes two fused multiply-adds per plane (three for a
 //! light with volume).
 //!
-//! **Precision.** The planes are made in double precision from single-precision corners and then rounded. So the sign
-//! of `T`, which says on which side of the triangle the receiver lies, is right to 2⁻⁵⁰ of the corners' distance, and
-//! the start of a segment need only clear the rounding of its own position (see `receivers.rs`).
+//! **Precision.** The planes are computed in double precision from single-precision corners and then rounded. The sign of
+//! `T`, the receiver's side of the triangle, is therefore right to 2⁻⁵⁰ of the corners' distance, and the start of a
+//! segment need only exceed the rounding of its own position (see `receivers.rs`).
 //!
-//! **Watertightness.** The form `(b−c)×(b+c)` changes its sign exactly when `b` and `c` change places, whatever the
-//! rounding, and so do all sums after it. Two triangles that share an edge therefore see opposite values for every
+//! **Watertightness.** The form `(b−c)×(b+c)` changes its sign exactly when `b` and `c` are swapped, whatever the
+//! rounding, and so do all sums after it. Two triangles that share an edge therefore get opposite values for every
 //! light point, and at least one of them counts it: no light leaks between them. (Davidovič et al. sec. 3.2; Woop,
 //! Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013, argue the same for their scaled form.)
 
 use crate::lanes::{Doubles, Lanes};
 
-/// Triangles tested together: one per lane.
+/// Number of triangles tested together, one per lane.
 pub(crate) const LANES: usize = 8;
 
-/// Eight triangles, corner by corner.
+/// Block of up to eight triangles.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Block {
@@ -40,27 +40,27 @@ pub(crate) struct Block {
     pub(crate) corners: [[[f32; LANES]; 3]; 3],
     /// Index of the triangle in the geometry that the blocks were made from; unused lanes repeat the first.
     pub(crate) triangle: [u32; LANES],
-    /// The largest coordinate of any edge of the triangle, metres.
+    /// Largest absolute coordinate of any edge of the triangle, metres.
     pub(crate) extent: [f32; LANES],
-    /// How many lanes are used, from the first on.
+    /// Number of lanes used, from the first.
     pub(crate) count: u32,
 }
 
 impl Block {
-    /// Bit k: lane k holds a triangle.
+    /// Bit mask of the used lanes: bit k is lane k.
     #[inline(always)]
     pub(crate) fn present(&self) -> u32 {
         (1 << self.count) - 1
     }
 
-    /// Which lanes a single ray along `vector` may meet, as bits, by the signs of the edge planes in single precision.
+    /// Bit mask of the lanes that a single ray along `vector` may meet, by the signs of the edge planes in single precision.
     ///
-    /// Triangles for which the planes certainly differ in sign are left out; [`Planes`] decides about the rest. With
-    /// `u = 2⁻²⁴`, edges no longer than `e` per axis, corners no further than `m`, and `|d| ≤ δ` per axis: an edge is off
-    /// by `u e`, a sum of corners by `4 u m`, a normal by `20 u e m`, and its product with `d` by `100 u e m δ`.
+    /// Triangles whose planes certainly differ in sign are left out; [`Planes`] decides about the rest. With `u = 2⁻²⁴`, edges
+    /// no longer than `e` per axis, corners no further than `m`, and `|d| ≤ δ` per axis, the errors are: `u e` for an edge,
+    /// `4 u m` for a sum of corners, `20 u e m` for a normal, and `100 u e m δ` for its product with `d`.
     #[inline(always)]
     pub(crate) fn may_meet<L: Lanes>(&self, origin: &[f32; 3], vector: &[f32; 3]) -> u32 {
-        // Plain arrays and no closures: what is not inlined here does not see the instruction set.
+        // Plain arrays and no closures, because code that is not inlined here is not compiled for the instruction set.
         let corner = [load3::<L>(&self.corners[0]), load3::<L>(&self.corners[1]), load3::<L>(&self.corners[2])];
         let o = splat3::<L>(origin);
         let from_origin = [sub3(corner[0], o), sub3(corner[1], o), sub3(corner[2], o)];
@@ -81,53 +81,53 @@ impl Block {
     }
 }
 
-/// 100 · 2⁻²⁴, rounded up to a power of two.
+/// Relative error of an edge plane's product: 100 · 2⁻²⁴, rounded up to a power of two.
 const SIDE_ERROR: f32 = 1.0 / (1 << 17) as f32;
 
-/// Where segments start, and the frame in which their ends are given: `d = to_center + α·e₁ + β·e₂ + γ·e₃`.
+/// Start of segments, and the frame in which their ends are given: `d = to_center + α·e₁ + β·e₂ + γ·e₃`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayFrame {
-    /// World position, metres.
+    /// World position of the start, metres.
     pub(crate) origin: [f32; 3],
-    /// From the origin to the light's centre, metres; towards it, for a distant light.
+    /// Vector from the origin to the light's centre, metres; the direction towards it, for a distant light.
     pub(crate) to_center: [f64; 3],
-    /// Right, up and axis.
+    /// Axes of the light's frame: right, up and axis.
     pub(crate) axes: [[f64; 3]; 3],
-    /// `1/t_max`: how much of T the segment must exceed. 0 for a distant light.
+    /// `1/t_max`, the factor of T that the segment must exceed. 0 for a distant light.
     pub(crate) inverse_end: f64,
 }
 
-/// Segments end this fraction short of the light, so that a lamp's own glowing panel in the plane of the light is not
-/// in its way: light points and planes are rounded to 2⁻²⁴, and a dozen such errors add up to less than this.
+/// Fraction by which segments end short of the light, so that a lamp's glowing panel in the plane of the light does not
+/// block it. Light points and planes are rounded to 2⁻²⁴, and a dozen such errors are less than this.
 pub(crate) const END_MARGIN: f64 = 1.0 / (1 << 20) as f64;
 
 impl RayFrame {
-    /// A single segment from `origin` along `vector`, whole (`distant` false) or without end.
+    /// Frame of a single ray from `origin` along `vector`: the whole segment, or an endless ray if `distant`.
     pub(crate) fn single(origin: [f32; 3], vector: [f64; 3], distant: bool) -> Self {
         let inverse_end = if distant { 0.0 } else { 1.0 + END_MARGIN };
         Self { origin, to_center: vector, axes: [[0.0; 3]; 3], inverse_end }
     }
 }
 
-/// The planes of eight triangles, `[plane][term][lane]`. The first three planes are those of corners a, b, c: where
-/// they are not negative, they are proportional to the barycentric weights. The last is `s (T/t_max − n·d)`: negative
-/// where the triangle's plane lies within the segment. Terms are those of `d`: constant, α, β, γ.
+/// Planes of eight triangles, `[plane][term][lane]`. The first three planes are those of corners a, b, c: if they are not
+/// negative, they are proportional to the barycentric weights. The last is `s (T/t_max − n·d)`, negative if the triangle's
+/// plane lies within the segment. The terms are those of `d`: constant, α, β, γ.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Planes {
-    /// The numbers.
+    /// Coefficients.
     pub(crate) coefficients: [[[f32; LANES]; 4]; 4],
 }
 
 impl Planes {
     pub(crate) const ZERO: Self = Self { coefficients: [[[0.0; LANES]; 4]; 4] };
 
-    /// The planes of `block` for rays of `frame`, whose light extends along `AXES` of its axes: 0 for a single ray,
-    /// 2 for a flat light, 3 for one with volume. Terms and lanes beyond are left as they are.
+    /// Sets the planes of `block` for rays of `frame`. The light extends along `AXES` of the frame's axes: 0 for a single ray,
+    /// 2 for a flat light, 3 for one with volume. Further terms and lanes stay unchanged.
     #[inline(always)]
     pub(crate) fn set<L: Lanes, const AXES: usize>(&mut self, block: &Block, frame: &RayFrame) {
         self.set_half::<L::Doubles, AXES>(block, frame, 0);
-        // Half a block is one vector of doubles; most blocks need no more.
+        // Half a block fills one vector of doubles, which suffices for most blocks.
         if block.count as usize > LANES / 2 {
             self.set_half::<L::Doubles, AXES>(block, frame, 1);
         }
@@ -160,10 +160,10 @@ impl Planes {
     }
 }
 
-/// A last plane's constant that no other term outweighs: positive, so nothing passes.
+/// Constant of the last plane that no other term outweighs: it is positive, so nothing is hit.
 const NEVER: f64 = 1e30;
 
-/// Four lanes of eight.
+/// Returns four of eight lanes.
 #[inline(always)]
 fn half_of(values: &mut [f32; LANES], half: usize) -> &mut [f32; 4] {
     (&mut values[4 * half..4 * half + 4]).try_into().expect("half of eight")

@@ -1,7 +1,7 @@
-//! A single ray: the nearest surface that it meets, or whether it meets any.
+//! Single rays: the nearest surface that a ray meets, or whether it meets any.
 //!
-//! The same planes as for bundles (`planes.rs`), with the ray itself in the place of the light's centre, so that a
-//! single segment and the same segment among a thousand agree.
+//! Uses the planes of bundles (`planes.rs`), with the ray itself in place of the light's centre, so that a single segment
+//! and the same segment among a thousand agree.
 
 use crate::geometry::{Geometry, Triangle};
 use crate::lanes::{Kernel, Lanes};
@@ -11,7 +11,7 @@ use crate::surface::Surface;
 use crate::tree::{Child, Node, Target, Tree};
 use crate::walk::normalized;
 
-/// Which triangles a ray meets.
+/// Bit mask of the triangles that a ray meets.
 #[inline(always)]
 pub(crate) fn hits_of<L: Lanes>(planes: &Planes) -> u32 {
     let value = |plane: usize| L::load(&planes.coefficients[plane][0]);
@@ -19,7 +19,7 @@ pub(crate) fn hits_of<L: Lanes>(planes: &Planes) -> u32 {
     value(3).signs() & !outside & ((1 << LANES) - 1)
 }
 
-/// Whether the surface is there at the point met: masks have holes.
+/// Whether the surface exists at the intersection: masked surfaces have holes.
 #[inline(always)]
 fn is_solid(geometry: &Geometry, triangle: &Triangle, planes: &Planes, lane: usize) -> bool {
     let weights = || normalized([0, 1, 2].map(|plane| planes.coefficients[plane][0][lane]));
@@ -34,7 +34,7 @@ fn is_solid(geometry: &Geometry, triangle: &Triangle, planes: &Planes, lane: usi
     }
 }
 
-/// Adds the children that a ray meets, the nearest on top: there a ray is likeliest to end.
+/// Pushes the children that a ray meets, the nearest on top, because the ray most likely ends there.
 #[inline(always)]
 fn push_nearest_last(stack: &mut Vec<(f32, Child)>, node: &Node, mut met: u32, near: &[f32; LANES]) {
     let first = stack.len();
@@ -42,7 +42,7 @@ fn push_nearest_last(stack: &mut Vec<(f32, Child)>, node: &Node, mut met: u32, n
         let lane = met.trailing_zeros() as usize;
         met &= met - 1;
         stack.push((near[lane], node.children[lane]));
-        // Insertion: a ray meets two or three of eight children.
+        // Insertion sort, because a ray usually meets two or three of eight children.
         let mut i = stack.len() - 1;
         while i > first && stack[i - 1].0 < stack[i].0 {
             stack.swap(i - 1, i);
@@ -51,7 +51,7 @@ fn push_nearest_last(stack: &mut Vec<(f32, Child)>, node: &Node, mut met: u32, n
     }
 }
 
-/// Whether a segment is blocked.
+/// Kernel that tests whether a segment is blocked.
 pub(crate) struct AnyHit<'a> {
     pub(crate) geometry: &'a Geometry,
     pub(crate) tree: &'a Tree,
@@ -103,30 +103,30 @@ impl Kernel for AnyHit<'_> {
     }
 }
 
-/// The nearest surface along a ray.
+/// Kernel that finds the nearest surface along a ray.
 pub(crate) struct ClosestHit<'a> {
     pub(crate) geometry: &'a Geometry,
-    /// The triangles of `tree`.
+    /// Triangles of `tree`.
     pub(crate) triangles: &'a [Triangle],
     pub(crate) tree: &'a Tree,
     pub(crate) frame: RayFrame,
     pub(crate) shaft: Shaft,
-    /// Nothing nearer counts, in multiples of the ray's vector.
+    /// Smallest distance of a hit, in multiples of the ray's vector.
     pub(crate) t_min: f64,
     pub(crate) best: Option<Hit>,
     pub(crate) stack: &'a mut Vec<(f32, Child)>,
 }
 
-/// Where a ray meets a surface.
+/// Intersection of a ray and a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hit {
-    /// In multiples of the ray's vector.
+    /// Distance, in multiples of the ray's vector.
     pub(crate) t: f64,
     /// Index into the list of triangles.
     pub(crate) triangle: u32,
     /// Barycentric weights of the corners.
     pub(crate) weights: [f64; 3],
-    /// Of the list of translucent triangles.
+    /// Whether `triangle` is an index into the list of translucent triangles.
     pub(crate) translucent: bool,
 }
 
@@ -171,7 +171,7 @@ impl Kernel for ClosestHit<'_> {
                         let triangle = &triangles[index as usize];
                         let (t, weights) = locate(triangle, &frame);
                         let translucent = matches!(triangle.surface, Surface::Translucent(_));
-                        // Of two surfaces in one place the first of the scene is seen, whatever the tree.
+                        // Of two surfaces at one distance, the first in the scene's order is seen, whatever the tree.
                         let nearer = best
                             .is_none_or(|b| t < b.t || t == b.t && (translucent, index) < (b.translucent, b.triangle));
                         if t >= t_min && nearer && is_solid(geometry, triangle, &planes, lane) {
@@ -186,7 +186,7 @@ impl Kernel for ClosestHit<'_> {
     }
 }
 
-/// Where along the ray it meets the triangle's plane, and the barycentric weights there, in double precision.
+/// Distance of the triangle's plane along the ray, and barycentric weights there, in double precision.
 fn locate(triangle: &Triangle, frame: &RayFrame) -> (f64, [f64; 3]) {
     let origin = glam::DVec3::from(frame.origin.map(f64::from));
     let d = glam::DVec3::from(frame.to_center);

@@ -1,76 +1,77 @@
-//! Where light is asked for: points on surfaces, each with the side that is seen.
+//! Receivers: points on surfaces, each with the side that is seen.
 //!
-//! **The hair.** A segment to the light must start off its own surface, on the side that the camera sees, or it would
-//! meet that surface. How far? The hit is rebuilt from the triangle's corners in double precision and then rounded to
-//! single, so it lies off the triangle's plane by at most half a unit in the last place per axis: `2⁻²⁴ |x|`, whatever
-//! the distance to the camera and the size of the triangle. Adding the ray offset rounds once more. The planes of the test
-//! itself are made in double precision and add nothing (see `planes.rs`). Neighbouring triangles of a tessellated
-//! plane are as flat as their own corners' rounding, another `2⁻²⁴ |x|` each. Four such errors, doubled:
+//! **Ray offset** ("hair"). A segment to the light must start off its own surface, on the side that the camera sees, or it
+//! would meet that surface. The distance is derived as follows. The hit is rebuilt from the triangle's corners in double
+//! precision and then rounded to single. It thus lies off the triangle's plane by at most half a unit in the last place per
+//! axis: `2⁻²⁴ |x|`, whatever the distance to the camera and the size of the triangle. Adding the ray offset rounds once
+//! more. The planes of the test are computed in double precision and add nothing (see `planes.rs`). Neighbouring triangles
+//! of a tessellated plane are as flat as the rounding of their own corners, another `2⁻²⁴ |x|` each. Four such errors,
+//! doubled:
 //!
 //! ```text
 //! hair = 2⁻²¹ |x| + 2⁻⁴⁶ · largest |corner|
 //! ```
 //!
-//! where the second term is the double-precision rounding of the corners' sum. At 10 m from the world's origin the offset
-//! is 5 µm; at 10 km, 5 mm.
+//! where the second term is the double-precision rounding of the corners' sum. The offset is 5 µm at 10 m from the world's
+//! origin, and 5 mm at 10 km.
 
 use glam::{UVec2, Vec3};
 
-/// A point of a surface that light may reach.
+/// Surface point that may receive light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReceiverPoint {
     /// World position, metres.
     pub position: Vec3,
     /// Unit geometric normal in world space, turned to the side that is seen.
     pub normal: Vec3,
-    /// How far along the normal shadow rays start, metres.
+    /// Ray offset: distance along the normal at which shadow rays start, metres.
     pub hair_m: f32,
-    /// Index into the scene's instances; `u32::MAX` where the point is no hit.
+    /// Index into the scene's instances; `u32::MAX` if the point is not a hit.
     pub instance: u32,
-    /// Which triangle of the instance's mesh; `u32::MAX` where the point is no hit.
+    /// Triangle index within the instance's mesh; `u32::MAX` if the point is not a hit.
     pub triangle: u32,
 }
 
-/// 2⁻²¹; see the derivation above.
+/// Ray offset over the distance from the world's origin: 2⁻²¹; see the derivation above.
 const HAIR: f32 = 1.0 / (1 << 21) as f32;
-/// 2⁻⁴⁶: double precision's 2⁻⁵³, a few operations long.
+/// Part of the ray offset over the largest corner: 2⁻⁴⁶, a few roundings of double precision's 2⁻⁵³.
 const CORNER_HAIR: f32 = 1.0 / (1u64 << 46) as f32;
 
 impl ReceiverPoint {
-    /// A point that is known to single precision. A position from elsewhere, a depth buffer say, is less certain:
-    /// raise [`hair_m`](Self::hair_m) to its error.
+    /// Creates a point whose position is exact to single precision. A less certain position, of a depth buffer for example,
+    /// needs a larger [`hair_m`](Self::hair_m): raise it to the position's error.
     pub fn new(position: Vec3, normal: Vec3) -> Self {
         Self { position, normal, hair_m: HAIR * position.length(), instance: u32::MAX, triangle: u32::MAX }
     }
 
-    /// The same, on a triangle whose corners lie up to `largest_corner_m` from the world's origin.
+    /// [`Self::new`] for a point on a triangle whose corners lie up to `largest_corner_m` from the world's origin.
     pub(crate) fn on_triangle(position: Vec3, normal: Vec3, largest_corner_m: f32) -> Self {
         let point = Self::new(position, normal);
         Self { hair_m: point.hair_m + CORNER_HAIR * largest_corner_m, ..point }
     }
 
-    /// Where shadow rays start: a hair off the surface.
+    /// Start of shadow rays: the position plus the ray offset.
     pub fn origin(&self) -> Vec3 {
         self.position + self.normal * self.hair_m
     }
 }
 
-/// What a camera sees: the first surface through each pixel's centre.
+/// Receivers of a camera: the first surface through each pixel's centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Receivers {
     /// Width and height in pixels.
     pub size_px: UVec2,
-    /// Row by row from the top left; `None` is background.
+    /// Points, row by row from the top left; `None` is background.
     pub points: Vec<Option<ReceiverPoint>>,
 }
 
 impl Receivers {
-    /// The receiver of pixel (`x`, `y`), or `None` where it shows the background.
+    /// Receiver of pixel (`x`, `y`); `None` for the background.
     pub fn at(&self, x: u32, y: u32) -> Option<&ReceiverPoint> {
         self.points[(y * self.size_px.x + x) as usize].as_ref()
     }
 
-    /// How many pixels show a surface.
+    /// Number of pixels that show a surface.
     pub fn hits(&self) -> usize {
         self.points.iter().flatten().count()
     }

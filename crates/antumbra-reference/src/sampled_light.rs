@@ -1,12 +1,12 @@
-//! A light's points, made once for an image and laid out for testing many at a time.
+//! Points of a light, created once per image and laid out for testing many at a time.
 //!
 //! **Patterns.** A pattern is one set of light points. Neighbouring pixels must not share one, or the noise of the
-//! reference would show as bands; but making 1024 points afresh for every pixel costs more than tracing them. So an
-//! image has a few dozen independent patterns ([`patterns_for`]), and each pixel takes one by a hash of its index and
-//! the seed. Every pixel's estimate is then as good as with points of its own, and nothing depends on the order of work.
+//! reference would show as bands; but creating 1024 new points for every pixel costs more than tracing them. An image
+//! therefore has a few dozen independent patterns ([`patterns_for`]), and a hash of a pixel's index and the seed selects
+//! its pattern. Every pixel's estimate is then as good as with points of its own, independent of the order of work.
 //!
-//! **Order.** Within a pattern, points are sorted into compact groups of 64 ([`Tile`]) by halving the set at the median
-//! of its longer side, again and again, so that a triangle can be tested against a group at once.
+//! **Order.** Within a pattern, points are sorted into compact groups of 64 ([`Tile`]), so that a triangle can be tested
+//! against a group at once. Sorting halves the set repeatedly, at the median of its longer side.
 
 use antumbra_light::{Light, LightFrame, LightPoint, LightShape, SampleSet, hash_u32};
 use glam::{DVec3, Vec3};
@@ -16,43 +16,43 @@ use crate::planes::{END_MARGIN, RayFrame};
 use crate::shaft::Shaft;
 use crate::{ReferenceError, VisibilityOptions};
 
-/// Points in a group.
+/// Number of points per tile.
 pub(crate) const TILE: usize = 64;
-/// Groups in a bundle: the points that share a walk through the tree.
+/// Number of tiles per bundle, whose points share a walk through the tree.
 pub(crate) const BUNDLE: usize = 16;
-/// More light points than this per pixel would not fit a sensible amount of memory.
+/// Largest number of light points per pixel, for reasons of memory.
 const MOST_SAMPLES: u32 = 1 << 20;
-/// Points of all patterns together: 64 patterns of 1024, a MiB, which stays in a core's second cache.
+/// Number of points of all patterns together: 64 patterns of 1024, a MiB, which stays in a core's L2 cache.
 const PATTERN_POINTS: u32 = 1 << 16;
-/// However many points, this many patterns; and however few.
+/// Smallest and largest number of patterns, whatever the number of points.
 const PATTERNS: std::ops::RangeInclusive<u32> = 8..=1024;
 
-/// 64 light points in the light's frame: right, up and axis coordinates about its centre, metres (for a distant light,
-/// on its tangent plane).
+/// Tile of 64 light points in the light's frame: right, up and axis coordinates about its centre, metres (for a distant
+/// light, on its tangent plane).
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Tile {
-    /// `[axis][point]`
+    /// Coordinates, `[axis][point]`.
     pub(crate) at: [[f32; TILE]; 3],
     /// Relative emission.
     pub(crate) weight: [f32; TILE],
 }
 
-/// Up to 16 tiles, with their boxes in the light's frame.
+/// Bundle of up to 16 tiles, with their boxes in the light's frame.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Bundle {
-    /// `[axis][tile]`
+    /// Centres of the tiles' boxes, `[axis][tile]`.
     pub(crate) middle: [[f32; BUNDLE]; 3],
-    /// `[axis][tile]`
+    /// Half extents of the tiles' boxes, `[axis][tile]`.
     pub(crate) half: [[f32; BUNDLE]; 3],
-    /// The largest |coordinate| of any point, per axis.
+    /// Largest absolute coordinate of any point, per axis.
     pub(crate) largest: [f32; 3],
-    /// The box of all points.
+    /// Centre of the box of all points.
     pub(crate) all_middle: [f32; 3],
-    /// The box of all points.
+    /// Half extents of the box of all points.
     pub(crate) all_half: [f32; 3],
-    /// Bit k of entry i: point k of tile i is a point, not filling.
+    /// Bit k of entry i: point k of tile i is a point rather than padding.
     pub(crate) valid: [u64; BUNDLE],
     pub(crate) tiles: Vec<Tile>,
 }
@@ -61,34 +61,34 @@ pub(crate) struct Bundle {
 #[derive(Clone, Debug)]
 pub(crate) struct Pattern {
     pub(crate) bundles: Vec<Bundle>,
-    /// For each slot, tile after tile, the index of its point in the set's own order.
+    /// Index of each slot's point in the set's own order, tile after tile.
     pub(crate) order: Vec<u32>,
-    /// The sum of the points' weights; their number where the light is uniform.
+    /// Sum of the points' weights; for a uniform light, the number of points.
     pub(crate) total_weight: f64,
 }
 
-/// A light made ready: its frame and its patterns.
+/// Light prepared for tracing: its frame and its patterns.
 #[derive(Clone, Debug)]
 pub struct SampledLight {
     pub(crate) light: Light,
     pub(crate) frame: LightFrame,
     pub(crate) patterns: Vec<Pattern>,
-    /// The seed of each pattern's set.
+    /// Seed of each pattern's set.
     pattern_seeds: Vec<u32>,
     options: VisibilityOptions,
     /// Points per pattern.
     pub(crate) points: u32,
-    /// Axes along which the light extends: 2, or 3 for one with volume.
+    /// Number of axes along which the light extends: 2, or 3 for one with volume.
     pub(crate) axes: usize,
-    /// Points differ in weight.
+    /// Whether points differ in weight.
     pub(crate) weighted: bool,
 }
 
 impl SampledLight {
-    /// The points of `light` that `options` ask for.
+    /// Samples `light` according to `options`.
     ///
     /// # Errors
-    /// Where the light is invalid, or the number of samples is none or beyond a million.
+    /// The light is invalid, or the number of samples is zero or beyond 2²⁰.
     pub fn new(light: &Light, options: &VisibilityOptions) -> Result<Self, ReferenceError> {
         light.validate()?;
         if !(1..=MOST_SAMPLES).contains(&options.samples) {
@@ -116,12 +116,12 @@ impl SampledLight {
         Ok(sampled)
     }
 
-    /// How many light points each receiver is tested against.
+    /// Number of light points tested per receiver.
     pub fn points_per_receiver(&self) -> u32 {
         self.points
     }
 
-    /// The light points of the pixel (or receiver) of this index, in the order of the bits of
+    /// Light points of the pixel or receiver with this index, in the order of the bits of
     /// [`Tracer::visible_mask`](crate::Tracer::visible_mask), as seen from the world position `seen_from`.
     pub fn points_for(&self, receiver_index: usize, seen_from: Vec3) -> Vec<LightPoint> {
         if let LightShape::Points { positions_m } = &self.light.shape {
@@ -131,20 +131,20 @@ impl SampledLight {
         points.into_iter().map(|u| self.light.point(&self.frame, u, seen_from)).collect()
     }
 
-    /// The pattern of the receiver of this index.
+    /// Index of the pattern of the receiver with this index.
     #[inline]
     pub(crate) fn pattern_index(&self, receiver_index: usize) -> usize {
         let count = self.patterns.len().max(1) as u64;
         let hash = hash_u32(hash_u32(receiver_index as u32) ^ self.options.seed);
-        // The hash as a fraction of 2³², times the count.
+        // Multiplies the count by the hash as a fraction of 2³².
         ((u64::from(hash) * count) >> 32) as usize
     }
 
-    /// A pattern's points in the unit cube.
+    /// Points of a pattern in the unit cube.
     fn unit_points(&self, pattern: usize) -> Vec<Vec3> {
         let (set, seed) = (self.options.set, self.options.seed);
         if matches!(set, SampleSet::PoissonDisc | SampleSet::Relaxed) && pattern > 0 {
-            // Some sets take long to find, but as good as live on a torus, where any shift is as good: turn one about.
+            // Some sets are slow to create but are about as good after any shift on a torus: shift one set instead.
             let shift_seed = self.pattern_seeds[pattern];
             let shift = [1, 2, 3].map(|axis| antumbra_light::unit_f32(hash_u32(shift_seed ^ hash_u32(axis))));
             let points = set.points(self.points, seed);
@@ -156,7 +156,7 @@ impl SampledLight {
         set.points(self.points, self.pattern_seeds[pattern])
     }
 
-    /// A pattern's points in the light's frame, with their weights.
+    /// Points of a pattern in the light's frame, with their weights.
     fn local_points(&self, pattern: usize) -> Vec<(Vec3, f32)> {
         if let LightShape::Points { positions_m } = &self.light.shape {
             let axes = [self.frame.right, self.frame.up, self.frame.axis].map(Vec3::as_dvec3);
@@ -166,7 +166,7 @@ impl SampledLight {
             };
             return positions_m.iter().map(|p| (local(p), 1.0)).collect();
         }
-        // With the identity for a frame, a light point is its own coordinates.
+        // In the identity frame, a light point equals its coordinates.
         let identity = LightFrame { center: Vec3::ZERO, right: Vec3::X, up: Vec3::Y, axis: Vec3::Z };
         // A sphere's disc faces the receiver: from +z, its right is −x and its up is +y (`facing_axes`).
         let is_sphere = matches!(self.light.shape, LightShape::Sphere { .. });
@@ -182,7 +182,7 @@ impl SampledLight {
             .collect()
     }
 
-    /// The frame of the rays from `origin`, on the receiver at `position`, to this light.
+    /// Frame of the rays to this light from `origin`, on the receiver at `position`.
     #[inline]
     pub(crate) fn ray_frame(&self, origin: Vec3, position: Vec3) -> RayFrame {
         let frame = &self.frame;
@@ -202,14 +202,14 @@ impl SampledLight {
     }
 }
 
-/// The axes of the disc that a sphere shows to a receiver; the same as `antumbra_light::Light::point` takes.
+/// Axes of the disc that a sphere shows to a receiver; the same as in `antumbra_light::Light::point`.
 fn facing_axes(frame: &LightFrame, seen_from: Vec3) -> (Vec3, Vec3) {
     let towards = (frame.center - seen_from).try_normalize().unwrap_or(-frame.axis);
     let right = frame.up.cross(towards).try_normalize().unwrap_or(frame.right);
     (right, towards.cross(right))
 }
 
-/// How many patterns an image of `points` light points a pixel has.
+/// Number of patterns of an image with `points` light points per pixel.
 fn patterns_for(points: u32) -> u32 {
     (PATTERN_POINTS / points).clamp(*PATTERNS.start(), *PATTERNS.end())
 }
@@ -233,7 +233,7 @@ fn halve(points: &[(Vec3, f32)], order: &mut [u32]) {
     let (low, high) =
         order.iter().map(at).fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let axis = (high - low).max_position();
-    // Whole tiles on the left, in a power of two so that the halves' boundaries are those of bundles too.
+    // Whole tiles on the left, a power of two of them, so that the boundaries are also those of bundles.
     let tiles = order.len().div_ceil(TILE);
     let left = TILE * (tiles.next_power_of_two() / 2);
     order.select_nth_unstable_by(left - 1, |i, j| at(i)[axis].total_cmp(&at(j)[axis]).then(i.cmp(j)));
@@ -249,7 +249,7 @@ impl Bundle {
                 .iter()
                 .map(|i| points[*i as usize].0)
                 .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-            // Half of the difference rounded up, so that middle ± half holds both ends.
+            // Half the difference, rounded up, so that middle ± half contains both ends.
             let middle = 0.5 * (low + high);
             (middle, (high - middle).max(middle - low) * (1.0 + f32::EPSILON), low.abs().max(high.abs()))
         };
@@ -282,7 +282,7 @@ impl Bundle {
         bundle
     }
 
-    /// The shaft from a receiver to all points of this bundle.
+    /// Shaft from a receiver to all points of this bundle.
     pub(crate) fn shaft(&self, frame: &RayFrame) -> Shaft {
         let mut middle = [0.0; 3];
         let mut half = [0.0; 3];
@@ -299,10 +299,10 @@ impl Bundle {
     }
 }
 
-/// Stands for an endless segment: beyond any time that a finite scene has.
+/// End of an endless segment: beyond any `t` of a finite scene.
 pub(crate) const FAR: f32 = 1e30;
 
-/// Eight coordinates of a tile's points.
+/// Loads eight coordinates of a tile's points.
 #[inline(always)]
 pub(crate) fn eight<L: Lanes>(values: &[f32], chunk: usize) -> L {
     let values: &[f32; 8] = values[8 * chunk..8 * chunk + 8].try_into().expect("eight values");
@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn tiles_hold_the_lights_own_points() {
         for (i, light) in lights().into_iter().enumerate() {
-            // Every set over one shape, and every shape by one set: sets know of no shape.
+            // Every set with one shape, and every shape with one set, because sets do not depend on shapes.
             for set in SampleSet::ALL.into_iter().filter(|set| i == 0 || *set == SampleSet::R2) {
                 let options = VisibilityOptions { samples: 200, set, ..VisibilityOptions::default() };
                 let sampled = SampledLight::new(&light, &options).unwrap();

@@ -1,4 +1,4 @@
-//! Which boxes can the rays of one receiver meet?
+//! Shaft of a receiver's rays, which tells the boxes that the rays may meet.
 //!
 //! All rays start at `o` and their vectors `d` lie in a box of vectors, `d⁻ ≤ d ≤ d⁺`. A point `o + t·d` of a box
 //! `[low, high]` exists for some such `d` and `0 ≤ t ≤ t_max` exactly where, on every axis,
@@ -7,12 +7,12 @@
 //! t·d⁻ ≤ high − o     and     t·d⁺ ≥ low − o
 //! ```
 //!
-//! for one `t`: six bounds on `t`, each from below or from above as the sign of `d⁻` or `d⁺` says, and so the test
+//! for one `t`. These are six bounds on `t`, from below or from above by the sign of `d⁻` or `d⁺`. The test therefore
 //! costs no more than that of a single ray, and is exact for the box of vectors. (Interval ray packets: Boulos, Wald
 //! and Shirley, "Geometric and Arithmetic Culling Methods for Entire Ray Packets", Utah UUCS-06-010, 2006; the shaft
 //! of Haines and Wallace, "Shaft Culling for Efficient Ray-Cast Radiosity", 1991.)
 //!
-//! The test must never lose a box that holds a triangle which the planes of `planes.rs` call hit. Their rounding moves
+//! The test must not miss a box with a triangle that the planes of `planes.rs` report as hit. Their rounding moves
 //! a silhouette by an angle of a few 2⁻²⁴; the box of vectors is widened by [`ANGLE_SLACK`], the bounds on `t` by
 //! [`TIME_SLACK`].
 
@@ -20,37 +20,37 @@ use crate::lanes::Lanes;
 use crate::planes::LANES;
 use crate::tree::Node;
 
-/// Eight times the 4·2⁻²⁴ that rounding can turn a plane by.
+/// Widening of the box of vectors: eight times the 4·2⁻²⁴ by which rounding can turn a plane.
 pub(crate) const ANGLE_SLACK: f32 = 1.0 / (1 << 19) as f32;
-/// A subtraction, a reciprocal and a product are off by 2⁻²⁴ each: this is more than five times that.
+/// Widening of the bounds on `t`: more than five times the errors of 2⁻²⁴ of a subtraction, a reciprocal and a product.
 const TIME_SLACK: f32 = 1.0 / (1 << 20) as f32;
-/// Stands for 1/0: finite, so that it never meets 0 · ∞, and larger than any time that matters.
+/// Substitute for 1/0: finite, which avoids 0 · ∞, and larger than any relevant `t`.
 const LARGEST_INVERSE: f32 = 1e30;
 
-/// How an axis bounds `t`.
+/// Bounds on `t` from one axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Heading {
-    /// Every vector goes up the axis: enters by `low`, leaves by `high`.
+    /// All vectors point up the axis: rays enter at `low` and leave at `high`.
     Up,
-    /// Every vector goes down the axis.
+    /// All vectors point down the axis.
     Down,
-    /// Some go up and some down: only entries.
+    /// Some vectors point up and some down: there are only entries.
     Both,
 }
 
-/// The rays of one receiver, or a single ray.
+/// Shaft of one receiver's rays, or a single ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shaft {
     origin: [f32; 3],
     heading: [Heading; 3],
-    /// 1/d⁻ and 1/d⁺ of each axis, scaled by the slack of the bound that they make.
+    /// 1/d⁻ and 1/d⁺ per axis, scaled by the slack of their bound.
     inverse_low: [f32; 3],
     inverse_high: [f32; 3],
     end: f32,
 }
 
 impl Shaft {
-    /// The shaft of all vectors within `half` of `middle`, per axis, from `t = 0` to `t_max`.
+    /// Shaft of all vectors within `half` of `middle`, per axis, from `t = 0` to `t_max`.
     #[inline(always)]
     pub(crate) fn new(origin: [f32; 3], middle: [f32; 3], half: [f32; 3], t_max: f32) -> Self {
         let largest = |i: usize| middle[i].abs() + half[i];
@@ -74,7 +74,7 @@ impl Shaft {
                 _ => (Heading::Both, entry, entry),
             };
             shaft.heading[i] = heading;
-            // A bound of exactly zero never binds: −0 sends a box's far side to −∞, as an entry should be.
+            // A bound of exactly zero never applies: −0 sends a box's far side to −∞, which is right for an entry.
             let low = if heading == Heading::Both { low.min(-f32::MIN_POSITIVE) } else { low };
             let high = if heading == Heading::Both { high.max(f32::MIN_POSITIVE) } else { high };
             shaft.inverse_low[i] = inverse(low) * low_slack;
@@ -83,23 +83,23 @@ impl Shaft {
         shaft
     }
 
-    /// The shaft of a single vector.
+    /// Shaft of a single vector.
     #[inline(always)]
     pub(crate) fn single(origin: [f32; 3], vector: [f32; 3], t_max: f32) -> Self {
         Self::new(origin, vector, [0.0; 3], t_max)
     }
 
-    /// Ends the shaft sooner.
+    /// Shortens the shaft to `t_max`.
     pub(crate) fn shorten(&mut self, t_max: f32) {
         self.end = self.end.min(t_max * (1.0 + TIME_SLACK));
     }
 
-    /// Where it ends, with slack.
+    /// Largest `t`, with slack.
     pub(crate) fn end(&self) -> f32 {
         self.end
     }
 
-    /// Which children the shaft can meet, as bits, and when at the earliest.
+    /// Bit mask of the children that the shaft can meet, and the smallest `t` of each.
     #[inline(always)]
     pub(crate) fn meets<L: Lanes>(&self, node: &Node) -> (u32, [f32; LANES]) {
         let mut near = L::splat(0.0);
@@ -114,7 +114,7 @@ impl Shaft {
                 Heading::Both => near = near.max(by_low).max(by_high),
             }
         }
-        // The sign bit of far − near is set where the bounds contradict each other.
+        // The sign bit of far − near is set if the bounds contradict each other.
         (!far.sub(near).signs() & node.present, near.to_array())
     }
 }

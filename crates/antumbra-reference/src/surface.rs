@@ -1,35 +1,35 @@
-//! What a triangle does to light that meets it: blocks it, blocks it where a mask says so, or lets some of it through.
+//! Effect of triangles on light: opaque, alpha-tested or translucent.
 //!
-//! A mask whose alpha cannot cross its cutoff anywhere on a triangle is settled once, when the scene is taken in:
-//! such a triangle is opaque, or it is no triangle at all. (The idea of opacity micromaps: Gruen, Benthin and Woop,
-//! "Sub-triangle opacity masks for faster ray tracing of transparent objects", HPG 2020; here without subdivision.)
+//! A mask whose alpha cannot cross its cutoff anywhere on a triangle is resolved once, when the scene is loaded: the
+//! triangle is then opaque or left out. (The idea of opacity micromaps: Gruen, Benthin and Woop, "Sub-triangle opacity
+//! masks for faster ray tracing of transparent objects", HPG 2020; here without subdivision.)
 
 use std::collections::HashMap;
 
 use antumbra_scene::{Coverage, Image, Mesh, Occluder, Scene, SurfacePicture, Translucency, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 
-/// What one triangle does to light.
+/// Effect of one triangle on light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surface {
-    /// Blocks all.
+    /// Blocks all light.
     Opaque,
-    /// Blocks where [`Masked::is_solid_at`]; an index into the tracer's masks.
+    /// Blocks where [`Masked::is_solid_at`] holds; an index into the tracer's masked triangles.
     Masked(u32),
-    /// Lets [`Translucent::passes_at`] pass; an index into the tracer's translucent triangles.
+    /// Transmits [`Translucent::passes_at`]; an index into the tracer's translucent triangles.
     Translucent(u32),
 }
 
-/// Alpha of an image with what is needed to sample and to bound it.
+/// Image with bounds of its alpha, for sampling.
 #[derive(Clone, Debug)]
 pub(crate) struct AlphaImage {
     image: Image,
-    /// Smallest and largest alpha of each block of [`BOUND_BLOCK`]² texels, row by row.
+    /// Smallest and largest alpha per block of [`BOUND_BLOCK`]² texels, row by row.
     bounds: Vec<[u8; 2]>,
     blocks: [u32; 2],
 }
 
-/// Texels along a side of a block of alpha bounds: 16 keeps the bounds of a 4096² image at 64 Ki entries.
+/// Side of a block of alpha bounds, texels: with 16, a 4096² image has 64 Ki bounds.
 const BOUND_BLOCK: u32 = 16;
 
 impl AlphaImage {
@@ -47,7 +47,7 @@ impl AlphaImage {
     /// Bounds of the bilinear alpha over a box of texture coordinates, in [0, 1].
     fn bounds_over(&self, min: Vec2, max: Vec2) -> [f32; 2] {
         let size = Vec2::new(self.image.width as f32, self.image.height as f32);
-        // A sample at texel coordinate p reads texels ⌊p − ½⌋ and the next.
+        // A sample at texel coordinate p reads texel ⌊p − ½⌋ and the next.
         let first = (min * size - 0.5).floor();
         let last = (max * size - 0.5).floor() + 1.0;
         let columns = self.blocks_between(0, first.x, last.x);
@@ -62,11 +62,11 @@ impl AlphaImage {
         all.map(|v| f32::from(v) / 255.0)
     }
 
-    /// The blocks that hold texels `first..=last` of an axis once wrapped.
+    /// Blocks that contain texels `first..=last` of an axis after wrapping.
     fn blocks_between(&self, axis: usize, first: f32, last: f32) -> Vec<u32> {
         let texels = if axis == 0 { self.image.width } else { self.image.height };
         let n = i64::from(texels);
-        // Not a number, or further than any texture repeats in earnest: everything.
+        // NaN, more repetitions than real textures have, or a full period: all blocks.
         if !(first.abs() < 1e9 && last.abs() < 1e9) || last as i64 - first as i64 >= n {
             return (0..self.blocks[axis]).collect();
         }
@@ -88,10 +88,10 @@ impl AlphaImage {
     }
 }
 
-/// An alpha-masked triangle that is neither all there nor all hole.
+/// Alpha-tested triangle that is neither fully solid nor fully a hole.
 #[derive(Clone, Debug)]
 pub(crate) struct Masked {
-    /// Index into the tracer's alpha images; none where vertex colours alone make the mask.
+    /// Index into the tracer's alpha images; `None` if vertex colours alone make the mask.
     image: Option<u32>,
     uv: [Vec2; 3],
     /// Factor · vertex alpha at the corners.
@@ -100,7 +100,7 @@ pub(crate) struct Masked {
 }
 
 impl Masked {
-    /// Whether the surface is there, at barycentric weights.
+    /// Whether the surface exists at barycentric weights.
     #[inline]
     pub(crate) fn is_solid_at(&self, images: &[AlphaImage], weights: [f32; 3]) -> bool {
         let factor = if self.alpha[0] == self.alpha[1] && self.alpha[0] == self.alpha[2] {
@@ -113,16 +113,16 @@ impl Masked {
     }
 }
 
-/// A triangle that lets some light through.
+/// Translucent triangle.
 #[derive(Clone, Debug)]
 pub(crate) struct Translucent {
-    /// The same all over.
+    /// Transmittance if it is constant over the triangle.
     constant: Option<Vec3>,
     surface: Translucency,
     uv: [Vec2; 3],
     /// Factor · vertex colour at the corners.
     color: [Vec4; 3],
-    /// Index into the tracer's pictures.
+    /// Index into the tracer's images of translucent surfaces.
     picture: Option<u32>,
 }
 
@@ -132,12 +132,12 @@ impl Translucent {
         texel * mix(self.color, weights)
     }
 
-    /// The fraction of light that passes, per channel, at barycentric weights.
+    /// Fraction of light that passes at barycentric weights, per channel.
     pub(crate) fn passes_at(&self, pictures: &[Image], weights: [f32; 3]) -> Vec3 {
         self.constant.unwrap_or_else(|| self.surface.passes(self.value_at(pictures, weights)))
     }
 
-    /// Whether a ray from the eye meets it there.
+    /// Whether a ray from the eye meets the surface at barycentric weights.
     pub(crate) fn is_there_at(&self, pictures: &[Image], weights: [f32; 3]) -> bool {
         match self.surface.coverage {
             Coverage::Cutoff(_) => self.surface.is_there(self.value_at(pictures, weights)),
@@ -146,14 +146,14 @@ impl Translucent {
     }
 }
 
-/// A picture on a scene's meshes: one of its images, or what a material's images make on closed or on open meshes.
+/// Image of translucent surfaces: one of the scene's, or the product of a material's images on closed or on open meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Picture {
     Image(usize),
     Made { material: usize, is_closed: bool },
 }
 
-/// Every surface of a scene that is not simply opaque, with what it needs of images.
+/// Surfaces of a scene that are not simply opaque, with their images.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Surfaces {
     pub(crate) masked: Vec<Masked>,
@@ -162,9 +162,9 @@ pub(crate) struct Surfaces {
     pub(crate) pictures: Vec<Image>,
     /// Whether any translucent triangle may change the colour of light.
     pub(crate) tint: bool,
-    /// Of each of the scene's meshes.
+    /// Effect on light of each of the scene's meshes.
     occluders: Vec<Occluder>,
-    /// For each of the scene's images, where its alpha lies.
+    /// Index of the alpha image of each of the scene's images.
     alpha_index: Vec<Option<u32>>,
     picture_index: HashMap<Picture, u32>,
 }
@@ -174,7 +174,7 @@ impl Surfaces {
         Self { occluders: scene.occluders(), alpha_index: vec![None; scene.images.len()], ..Self::default() }
     }
 
-    /// Takes in one triangle of the mesh of an index; `None` where its mask lets everything pass.
+    /// Adds one triangle of a mesh; `None` if its mask lets all light pass.
     pub(crate) fn add(&mut self, scene: &Scene, mesh: usize, triangle: usize) -> Option<Surface> {
         let occluder = self.occluders[mesh];
         if occluder == Occluder::Opaque {
@@ -192,7 +192,7 @@ impl Surfaces {
             Occluder::Masked { cutoff } => self.add_masked(scene, alpha_image, uv, alpha, cutoff),
             Occluder::Translucent => {
                 let surface = scene.translucency(mesh);
-                // What transmits nothing is opaque where its alpha is 1 all over.
+                // A surface that transmits nothing is opaque if its alpha is 1 everywhere.
                 if surface.factor.truncate() == Vec3::ZERO {
                     let [low, _] = self.alpha_range(scene, alpha_image, uv, alpha);
                     if low >= 1.0 {
@@ -210,7 +210,7 @@ impl Surfaces {
         }
     }
 
-    /// Where the picture of a mesh's surface lies; none where it is white.
+    /// Index of the image of a mesh's surface; `None` if it is white.
     fn picture(&mut self, scene: &Scene, mesh: &Mesh, picture: SurfacePicture) -> Option<u32> {
         let (material, is_closed) = (mesh.material, mesh.closed);
         let picture = match picture {
@@ -227,7 +227,7 @@ impl Surfaces {
         }))
     }
 
-    /// Where the alpha of one of the scene's images lies.
+    /// Index of the alpha image of one of the scene's images.
     fn alpha_image(&mut self, scene: &Scene, image: usize) -> u32 {
         *self.alpha_index[image].get_or_insert_with(|| {
             self.alpha_images.push(AlphaImage::new(&scene.images[image]));
@@ -241,7 +241,7 @@ impl Surfaces {
             let image = self.alpha_image(scene, image);
             let min = uv[0].min(uv[1]).min(uv[2]);
             let max = uv[0].max(uv[1]).max(uv[2]);
-            // Interpolated coordinates are rounded: widen by what single precision can be off.
+            // Widened by the rounding of interpolated coordinates in single precision.
             let slack = (min.abs().max(max.abs()) * 4.0 * f32::EPSILON).max(Vec2::splat(f32::EPSILON));
             self.alpha_images[image as usize].bounds_over(min - slack, max + slack)
         });
@@ -259,7 +259,7 @@ impl Surfaces {
     ) -> Option<Surface> {
         let [low, high] = self.alpha_range(scene, image, uv, alpha);
         let image = image.map(|image| self.alpha_image(scene, image));
-        // Where alpha varies its rounding may cross the cutoff by an ulp; where it does not it is exact.
+        // Varying alpha may cross the cutoff by an ulp through rounding; constant alpha is exact.
         let margin = if low == high { 0.0 } else { 4.0 * f32::EPSILON };
         if low >= cutoff + margin {
             Some(Surface::Opaque)
@@ -272,7 +272,7 @@ impl Surfaces {
     }
 }
 
-/// The weighted sum of what three corners have.
+/// Weighted sum of three corners' values.
 #[inline]
 fn mix<T: Copy + std::ops::Mul<f32, Output = T> + std::ops::Add<Output = T>>(corners: [T; 3], weights: [f32; 3]) -> T {
     corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]

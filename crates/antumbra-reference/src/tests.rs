@@ -1,4 +1,4 @@
-//! The tracer against closed forms, against brute force, and against itself.
+//! The tracer agrees with closed forms, with brute force, and with itself.
 
 mod brute_force;
 mod cases;
@@ -50,7 +50,7 @@ fn sphere(center: Vec3, radius: f32, columns: u32, rows: u32) -> Vec<[Vec3; 3]> 
             std::f32::consts::TAU * (i % columns) as f32 / columns as f32,
             std::f32::consts::PI * j as f32 / rows as f32,
         );
-        // The poles are one point each, not a ring of rounded zeros.
+        // Each pole is one point rather than a ring of rounded zeros.
         let sin_theta = if j == 0 || j == rows { 0.0 } else { theta.sin() };
         center + radius * Vec3::new(sin_theta * phi.cos(), theta.cos(), sin_theta * phi.sin())
     };

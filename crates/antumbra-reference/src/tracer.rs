@@ -1,4 +1,4 @@
-//! The tracer: a scene taken in once, then asked for receivers and for visibility.
+//! The tracer: built once per scene, then queried for receivers and visibility.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -23,7 +23,7 @@ use crate::visibility::{VisibilityImage, VisibilityOptions};
 use crate::walk::{BlockedWalk, Scratch, TranslucentWalk};
 use crate::{Progress, ReferenceError};
 
-/// A scene ready to be traced. It keeps what it needs: the scene may be dropped.
+/// Ray tracer of a scene. It copies what it needs, so the scene may be dropped.
 #[derive(Clone, Debug)]
 pub struct Tracer {
     geometry: Geometry,
@@ -33,26 +33,26 @@ pub struct Tracer {
     simd: Simd,
 }
 
-/// Pixels along a side of the square that a worker takes at a time: its receivers share occluders and nodes.
+/// Side of the pixel square that a worker takes at a time: its receivers share occluders and nodes.
 const WORK_SQUARE_PX: u32 = 16;
-/// Points of a list that a worker takes at a time.
+/// Number of points of a list that a worker takes at a time.
 const WORK_POINTS: usize = 256;
 
 impl Tracer {
-    /// Takes in every triangle of the scene's instances and builds the trees.
+    /// Collects every triangle of the scene's instances and builds the trees.
     ///
     /// # Errors
-    /// Where a mesh, material, image or vertex that the scene refers to is missing, or a world position is not finite.
+    /// A mesh, material, image or vertex that the scene refers to is missing, or a world position is not finite.
     pub fn new(scene: &Scene) -> Result<Self, ReferenceError> {
         let geometry = Geometry::new(scene)?;
         let blockers = Tree::new(&geometry.blockers, true);
-        // Each translucent triangle counts once, so none may lie in two leaves.
+        // Each translucent triangle counts once, so none may be in two leaves.
         let translucents = Tree::new(&geometry.translucents, false);
         let homes = Homes::new(&geometry.blockers, &blockers);
         Ok(Self { geometry, blockers, translucents, homes, simd: Simd::detect() })
     }
 
-    /// The same tracer on the processor's baseline instructions.
+    /// Returns the tracer with the processor's baseline instructions.
     #[cfg(test)]
     pub(crate) fn portable(&self) -> Self {
         Self { simd: Simd::Portable, ..self.clone() }
@@ -63,24 +63,24 @@ impl Tracer {
         &self.geometry
     }
 
-    /// How many triangles can be in light's way: those without area or wholly masked away are not counted.
+    /// Number of triangles that can block light: those without area or fully masked away are not counted.
     pub fn triangle_count(&self) -> usize {
         self.geometry.blockers.len() + self.geometry.translucents.len()
     }
 
-    /// 3 where occluders tint, else 1.
+    /// Number of channels of visibility: 3 if occluders tint, else 1.
     pub fn channels(&self) -> u32 {
         if self.geometry.surfaces.tint { 3 } else { 1 }
     }
 
-    /// The first surface through each pixel's centre, from the camera's near plane on. Holes of alpha masks are
-    /// looked through; translucent surfaces are surfaces, however clear.
+    /// Finds the first surface through each pixel's centre, beyond the camera's near plane. Rays pass through the holes of
+    /// alpha masks; translucent surfaces count as surfaces, however clear.
     pub fn primary(&self, camera: &Camera, size_px: UVec2) -> Receivers {
         Receivers { size_px, points: self.primary_in_rows(camera, size_px, 0..size_px.y) }
     }
 
-    /// [`Self::primary`] for some rows alone, counted from the top: `size_px.x · rows.len()` points, for whoever has a
-    /// little time at a time.
+    /// [`Self::primary`] for a range of rows, counted from the top: `size_px.x · rows.len()` points. For callers with little
+    /// time per call.
     pub fn primary_in_rows(&self, camera: &Camera, size_px: UVec2, rows: Range<u32>) -> Vec<Option<ReceiverPoint>> {
         let forward = (camera.target - camera.eye).normalize();
         let rows: Vec<Vec<Option<ReceiverPoint>>> = rows
@@ -97,7 +97,7 @@ impl Tracer {
         rows.into_iter().flatten().collect()
     }
 
-    /// The first surface from the world position `origin` along `direction` (unit), no nearer than `t_min_m` metres.
+    /// Finds the first surface from the world position `origin` along `direction` (unit), at least `t_min_m` metres away.
     pub fn first_hit(&self, origin: Vec3, direction: Vec3, t_min_m: f64) -> Option<ReceiverPoint> {
         let frame = RayFrame::single(origin.to_array(), direction.as_dvec3().to_array(), true);
         let shaft = Shaft::single(origin.to_array(), direction.to_array(), FAR);
@@ -127,13 +127,13 @@ impl Tracer {
 
     /// Whether an opaque or masked triangle lies between two world positions. Translucent ones do not block.
     ///
-    /// The segment starts exactly at `origin`: to ask from a surface, use [`ReceiverPoint::origin`].
+    /// The segment starts exactly at `origin`: for a start on a surface, use [`ReceiverPoint::origin`].
     pub fn occluded(&self, origin: Vec3, target: Vec3) -> bool {
         let vector = (target.as_dvec3() - origin.as_dvec3()).to_array();
         self.any_hit(origin, vector, false)
     }
 
-    /// Whether an opaque or masked triangle lies from `origin` on along `direction`, however far.
+    /// Whether an opaque or masked triangle lies along `direction` from `origin`, at any distance.
     pub fn occluded_towards(&self, origin: Vec3, direction: Vec3) -> bool {
         self.any_hit(origin, direction.as_dvec3().to_array(), true)
     }
@@ -145,13 +145,13 @@ impl Tracer {
         STACK.with_borrow_mut(|stack| self.simd.run(AnyHit { geometry, tree, frame, shaft, stack }))
     }
 
-    /// The visibility of a light from each pixel, as `docs/formats.md` defines it.
+    /// Traces the visibility of a light from each pixel, as `docs/formats.md` defines it.
     ///
-    /// Deterministic: the same on every machine and for any number of threads. `progress` is called with rising
-    /// fractions up to 1, from any thread but never from two at once.
+    /// The result is deterministic: the same on every machine and for any number of threads. `progress` is called with
+    /// rising fractions up to 1, from any thread but never concurrently.
     ///
     /// # Errors
-    /// Where the light or the options are invalid, or `cancel` was set.
+    /// The light or the options are invalid, or `cancel` was set.
     pub fn visibility(
         &self,
         receivers: &Receivers,
@@ -165,11 +165,11 @@ impl Tracer {
         self.visibility_of_rows(receivers, 0..receivers.size_px.y, &light, progress, cancel, start)
     }
 
-    /// [`Self::visibility`] of some rows alone, counted from the top, by a light that was sampled before: an image of
-    /// `rows.len()` rows, for whoever has a little time at a time.
+    /// [`Self::visibility`] for a range of rows, counted from the top, and a light that is already sampled: an image of
+    /// `rows.len()` rows. For callers with little time per call.
     ///
     /// # Errors
-    /// Where `cancel` was set.
+    /// `cancel` was set.
     pub fn visibility_in_rows(
         &self,
         receivers: &Receivers,
@@ -204,7 +204,7 @@ impl Tracer {
         self.visibility_of(all, (first_row * width) as usize, size, light, work.collect(), progress, cancel, start)
     }
 
-    /// The visibility of a light from each of a list of points. Point i uses the light points of pixel i.
+    /// Traces the visibility of a light from each of a list of points. Point i uses the light points of pixel i.
     ///
     /// # Errors
     /// As [`Self::visibility`].
@@ -224,7 +224,7 @@ impl Tracer {
         self.visibility_of(&points, 0, size, &light, work.collect(), progress, cancel, start)
     }
 
-    /// The visibility of the light's centre alone: 0 or 1, or a transmittance; a hard shadow.
+    /// Traces the visibility of the light's centre, a hard shadow: 0, 1, or a transmittance.
     ///
     /// # Errors
     /// As [`Self::visibility`].
@@ -235,7 +235,7 @@ impl Tracer {
         progress: Progress<'_>,
         cancel: &AtomicBool,
     ) -> Result<VisibilityImage, ReferenceError> {
-        // A light of no size: all its points are its centre, and what it emits where no longer matters.
+        // A light of no size, whose points are all its centre, so that the emission texture has no effect.
         let mut center = Light { emission: None, ..light.scaled(0.0) };
         if let antumbra_light::LightShape::Points { positions_m } = &mut center.shape {
             positions_m.truncate(1);
@@ -244,8 +244,8 @@ impl Tracer {
         self.visibility(receivers, &center, &options, progress, cancel)
     }
 
-    /// Which of the light points of receiver `index` the point sees: bit `i % 64` of word `i / 64` is point `i` of
-    /// [`SampledLight::points_for`]. Only opaque and masked triangles hide a light point here. All zero where the light
+    /// Bit mask of the light points of receiver `index` that `point` sees: bit `i % 64` of word `i / 64` is point `i` of
+    /// [`SampledLight::points_for`]. Only opaque and masked triangles hide a light point here. All bits are 0 if the light
     /// does not reach the receiver.
     pub fn visible_mask(&self, light: &SampledLight, index: usize, point: &ReceiverPoint) -> Vec<u64> {
         let mut words = vec![0u64; (light.points as usize).div_ceil(64)];
@@ -268,7 +268,7 @@ impl Tracer {
         words
     }
 
-    /// `size_px` are the pixels from index `first` on.
+    /// Traces the pixels that `work` lists. The result has `size_px` pixels, of which the first has index `first` in `points`.
     fn visibility_of<W: Iterator<Item = usize> + Clone + Send + Sync>(
         &self,
         points: &[Option<ReceiverPoint>],
@@ -324,7 +324,7 @@ impl Tracer {
         let pattern = &light.patterns[light.pattern_index(index)];
         let frame = light.ray_frame(point.origin(), point.position);
         let cosine = point.normal.as_dvec3().dot(DVec3::from(frame.to_center));
-        // A surface turned away is in its own way: its own triangle is the likeliest occluder of all.
+        // A surface that faces away shadows itself: its own triangle is the likeliest occluder.
         let first = if cosine < 0.0 { self.homes.block_of(point) } else { None };
         let mut resolved = Resolved { faces_light_center: cosine > 0.0, rays: light.points, ..Resolved::BACKGROUND };
         let mut sum = DVec3::ZERO;
@@ -364,7 +364,7 @@ thread_local! {
     static STACK: RefCell<Vec<(f32, Child)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// The summed weight of a bundle's open light points.
+/// Sum of the weights of a bundle's visible light points.
 fn weight_of(light: &SampledLight, bundle: &crate::sampled_light::Bundle, open: &[u64; BUNDLE]) -> f64 {
     if !light.weighted {
         return f64::from(open.iter().map(|bits| bits.count_ones()).sum::<u32>());
@@ -375,7 +375,7 @@ fn weight_of(light: &SampledLight, bundle: &crate::sampled_light::Bundle, open: 
     open.iter().zip(&bundle.tiles).map(tile_weight).sum()
 }
 
-/// One receiver's answer.
+/// Result for one receiver.
 #[derive(Clone, Copy, Debug)]
 struct Resolved {
     value: [f32; 3],
@@ -388,7 +388,7 @@ impl Resolved {
     const BACKGROUND: Self = Self { value: [1.0; 3], faces_light_center: false, rays: 0, rays_without_walk: 0 };
 }
 
-/// Which block holds a given triangle of a given instance.
+/// Map from an instance's triangle to its block.
 #[derive(Clone, Debug, Default)]
 struct Homes {
     /// `(instance, triangle)` of each blocker, sorted, with its block.

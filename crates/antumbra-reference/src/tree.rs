@@ -1,9 +1,9 @@
-//! The bounding volume hierarchy: nodes of eight children, leaves of up to eight triangles.
+//! Bounding volume hierarchy: nodes of eight children, leaves of up to eight triangles.
 //!
 //! obvhs builds a binary tree: PLOC (Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume
 //! Hierarchy Construction", TVCG 2018) over boxes of pre-split triangles, then optimised by reinsertion (the same,
-//! "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", Eurographics 2018). Here it is made wide: a
-//! node takes in the grandchildren of its largest child until it has eight (Wald, Benthin and Boulos, "Getting Rid of
+//! "Parallel Reinsertion for Bounding Volume Hierarchy Optimization", Eurographics 2018). This module widens it: a node
+//! takes the grandchildren of its largest child until it has eight children (Wald, Benthin and Boulos, "Getting Rid of
 //! Packets", RT 2008, sec. 3), so that one instruction tests eight boxes.
 
 use std::ops::Range;
@@ -16,7 +16,7 @@ use obvhs::{BvhBuildParams, triangle};
 use crate::geometry::Triangle;
 use crate::planes::{Block, LANES};
 
-/// An inner node: the boxes of up to eight children.
+/// Inner node: the boxes of up to eight children.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
@@ -24,13 +24,13 @@ pub(crate) struct Node {
     pub(crate) low: [[f32; LANES]; 3],
     /// Largest corners, `[axis][child]`, metres.
     pub(crate) high: [[f32; LANES]; 3],
-    /// Where each child is.
+    /// Children.
     pub(crate) children: [Child; LANES],
     /// Bit k: child k exists.
     pub(crate) present: u32,
 }
 
-/// A node, or a block of triangles.
+/// Index of a node or of a block of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Child(u32);
 
@@ -38,7 +38,7 @@ impl Child {
     const LEAF: u32 = 1 << 31;
     pub(crate) const ROOT: Self = Self(0);
 
-    /// The block that this child is, if it is a leaf; else its node.
+    /// Returns the block if this child is a leaf, else the node.
     #[inline(always)]
     pub(crate) fn target(self) -> Target {
         if self.0 & Self::LEAF != 0 {
@@ -49,7 +49,7 @@ impl Child {
     }
 }
 
-/// What a [`Child`] is.
+/// Target of a [`Child`].
 pub(crate) enum Target {
     /// Index into [`Tree::nodes`].
     Node(usize),
@@ -57,19 +57,19 @@ pub(crate) enum Target {
     Block(usize),
 }
 
-/// The tree.
+/// Bounding volume hierarchy.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tree {
-    /// The root first; empty where there are no triangles.
+    /// Nodes, root first; empty if there are no triangles.
     pub(crate) nodes: Vec<Node>,
     /// Leaves.
     pub(crate) blocks: Vec<Block>,
-    /// More than a depth-first walk can have waiting.
+    /// Upper bound of the stack of a depth-first walk, entries.
     pub(crate) stack_size: usize,
 }
 
 impl Tree {
-    /// The tree of some triangles. With `split`, a large triangle may lie in several leaves.
+    /// Builds the tree of some triangles. With `split`, a large triangle may be in several leaves.
     pub(crate) fn new(triangles: &[Triangle], split: bool) -> Self {
         if triangles.is_empty() {
             return Self::default();
@@ -100,11 +100,11 @@ struct Widener<'a> {
 
 impl Widener<'_> {
     fn widen(mut self) {
-        // A lone leaf has no inner node: give it a root with one child.
+        // A single leaf has no inner node: it gets a root with one child.
         let mut depth = 1;
         let children = if self.is_leaf(0) { vec![0] } else { self.open(0) };
         self.tree.nodes.push(self.node_of(&children));
-        // Depth first, so that a subtree lies together. An entry: the wide node, and its children in the binary tree.
+        // Depth first, so that a subtree is contiguous. An entry has the wide node and its children in the binary tree.
         let mut waiting = vec![(0usize, children, 1usize)];
         while let Some((node, children, level)) = waiting.pop() {
             depth = depth.max(level);
@@ -129,7 +129,7 @@ impl Widener<'_> {
         self.binary.nodes[binary].prim_count > 0
     }
 
-    /// The binary nodes that become the children of a wide one.
+    /// Binary nodes that become the children of a wide one.
     fn open(&self, binary: usize) -> Vec<usize> {
         let pair = |i: usize| {
             let first = self.binary.nodes[i].first_index as usize;
@@ -159,7 +159,7 @@ impl Widener<'_> {
         for (lane, &child) in children.iter().enumerate() {
             let aabb = self.binary.nodes[child].aabb;
             for axis in 0..3 {
-                // The boxes of split triangles are cut with rounding: a few units in the last place cover it.
+                // Splitting rounds the boxes of triangles: a few units in the last place cover that.
                 let slack = 4.0 * f32::EPSILON * aabb.min[axis].abs().max(aabb.max[axis].abs());
                 node.low[axis][lane] = aabb.min[axis] - slack;
                 node.high[axis][lane] = aabb.max[axis] + slack;
@@ -182,7 +182,7 @@ impl Widener<'_> {
 }
 
 impl Block {
-    /// A block of one to eight triangles, by index.
+    /// Creates a block of one to eight triangles, given by index.
     pub(crate) fn new(triangles: &[Triangle], members: &[u32]) -> Self {
         let mut block = Self {
             corners: [[[0.0; LANES]; 3]; 3],
@@ -205,7 +205,7 @@ impl Block {
         block
     }
 
-    /// The triangles it holds.
+    /// Indices of its triangles.
     pub(crate) fn triangles(&self) -> &[u32] {
         &self.triangle[..self.count as usize]
     }

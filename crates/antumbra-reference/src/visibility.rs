@@ -1,20 +1,20 @@
-//! What is asked of the tracer, and what it answers: options and images of visibility.
+//! Options and results of the tracer: images of visibility.
 
 use antumbra_light::SampleSet;
 use glam::UVec2;
 
-/// How finely a light is sampled.
+/// Sampling options of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibilityOptions {
-    /// Light points per receiver, from 1 to 2²⁰; default 1024, the reference's 32 × 32. More of them halve the noise
-    /// for every fourfold. A list of points is not sampled: each counts once.
+    /// Light points per receiver, from 1 to 2²⁰; default 1024, the reference's 32 × 32. Four times as many halve the noise.
+    /// A list of points is not sampled: each point counts once.
     pub samples: u32,
-    /// How the points are spread over the light; default stratified.
+    /// Sample set that distributes the points over the light; default stratified.
     pub set: SampleSet,
-    /// Which points of that kind; default 0.
+    /// Seed of the set; default 0.
     pub seed: u32,
-    /// Every pixel uses the one set `set.points(samples, seed)`, as techniques do; default false: neighbours differ, and
-    /// noise does not gather into bands.
+    /// Whether every pixel uses the one set `set.points(samples, seed)`, as techniques do. Default false: neighbours differ,
+    /// so that noise does not form bands.
     pub same_set_for_all_pixels: bool,
 }
 
@@ -29,16 +29,16 @@ impl Default for VisibilityOptions {
 pub struct VisibilityImage {
     /// Width and height; the product is the number of values. A list of points is one row.
     pub size_px: UVec2,
-    /// 3 where occluders tint, else 1.
+    /// Number of channels: 3 if occluders tint, else 1.
     pub channels: u32,
-    /// Visibility in [0, 1], row by row from the top left: RGB, or three times the same where `channels` is 1.
+    /// Visibility in [0, 1], row by row from the top left: RGB, or three equal values if `channels` is 1.
     pub values: Vec<[f32; 3]>,
-    /// The pixel shows a surface that the light reaches and whose geometric normal, turned to the camera, leans
-    /// towards the light's centre: the pixels over which techniques are judged.
+    /// Whether the pixel shows a surface that the light reaches and whose geometric normal, on the camera's side, faces the
+    /// light's centre: techniques are judged over these pixels.
     pub faces_light_center: Vec<bool>,
-    /// Visibility queries answered: pairs of a receiver that the light reaches and a light point.
+    /// Number of visibility queries: pairs of a receiver that the light reaches and a light point.
     pub rays: u64,
-    /// Those of them that occluders of a neighbouring receiver, or the receiver's own triangle, settled without a walk
+    /// Number of queries that occluders of a neighbouring receiver, or the receiver's own triangle, answered without a walk
     /// through the tree.
     pub rays_without_walk: u64,
     /// Wall-clock time, seconds.
@@ -51,7 +51,7 @@ impl VisibilityImage {
         if self.seconds > 0.0 { self.rays as f64 / self.seconds } else { 0.0 }
     }
 
-    /// One value per pixel: the visibility, or the mean of its channels.
+    /// Returns one value per pixel: the visibility, or the mean of its channels.
     pub fn mean_channel(&self) -> Vec<f32> {
         self.values.iter().map(|v| if self.channels == 1 { v[0] } else { (v[0] + v[1] + v[2]) / 3.0 }).collect()
     }

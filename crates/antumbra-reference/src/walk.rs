@@ -1,13 +1,13 @@
-//! All the segments from one receiver to one bundle of light points, in one walk through the tree.
+//! Walk through the tree for all segments from one receiver to one bundle of light points.
 //!
-//! 1024 segments leave one point and end on one small light, so they meet nearly the same nodes. The walk follows
-//! their common shaft (`shaft.rs`). Each triangle met is turned into planes once (`planes.rs`); these settle whole
-//! tiles of 64 light points where they can, as a hierarchical rasteriser does (Greene, "Hierarchical Polygon Tiling
-//! with Coverage Masks", SIGGRAPH 1996), and test point by point only the tiles that a silhouette crosses. A bit per
-//! light point remembers what is blocked; when all are, the walk ends.
+//! 1024 segments leave one point and end on one small light, so they meet nearly the same nodes. The walk follows their
+//! common shaft (`shaft.rs`). Each triangle met is turned into planes once (`planes.rs`). The planes decide whole tiles of
+//! 64 light points if possible, as a hierarchical rasteriser does (Greene, "Hierarchical Polygon Tiling with Coverage
+//! Masks", SIGGRAPH 1996); only tiles that a silhouette crosses are tested point by point. A bit per light point records
+//! what is blocked; when all are, the walk ends.
 //!
-//! The answer does not depend on the order of the walk, nor on which triangles are skipped as certain misses: it is
-//! bit for bit what testing every triangle against every light point gives, which the tests do.
+//! The result depends neither on the order of the walk nor on the triangles that are skipped as certain misses: it is
+//! bit for bit that of testing every triangle against every light point, as the tests do.
 
 use crate::geometry::Geometry;
 use crate::lanes::{Kernel, Lanes};
@@ -16,24 +16,24 @@ use crate::sampled_light::{BUNDLE, Bundle, TILE, Tile, eight};
 use crate::surface::Surface;
 use crate::tree::{Child, Target, Tree};
 
-/// One bit per light point of a bundle, 64 to a tile.
+/// One bit per light point of a bundle, 64 per tile.
 pub(crate) type Bits = [u64; BUNDLE];
 
-/// 2⁻²⁰ of a plane's largest terms: the middle of a tile and each of its points are evaluated with three roundings of
-/// 2⁻²⁴ each; this is more than twice their sum.
+/// Relative slack of a plane's largest terms, 2⁻²⁰: more than twice the three roundings of 2⁻²⁴ each with which the centre
+/// of a tile and each of its points are evaluated.
 const PLANE_SLACK: f32 = 1.0 / (1 << 20) as f32;
 
-/// What a worker keeps between receivers.
+/// State that a worker keeps between receivers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     stack: Vec<Child>,
-    /// Blocks that lately blocked something: likely to do so for the next receiver too. Most recent first.
+    /// Blocks that recently blocked something, most recent first: they are likely to block the next receiver too.
     recent: [Option<u32>; RECENT],
-    /// Translucent triangles met, with the light points whose segments they cross.
+    /// Translucent triangles met, with the light points of the segments that cross them.
     crossings: Vec<Crossing>,
 }
 
-/// A translucent triangle in the way of some segments.
+/// Translucent triangle that some segments cross.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
     triangle: u32,
@@ -42,28 +42,28 @@ struct Crossing {
     bits: Bits,
 }
 
-/// Recent blocks remembered: a big occluder is a block or two, so a few suffice.
+/// Number of recent blocks: a large occluder is a block or two, so a few suffice.
 const RECENT: usize = 4;
 
-/// Which segments of a bundle are blocked.
+/// Kernel that finds the blocked segments of a bundle.
 pub(crate) struct BlockedWalk<'a> {
     pub(crate) geometry: &'a Geometry,
     pub(crate) tree: &'a Tree,
     pub(crate) frame: RayFrame,
     pub(crate) bundle: &'a Bundle,
-    /// Axes along which the light extends.
+    /// Number of axes along which the light extends.
     pub(crate) axes: usize,
-    /// A block to try before all others.
+    /// Block that is tested first.
     pub(crate) first: Option<u32>,
     pub(crate) scratch: &'a mut Scratch,
 }
 
-/// What a walk found.
+/// Result of a walk.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocked {
-    /// Set where the segment is blocked.
+    /// Bits of the blocked segments.
     pub(crate) bits: Bits,
-    /// The blocks of the receiver before settled everything: no node was visited.
+    /// Whether `first` and the recent blocks decided everything, and no node was visited.
     pub(crate) without_walk: bool,
 }
 
@@ -127,7 +127,7 @@ impl BlockedWalk<'_> {
     }
 }
 
-/// Whether no bit is left. (Comparing arrays would call `bcmp`.)
+/// Whether no bit is set. (Comparing arrays would call `bcmp`.)
 #[inline(always)]
 fn all_closed(open: &Bits) -> bool {
     let mut any = 0;
@@ -137,7 +137,7 @@ fn all_closed(open: &Bits) -> bool {
     any == 0
 }
 
-/// Moves a block to the front of the recent ones.
+/// Moves a block to the front of the recent blocks.
 #[inline(always)]
 fn remember(recent: &mut [Option<u32>; RECENT], block: u32) {
     let last = recent.iter().position(|r| *r == Some(block)).unwrap_or(RECENT - 1);
@@ -145,7 +145,7 @@ fn remember(recent: &mut [Option<u32>; RECENT], block: u32) {
     recent[0] = Some(block);
 }
 
-/// Closes the open segments that a block's triangles are in the way of; returns whether there were any.
+/// Closes the open segments that a block's triangles block; returns whether there were any.
 #[inline(always)]
 fn test_block<L: Lanes, const AXES: usize>(
     geometry: &Geometry,
@@ -181,7 +181,7 @@ fn test_block<L: Lanes, const AXES: usize>(
     blocked
 }
 
-/// The bits for which `keep` says so.
+/// Bits for which `keep` returns true.
 #[inline(always)]
 fn retain(mut bits: u64, mut keep: impl FnMut(usize) -> bool) -> u64 {
     let mut kept = 0;
@@ -193,7 +193,7 @@ fn retain(mut bits: u64, mut keep: impl FnMut(usize) -> bool) -> u64 {
     kept
 }
 
-/// The triangles of a block that any point of the bundle's box may be hidden by, as bits.
+/// Bit mask of the triangles of a block that may hide a point of the bundle's box.
 #[inline(always)]
 fn may_hit<L: Lanes, const AXES: usize>(planes: &Planes, bundle: &Bundle) -> u32 {
     let mut missed = 0;
@@ -209,17 +209,17 @@ fn may_hit<L: Lanes, const AXES: usize>(planes: &Planes, bundle: &Bundle) -> u32
         }
         let reach = slack.mul_add(L::splat(PLANE_SLACK), reach);
         missed |= if plane < 3 {
-            // Negative all over: outside this edge.
+            // Negative everywhere: outside this edge.
             middle.add(reach).signs()
         } else {
-            // Not negative anywhere: the plane is never within a segment.
+            // Negative nowhere: the plane is never within a segment.
             !middle.sub(reach).signs()
         };
     }
     !missed & ((1 << LANES) - 1)
 }
 
-/// Calls `found` with each tile and those of its open segments that meet a triangle.
+/// Calls `found` with each tile and those of its open segments that a triangle meets.
 #[inline(always)]
 fn for_each_hit<L: Lanes, const AXES: usize>(
     planes: &Planes,
@@ -228,7 +228,7 @@ fn for_each_hit<L: Lanes, const AXES: usize>(
     open: &mut Bits,
     mut found: impl FnMut(usize, u64, &mut Bits),
 ) {
-    // Bits of tiles: somewhere possibly hit; everywhere certainly hit.
+    // Bit masks of tiles: possibly hit somewhere; certainly hit everywhere.
     let (mut some, mut all) = (u32::MAX, u32::MAX);
     for plane in 0..4 {
         let terms = &planes.coefficients[plane];
@@ -246,7 +246,7 @@ fn for_each_hit<L: Lanes, const AXES: usize>(
                 middle = slope.mul_add(eight::<L>(&bundle.middle[axis], chunk), middle);
                 reach = slope.abs().mul_add(eight::<L>(&bundle.half[axis], chunk), reach);
             }
-            // Not negative anywhere; negative everywhere.
+            // Negative nowhere; negative everywhere.
             above |= (!middle.sub(reach).signs() & 0xff) << (LANES * chunk);
             below |= middle.add(reach).signs() << (LANES * chunk);
         }
@@ -273,10 +273,10 @@ fn for_each_hit<L: Lanes, const AXES: usize>(
     }
 }
 
-/// The points of a tile whose segments meet a triangle.
+/// Bit mask of the points of a tile whose segments meet a triangle.
 #[inline(always)]
 fn tile_hits<L: Lanes, const AXES: usize>(planes: &Planes, lane: usize, tile: &Tile) -> u64 {
-    // Plain loops and no closures: what is not inlined here does not see the instruction set.
+    // Plain loops and no closures, because code that is not inlined here is not compiled for the instruction set.
     let mut terms = [[L::splat(0.0); 4]; 4];
     for (terms, coefficients) in terms.iter_mut().zip(&planes.coefficients) {
         for (term, coefficient) in terms.iter_mut().zip(coefficients).take(1 + AXES) {
@@ -299,7 +299,7 @@ fn tile_hits<L: Lanes, const AXES: usize>(planes: &Planes, lane: usize, tile: &T
     hits
 }
 
-/// The barycentric weights of the point where a triangle is met on the way to point `k` of a tile.
+/// Barycentric weights of the intersection with a triangle on the way to point `k` of a tile.
 #[inline(always)]
 fn weights_at<const AXES: usize>(planes: &Planes, lane: usize, tile: &Tile, k: usize) -> [f32; 3] {
     let values = [0, 1, 2].map(|plane| {
@@ -310,16 +310,16 @@ fn weights_at<const AXES: usize>(planes: &Planes, lane: usize, tile: &Tile, k: u
     normalized(values)
 }
 
-/// Non-negative numbers scaled to sum to one.
+/// Scales non-negative numbers to sum to one.
 #[inline(always)]
 pub(crate) fn normalized(values: [f32; 3]) -> [f32; 3] {
     let sum = values[0] + values[1] + values[2];
-    // All three are zero only where a triangle is seen edge-on, which the plane's own test has excluded but for
-    // underflow; any point of it will do.
+    // All three are zero only if a triangle is seen edge-on, which the test of its plane excludes except for underflow. Any
+    // point of the triangle is then right.
     if sum > 0.0 { values.map(|v| v / sum) } else { [1.0, 0.0, 0.0] }
 }
 
-/// What passes the translucent triangles on the way to each open light point of a bundle.
+/// Kernel that finds the transmittance of the translucent triangles on the way to each open light point of a bundle.
 pub(crate) struct TranslucentWalk<'a> {
     pub(crate) geometry: &'a Geometry,
     pub(crate) tree: &'a Tree,
@@ -327,9 +327,9 @@ pub(crate) struct TranslucentWalk<'a> {
     pub(crate) bundle: &'a Bundle,
     pub(crate) axes: usize,
     pub(crate) scratch: &'a mut Scratch,
-    /// Segments that nothing blocks.
+    /// Segments that no blocker blocks.
     pub(crate) open: Bits,
-    /// Multiplied by the transmittance of each translucent triangle, per slot of the bundle.
+    /// Transmittance per slot of the bundle, which is multiplied by that of each translucent triangle.
     pub(crate) transmittance: &'a mut [glam::Vec3],
 }
 
@@ -383,7 +383,7 @@ impl TranslucentWalk<'_> {
                 }
             }
         }
-        // Products are rounded, so their order is part of the answer: the scene's, whatever the tree.
+        // Products are rounded, so the result depends on their order: the scene's is used, whatever the tree.
         crossings.sort_unstable_by_key(|c| c.triangle);
         for crossing in crossings.iter() {
             let Surface::Translucent(i) = geometry.translucents[crossing.triangle as usize].surface else { continue };

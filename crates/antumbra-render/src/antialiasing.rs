@@ -1,9 +1,9 @@
-//! Rule of antialiased pictures of masks that have one sample a pixel: for the laboratory's on the processor and the viewer's on the device.
+//! Antialiasing of images whose masks have one sample per pixel. The laboratory applies these rules on the CPU, the viewer on the GPU.
 
 use glam::Vec2;
 
-/// Places within a pixel, from its centre: the standard pattern of eight samples of Direct3D 11, in sixteenths. No two are in one column or
-/// row, so that edges of all directions get eight steps.
+/// Sample positions within a pixel, relative to its centre: the standard pattern of eight samples of Direct3D 11, in sixteenths. No two
+/// share a column or row, so that edges of all directions get eight steps.
 pub const OFFSETS_PX: [Vec2; 8] = {
     const fn at(x: f32, y: f32) -> Vec2 {
         Vec2::new(x / 16.0, y / 16.0)
@@ -20,11 +20,11 @@ pub const OFFSETS_PX: [Vec2; 8] = {
     ]
 };
 
-/// Weight of the difference of normals against that of places in pixels: faces that meet at a right angle differ by more than any of a
-/// pixel's neighbours, whose squared distances from a place within it are at most 4.5.
+/// Weight of the difference of normals against that of positions in pixels. Faces that meet at a right angle differ by more than any
+/// neighbours of a pixel, whose squared distances from a position within it are at most 4.5.
 pub const NORMALS_COUNT: f32 = 5.0;
 
-/// Unlikeness below which a place beside a pixel's centre shows the surface that is seen there.
+/// Difference below which a position beside a pixel's centre shows the surface that is seen at the centre.
 pub const ALIKE: f32 = 0.1;
 
 #[cfg(test)]

@@ -1,16 +1,16 @@
-//! Antumbra's own small renderer, around the library: what the laboratory and the viewer share.
+//! Antumbra's own small renderer around the library, shared by the laboratory and the viewer.
 //!
-//! The rooms, in the order in which data flows through them:
+//! The modules, in the order of the data flow:
 //!
-//! - [`gpu_scene`] — a scene's geometry, textures and instances, as casters for the techniques.
-//! - [`receivers`] — what a camera sees: depth, exact normals, surfaces.
-//! - [`shading`] — the picture, from receivers, lights and visibility.
-//! - [`antialiasing`] — which sample of a mask a place within a pixel takes.
-//! - [`picture`] — what a picture and a visibility image are on the CPU; plain data.
+//! - [`gpu_scene`] — geometry, textures and instances of a scene, as casters for the techniques.
+//! - [`receivers`] — first hits of a camera: depth, exact normals, surfaces.
+//! - [`shading`] — the shaded image, from receivers, lights and visibility.
+//! - [`antialiasing`] — which mask value a position within a pixel takes.
+//! - [`picture`] — images and visibility images on the CPU; plain data.
 //!
-//! The device is the caller's, as [`antumbra::Gpu`]. Passes are recorded into the caller's encoder; nothing here submits,
-//! and nothing waits, so that a window and a browser can use it. What has to be read back to go on (where the camera sees
-//! anything) is an argument.
+//! The caller provides the device, as [`antumbra::Gpu`]. Passes are recorded into the caller's encoder. Nothing here submits
+//! or waits, so a window and a browser can use it. Data that must be read back first (where the camera sees anything) is an
+//! argument.
 #![forbid(unsafe_code)]
 
 pub mod antialiasing;
@@ -23,7 +23,7 @@ mod test_support;
 
 use antumbra::programs;
 
-/// A texture that passes draw to, that later ones read, and that a caller may read back: one level, one sample.
+/// Creates a texture that passes draw to, later passes read, and a caller may read back: one level, one sample.
 pub fn drawn_texture(
     device: &wgpu::Device,
     label: &str,
@@ -44,7 +44,7 @@ pub fn drawn_texture(
     })
 }
 
-/// Draws a triangle over the whole picture, by a module's vertex stage `vertex_screen` and the fragment stage of a name.
+/// Creates a full-screen pipeline from a module's vertex stage `vertex_screen` and the fragment stage `fragment`.
 pub fn screen_pipeline(
     device: &wgpu::Device,
     module: &wgpu::ShaderModule,
@@ -82,7 +82,7 @@ pub fn screen_pipeline(
     )
 }
 
-/// Entry of a buffer in a bind group's layout.
+/// Bind group layout entry of a buffer.
 pub fn buffer_entry(
     binding: u32,
     visibility: wgpu::ShaderStages,
@@ -96,7 +96,7 @@ pub fn buffer_entry(
     }
 }
 
-/// Entry of a 2D texture of one sample that a fragment stage reads.
+/// Bind group layout entry of a single-sampled 2D texture that a fragment stage reads.
 pub fn texture_entry(binding: u32, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,

@@ -4,41 +4,41 @@ use antumbra_scene::srgb_from_linear;
 use glam::{UVec2, Vec3};
 use image::{Rgb, RgbImage};
 
-/// A picture in linear RGB.
+/// Image in linear RGB.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Width and height, pixels.
     pub size_px: UVec2,
-    /// `width · height` linear colours, the first row at the top; 1 is the display's white.
+    /// `width · height` linear colours, top row first; 1 is the display's white.
     pub linear_rgb: Vec<Vec3>,
 }
 
 impl Picture {
-    /// A picture of `size_px` whose pixels are `linear_rgb`, row by row from the top.
+    /// Creates an image of `size_px` whose pixels are `linear_rgb`, row by row from the top.
     ///
     /// # Panics
-    /// Where there are not `width · height` colours.
+    /// The number of colours is not `width · height`.
     pub fn new(size_px: UVec2, linear_rgb: Vec<Vec3>) -> Self {
         assert_eq!(pixel_count(size_px), linear_rgb.len(), "a picture of {size_px} has another number of pixels");
         Self { size_px, linear_rgb }
     }
 
-    /// As 8-bit sRGB, clamped to what a display shows and rounded to nearest.
+    /// Converts to 8-bit sRGB, clamped to the display's range and rounded to nearest.
     pub fn to_srgb8(&self) -> RgbImage {
         rgb_image(self.size_px, |i| self.linear_rgb[i].to_array().map(|v| u8_from_unit(srgb_from_linear(v))))
     }
 }
 
-/// Visibility for each pixel: the fraction of the light that its surface sees.
+/// Visibility image: the fraction of the light that each pixel's surface sees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visibility {
     /// Width and height, pixels.
     pub size_px: UVec2,
-    /// `width · height` values, the first row at the top.
+    /// `width · height` values, top row first.
     pub values: VisibilityValues,
 }
 
-/// Visibility is one number for each pixel, or three where occluders tint the light.
+/// Values of a visibility image: one channel, or three if occluders tint the light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VisibilityValues {
     /// One channel: 1 lit, 0 umbra.
@@ -48,25 +48,25 @@ pub enum VisibilityValues {
 }
 
 impl Visibility {
-    /// A one-channel image.
+    /// Creates a one-channel image.
     ///
     /// # Panics
-    /// Where there are not `width · height` values.
+    /// The number of values is not `width · height`.
     pub fn one(size_px: UVec2, values: Vec<f32>) -> Self {
         assert_eq!(pixel_count(size_px), values.len(), "an image of {size_px} has another number of pixels");
         Self { size_px, values: VisibilityValues::One(values) }
     }
 
-    /// A three-channel image.
+    /// Creates a three-channel image.
     ///
     /// # Panics
-    /// Where there are not `width · height` values.
+    /// The number of values is not `width · height`.
     pub fn three(size_px: UVec2, values: Vec<Vec3>) -> Self {
         assert_eq!(pixel_count(size_px), values.len(), "an image of {size_px} has another number of pixels");
         Self { size_px, values: VisibilityValues::Three(values) }
     }
 
-    /// 1 or 3.
+    /// Number of channels, 1 or 3.
     pub fn channel_count(&self) -> usize {
         match self.values {
             VisibilityValues::One(_) => 1,
@@ -74,7 +74,7 @@ impl Visibility {
         }
     }
 
-    /// The value of a pixel in a channel; one channel stands for all three.
+    /// Value of a pixel in a channel; a single channel serves as all three.
     pub fn at(&self, pixel: usize, channel: usize) -> f32 {
         match &self.values {
             VisibilityValues::One(values) => values[pixel],
@@ -82,24 +82,24 @@ impl Visibility {
         }
     }
 
-    /// As an 8-bit picture whose grey level (or RGB) *is* the value, 0 to 255, without a display curve: half visibility
-    /// is code 128 and looks about half as bright as lit, and the value can be read back from the picture.
+    /// Converts to an 8-bit image whose grey level (or RGB) *is* the value, 0 to 255, without a display curve: half visibility
+    /// is code 128 and looks about half as bright as lit, and the value can be read back from the image.
     pub fn to_gray_levels(&self) -> RgbImage {
         rgb_image(self.size_px, |i| [0, 1, 2].map(|channel| u8_from_unit(self.at(i, channel))))
     }
 }
 
-/// `width · height`.
+/// Number of pixels, `width · height`.
 pub fn pixel_count(size_px: UVec2) -> usize {
     size_px.x as usize * size_px.y as usize
 }
 
-/// A picture from a function of the pixel's index, row by row from the top.
+/// Creates an image from a function of the pixel's index, row by row from the top.
 pub fn rgb_image(size_px: UVec2, color_at: impl Fn(usize) -> [u8; 3]) -> RgbImage {
     RgbImage::from_fn(size_px.x, size_px.y, |x, y| Rgb(color_at(y as usize * size_px.x as usize + x as usize)))
 }
 
-/// The nearest of 256 levels; values outside `[0, 1]` saturate, NaN is 0.
+/// Rounds to the nearest of 256 levels; values outside `[0, 1]` saturate, NaN is 0.
 fn u8_from_unit(v: f32) -> u8 {
     (v.clamp(0.0, 1.0) * 255.0).round() as u8
 }
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn srgb_bytes_match_the_standard() {
-        // IEC 61966-2-1: linear 0.214 is code 127.5 / 255; black, white and what lies beyond saturate.
+        // IEC 61966-2-1: linear 0.214 is code 127.5 / 255. Black, white and values outside the range saturate.
         let picture = Picture::new(
             UVec2::new(2, 2),
             vec![Vec3::ZERO, Vec3::ONE, Vec3::new(0.2140, 2.0, -1.0), Vec3::splat(f32::NAN)],

@@ -6,8 +6,8 @@ use antumbra::Gpu;
 use antumbra_scene::Mesh;
 use glam::{Vec2, Vec3};
 
-/// The device, or `None` and a word where this machine has no adapter and none is required. wgpu panics at errors that
-/// nobody asked for.
+/// Returns the device; `None`, with a message, if this machine has no adapter and none is required. wgpu panics on
+/// unhandled errors.
 pub(crate) fn gpu_or_skip() -> Option<&'static Gpu> {
     static GPU: OnceLock<Option<Gpu>> = OnceLock::new();
     let gpu = GPU.get_or_init(|| {

@@ -1,9 +1,9 @@
-//! Scenes far from the world's origin, where 32-bit floats are a millimetre apart: counted from an anchor near the camera, so
-//! that what is computed from their coordinates rounds as it does at the origin.
+//! Scenes far from the world's origin, where 32-bit floats are a millimetre apart. Coordinates are made relative to an anchor
+//! near the camera, so that computations round as they do at the origin.
 //!
-//! A mesh may bring its distance in its corners or in its instances. Either is taken out: a mesh whose corners lie far from
-//! their own origin is counted from an anchor as well, which takes none of the bits that the distance has left; products of
-//! matrices are made in double precision.
+//! The distance may be in a mesh's vertices or in its instances. Both are removed: a mesh whose vertices lie far from their own
+//! origin gets an anchor as well, without losing any of the bits that the distance left. Products of matrices are computed in
+//! double precision.
 
 use antumbra_light::anchor_near;
 use glam::{DMat4, DVec3, Vec3};
@@ -11,19 +11,19 @@ use glam::{DMat4, DVec3, Vec3};
 use crate::{Aabb, Camera, Scene, Setup};
 
 impl Camera {
-    /// The world position to count from where this camera looks; see [`anchor_near`].
+    /// Anchor near this camera, a world position; see [`anchor_near`].
     pub fn anchor(&self) -> Vec3 {
         anchor_near(self.eye)
     }
 
-    /// The same camera in coordinates that begin at `anchor`.
+    /// Returns the camera in coordinates relative to `anchor`.
     pub fn counted_from(self, anchor: Vec3) -> Self {
         Self { eye: self.eye - anchor, target: self.target - anchor, ..self }
     }
 }
 
 impl Setup {
-    /// The same setup in coordinates that begin at `anchor`.
+    /// Returns the setup in coordinates relative to `anchor`.
     pub fn counted_from(&self, anchor: Vec3) -> Self {
         Self {
             camera: self.camera.counted_from(anchor),
@@ -33,7 +33,7 @@ impl Setup {
 }
 
 impl Scene {
-    /// Counts the scene, its cameras and its lights from `anchor`.
+    /// Makes the coordinates of the scene, its cameras and its lights relative to `anchor`.
     pub fn count_from(&mut self, anchor: Vec3) {
         if anchor == Vec3::ZERO {
             return;
@@ -67,7 +67,7 @@ mod tests {
     /// Ten kilometres away, between points of the anchors' grid.
     const AWAY: Vec3 = Vec3::new(10_000.0, 0.0, -7_300.0);
 
-    /// What counts as near to an anchor here.
+    /// Largest distance from an anchor in these tests, metres.
     const NEAR_M: f32 = 64.0;
 
     fn corners(scene: &Scene) -> Vec<Vec3> {
@@ -89,8 +89,8 @@ mod tests {
         assert_eq!(setup.counted_from(Vec3::ZERO), setup);
     }
 
-    /// Whether corners or instances bring the distance, all of a scene is where it is at the origin, to the bits that the
-    /// distance left.
+    /// A far scene, whether its vertices or its instances are far away, equals the scene at the origin within the precision
+    /// that the distance left.
     #[test]
     fn what_is_far_is_counted_from_its_camera() {
         let scene = load("builtin:columns", &LoadOptions::default()).unwrap();

@@ -9,7 +9,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3};
 pub struct Camera {
     /// World position of the pinhole, metres.
     pub eye: Vec3,
-    /// World position in the picture's centre.
+    /// World position at the image centre.
     pub target: Vec3,
     /// Up hint.
     pub up: Vec3,
@@ -19,24 +19,24 @@ pub struct Camera {
     pub near_m: f32,
     /// Distance of the far plane, metres.
     pub far_m: f32,
-    /// How far from the eye techniques draw shadows; `None` is as far as it goes. Rays know of none.
+    /// Shadow distance of techniques, from the eye; `None` for no limit. The ray tracer ignores it.
     pub shadow_distance: Option<ShadowDistance>,
 }
 
 impl Camera {
-    /// View space: the camera at the origin, looking down −z, +y up.
+    /// View matrix: the camera is at the origin of view space and looks down −z, with +y up.
     pub fn view_from_world(&self) -> Mat4 {
         look_at_mat4(self.eye, self.target, self.up)
     }
 
-    /// Reversed depth with an infinite far plane: 1 at `near_m`, 0 at infinity; the same relative precision everywhere.
+    /// Projection with reversed depth and an infinite far plane: 1 at `near_m`, 0 at infinity, equal relative precision everywhere.
     pub fn clip_from_view(&self, size_px: UVec2) -> Mat4 {
         let aspect = size_px.x as f32 / size_px.y as f32;
         perspective_infinite_reverse(self.fov_y_rad, aspect, self.near_m)
     }
 
-    /// The unit direction from the eye through a point of the image, in pixels from the top left corner; the centre of
-    /// pixel (i, j) is (i + ½, j + ½).
+    /// Unit direction from the eye through a point of the image, in pixels from the top left corner. The centre of pixel
+    /// (i, j) is (i + ½, j + ½).
     pub fn ray_direction(&self, size_px: UVec2, pos_px: Vec2) -> Vec3 {
         let forward = (self.target - self.eye).normalize();
         let right = forward.cross(self.up).normalize();

@@ -1,11 +1,11 @@
-//! Whether a triangle mesh bounds a solid.
+//! Test whether a triangle mesh is closed.
 
 use glam::Vec3;
 
-/// Whether every edge is shared by exactly two triangles that wind consistently, vertices at one place taken as one.
+/// Whether every edge is shared by exactly two triangles that wind consistently. Vertices at equal positions count as one.
 ///
-/// `indices` has three a triangle, each below `positions.len()`. A triangle that joins to fewer than three places has
-/// no area and no say. A mesh without triangles is not closed. O(n log n).
+/// `indices` has three indices per triangle, each below `positions.len()`. Triangles with fewer than three distinct
+/// positions are ignored. A mesh without triangles is not closed. O(n log n).
 pub(crate) fn is_closed(positions: &[Vec3], indices: &[u32]) -> bool {
     let place = places(positions);
     let mut edges: Vec<(u32, u32)> = Vec::with_capacity(indices.len());
@@ -22,7 +22,7 @@ pub(crate) fn is_closed(positions: &[Vec3], indices: &[u32]) -> bool {
         && edges.iter().all(|&(a, b)| edges.binary_search(&(b, a)).is_ok())
 }
 
-/// For each vertex the number of its place: equal exactly where the positions are equal.
+/// Position index of each vertex: two vertices have the same index exactly if their positions are equal.
 fn places(positions: &[Vec3]) -> Vec<u32> {
     // Adding zero turns −0 into 0, so that equal numbers have equal bits.
     let key = |i: u32| (positions[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
@@ -48,7 +48,7 @@ mod tests {
         let p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let solid = [0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3];
         assert!(is_closed(&p, &solid));
-        // Unshared vertices are joined by place, −0 and 0 alike.
+        // Unshared vertices are joined by position, −0 and 0 alike.
         let apart: Vec<Vec3> = solid.iter().map(|&i| p[i as usize] * Vec3::new(1.0, 1.0, -1.0)).collect();
         let indices: Vec<u32> = (0..12).collect();
         assert!(is_closed(&apart, &indices));
@@ -57,7 +57,7 @@ mod tests {
         assert!(!is_closed(&p, &[&solid[..], &[0, 2, 1]].concat()));
         assert!(!is_closed(&p, &[0, 1, 2, 0, 1, 3, 1, 2, 3, 2, 0, 3]));
         assert!(!is_closed(&p, &[]));
-        // A triangle without area joins two places only.
+        // A triangle without area has only two distinct positions.
         assert!(is_closed(&p, &[&solid[..], &[0, 0, 1]].concat()));
     }
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene or a setup file, as one line: where, what, and what would be right.
+//! Errors of scenes and setup files, each one line: place, problem, remedy.
 
 use std::path::PathBuf;
 
@@ -6,24 +6,24 @@ use antumbra_light::LightError;
 
 use crate::builtin::BuiltinError;
 
-/// Why a scene or a setup could not be had. Each displays as one line.
+/// Error of loading or exporting a scene, or of reading a setup file. Each displays as one line.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// A file cannot be read at all.
     #[error("{}: cannot be read: {source}; give the path of a .glb or .gltf scene, or `builtin:NAME`", path.display())]
     Read {
-        /// Which file.
+        /// Name or path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// A built-in's name without `builtin:`, where no file is called so.
+    /// The name of a built-in scene without `builtin:`, where no file has that name.
     #[error("{spec}: there is no such file; the built-in scene is `builtin:{spec}`")]
     NoSuchFile {
-        /// What was given.
+        /// Name as given.
         spec: String,
     },
-    /// A file's path behind `builtin:`.
+    /// A file's path after `builtin:`.
     #[error("builtin:{0}: this is a file, and no built-in scene; give its path alone, `{0}`", path.display())]
     NotBuiltin {
         /// The file.
@@ -32,13 +32,13 @@ pub enum SceneError {
     /// A scene file contradicts the glTF 2.0 specification, or exceeds a limit of this loader.
     #[error("{origin}: {place}: {problem}; {remedy}")]
     Invalid {
-        /// Which file.
+        /// Name or path of the file.
         origin: String,
-        /// Where in it, as a path such as `accessors[3].count`.
+        /// Place in the file, as a path such as `accessors[3].count`.
         place: String,
-        /// What is wrong.
+        /// Problem found.
         problem: String,
-        /// What would be right.
+        /// Suggested correction.
         remedy: String,
     },
     /// A scene without a triangle: there is nothing to cast or to receive a shadow.
@@ -46,9 +46,9 @@ pub enum SceneError {
         "{origin}: the scene holds no triangle{left_out}; it needs at least one mesh of triangles in a node of its scene"
     )]
     Empty {
-        /// Which file or built-in.
+        /// Name of the file or built-in scene.
         origin: String,
-        /// Why, in parentheses, where the loader left something out; else empty.
+        /// First loader warning, in parentheses; empty if there is none.
         left_out: String,
     },
     /// `builtin:NAME` names no built-in scene, or gives it a parameter that it does not take.
@@ -57,31 +57,31 @@ pub enum SceneError {
     /// A setup file cannot be read at all.
     #[error("{}: cannot be read: {source}; give the path of a setup file in TOML", path.display())]
     ReadSetup {
-        /// Which file.
+        /// Name or path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// A setup file has a key, a type or a value that is not right.
+    /// A setup file has an invalid key, type or value.
     #[error("{origin}:{line}: {problem}; {remedy}")]
     Setup {
-        /// Which file.
+        /// Name or path of the file.
         origin: String,
         /// Line of the file, from 1.
         line: usize,
-        /// What is wrong, with the key.
+        /// Problem found, with the key.
         problem: String,
-        /// What would be right.
+        /// Suggested correction.
         remedy: String,
     },
-    /// A light of a setup has a number that means nothing.
+    /// A light of a setup has an invalid value.
     #[error("{origin}:{line}: {source}")]
     Light {
-        /// Which file.
+        /// Name or path of the file.
         origin: String,
         /// Line of the file on which the light begins, from 1.
         line: usize,
-        /// What is wrong and what would be right.
+        /// Problem and remedy.
         source: LightError,
     },
     /// A scene cannot be written as glTF.
@@ -89,7 +89,7 @@ pub enum SceneError {
     Export {
         /// The scene's name.
         scene: String,
-        /// What is wrong and what would be right.
+        /// Problem and remedy.
         problem: String,
     },
 }

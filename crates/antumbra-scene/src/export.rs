@@ -1,7 +1,7 @@
-//! Any scene as one binary glTF 2.0 file.
+//! Export of scenes as glTF 2.0, binary or text.
 //!
-//! What glTF's extensions cannot say of a light (its shape and size, its exposure) goes into `extras`, which
-//! the loader of this crate reads back and other programs ignore.
+//! Properties of lights that glTF's extensions lack (shape, size, exposure) go into `extras`. The loader of this crate
+//! reads them back; other programs ignore them.
 
 mod buffers;
 mod cameras_and_lights;
@@ -18,7 +18,7 @@ use buffers::Writer;
 use cameras_and_lights::{camera, camera_node, light, light_node};
 use materials::{material, png, sampler, surfaces};
 
-/// Numbers that glTF 2.0 takes over from OpenGL.
+/// OpenGL constants that glTF 2.0 uses.
 mod gl {
     pub const FLOAT: u32 = 5126;
     pub const UNSIGNED_INT: u32 = 5125;
@@ -31,20 +31,20 @@ mod gl {
     pub const CLAMP_TO_EDGE: u32 = 33071;
 }
 
-/// Writes a scene as `.glb`: meshes, instances as nodes, materials, pictures as PNG inside, cameras, lights.
+/// Writes a scene as `.glb`: meshes, instances as nodes, materials, images as embedded PNG, cameras, lights.
 ///
-/// Loading it gives the same triangles, materials, cameras and lights, the numbers of cameras and lights within
-/// rounding.
+/// Loading the result gives the same triangles, materials, cameras and lights; numbers of cameras and lights are equal
+/// within rounding.
 ///
 /// # Errors
-/// The scene exceeds the container's 4 GiB, or a picture cannot be encoded.
+/// The scene exceeds the container's 4 GiB, or an image cannot be encoded.
 pub fn export_glb(scene: &Scene) -> Result<Vec<u8>, SceneError> {
     let failed = |problem: String| SceneError::Export { scene: scene.name.clone(), problem };
     let (document, bin) = Writer::default().document(scene).map_err(failed)?;
     container(&document, bin).map_err(failed)
 }
 
-/// The same as `.gltf`: text, with the binary buffer inside as a data URI.
+/// Writes a scene as `.gltf`: text, with the binary buffer embedded as a data URI.
 ///
 /// # Errors
 /// As [`export_glb`].
@@ -69,7 +69,7 @@ pub fn export_glb_to(scene: &Scene, mut writer: impl Write) -> Result<(), SceneE
     writer.write_all(&bytes).map_err(|e| SceneError::Export { scene: scene.name.clone(), problem: e.to_string() })
 }
 
-/// Header, JSON chunk, BIN chunk (glTF 2.0, section 4).
+/// Assembles a GLB file: header, JSON chunk, BIN chunk (glTF 2.0, section 4).
 pub(crate) fn container(document: &Value, mut bin: Vec<u8>) -> Result<Vec<u8>, String> {
     let mut json = document.to_string().into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
@@ -110,7 +110,7 @@ impl Writer {
         }
         let (surfaces, of_mesh) = surfaces(scene);
         let materials: Vec<Value> = surfaces.iter().map(material).collect();
-        // glTF knows no mesh without triangles.
+        // glTF does not allow meshes without triangles.
         let drawn = |mesh: &Mesh| !mesh.indices.is_empty();
         let meshes: Vec<Value> = scene
             .meshes
@@ -179,7 +179,7 @@ impl Writer {
     }
 }
 
-/// Without members that say nothing: glTF allows no empty list and needs no empty name.
+/// Removes null and empty members: glTF allows no empty list and needs no empty name.
 fn object(mut value: Value) -> Value {
     if let Some(map) = value.as_object_mut() {
         map.retain(|_, v| match v {
@@ -193,7 +193,7 @@ fn object(mut value: Value) -> Value {
     value
 }
 
-/// `null` for the identity, which is the default.
+/// Node matrix; `null` for the identity, which is the default.
 fn matrix(m: Mat4) -> Value {
     if m == Mat4::IDENTITY { Value::Null } else { json!(m.to_cols_array()) }
 }

@@ -4,34 +4,34 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::{Instance, Material, Mesh, Scene};
 
-/// Side of the ground over the scene's diagonal: shadows of a light that stands half as high as the default's still end on
-/// it.
+/// Side of the ground over the scene's diagonal. Shadows of a light half as high as the default light still end on the
+/// ground.
 const SIDE_DIAGONALS: f32 = 4.0;
-/// Linear: paper in shade, so that neither light nor dark things vanish before it.
+/// Linear reflectance of the ground: paper in shade, so that both light and dark objects stand out.
 const GRAY: f32 = 0.5;
 
-/// Seen from above, a scene has a ground where so much of its outline is bare of anything that rises over its lowest tenth.
+/// Smallest fraction of a scene's outline, seen from above, that is as low as its lowest tenth if the scene has a ground.
 const BARE: f32 = 0.25;
 const LOWEST: f32 = 0.1;
-/// Cells of the outline along x and z.
+/// Number of grid cells along x and along z.
 const CELLS: usize = 24;
-/// What is flatter than this, height over diagonal, is a ground itself.
+/// Largest ratio of height to diagonal of a scene that is itself a ground.
 const FLAT: f32 = 0.02;
 
-/// When a ground is put under a scene.
+/// Condition for putting a ground under a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ground {
-    /// Where nothing says how the scene is looked at, and it stands on nothing.
+    /// If neither the scene nor a setup gives a camera and the scene stands on nothing.
     #[default]
     Auto,
-    /// Whatever it stands on.
+    /// Always.
     Yes,
     /// Never.
     No,
 }
 
 impl Ground {
-    /// Whether `scene` gets a ground; `is_framed` says whether the camera was made to frame it, see
+    /// Whether `scene` gets a ground. `is_framed` says that the camera frames the scene by default; see
     /// [`Assumed`](crate::Assumed).
     pub fn is_for(self, scene: &Scene, is_framed: bool) -> bool {
         match self {
@@ -41,15 +41,15 @@ impl Ground {
         }
     }
 
-    /// Note about a ground that nobody asked for.
+    /// Message about a ground that [`Ground::Auto`] added.
     pub fn told(scene: &Scene) -> String {
         format!("{} stands on nothing, and was put on a ground; --ground=no leaves it out", scene.name)
     }
 }
 
 impl Scene {
-    /// Whether nothing lies under the scene to stand on, as under a single object: seen from above, hardly any of its outline is
-    /// as low as its lowest parts. A slope without anything level at its foot counts as such an object, too.
+    /// Whether the scene has no ground of its own, as a single object: seen from above, hardly any of its outline is as low as its
+    /// lowest parts. A slope without a level foot also counts as such an object.
     pub fn stands_on_nothing(&self) -> bool {
         let bounds = self.bounds();
         let extent = bounds.max - bounds.min;
@@ -69,9 +69,9 @@ impl Scene {
         (bare as f32) < BARE * tops.len() as f32
     }
 
-    /// Puts a square under the scene, as high as the lowest point of its box and four of the box's diagonals wide. It is a
-    /// mesh like all others and called `ground`; [`Scene::ground`] tells it from them, as it occludes nothing where light comes from
-    /// above. A scene without a triangle stays as it is.
+    /// Puts a square under the scene, at the lowest point of its bounding box, four of the box's diagonals wide. It is a mesh like
+    /// others, named `ground`. [`Scene::ground`] identifies it, because it occludes nothing where light comes from above. A scene
+    /// without triangles stays unchanged.
     pub fn stand_on_ground(&mut self) {
         let bounds = self.bounds();
         if bounds.is_empty() {
@@ -100,8 +100,8 @@ impl Scene {
     }
 }
 
-/// Raises the cells whose middles a triangle covers, seen from above, to its height there. Corners are in cells, and their
-/// heights in z.
+/// Raises each cell whose centre a triangle covers, seen from above, to the triangle's height there. x and y of `corners` are in
+/// cells, z is the height.
 fn raise(tops: &mut [f32; CELLS * CELLS], corners: [Vec3; 3]) {
     let [a, b, c] = corners;
     let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
@@ -110,7 +110,7 @@ fn raise(tops: &mut [f32; CELLS * CELLS], corners: [Vec3; 3]) {
         return;
     }
     let (least, most) = (a.min(b).min(c), a.max(b).max(c));
-    // Middles lie half a cell in; a cast saturates.
+    // Centres lie half a cell in; a cast saturates.
     let cells =
         |least: f32, most: f32| (least - 0.5).ceil().max(0.0) as usize..((most + 0.5).floor() as usize).min(CELLS);
     for (row, column) in cells(least.y, most.y).flat_map(|row| cells(least.x, most.x).map(move |column| (row, column)))
@@ -147,7 +147,7 @@ mod tests {
         assert!(nothing.meshes.is_empty());
     }
 
-    /// Built-in scenes stand on grounds of their own; what of one is left without it does not, until it is put on ours.
+    /// Built-in scenes have grounds; a knot without one stands on nothing until it is put on a ground.
     #[test]
     fn objects_stand_on_nothing_until_they_are_put_on_something() {
         for name in ["overlap", "columns", "tree", "street", "bench-under-tree", "town"] {

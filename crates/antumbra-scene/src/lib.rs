@@ -1,7 +1,7 @@
 //! Scenes for the Antumbra laboratory: glTF files, setup files, procedural built-in scenes.
 //!
-//! A [`Scene`] is what a file or a built-in holds; a [`Setup`] says where to look from and what the lights are.
-//! [`load()`] finds both by name. Conventions: metres, radians, right-handed, +Y up, linear colours.
+//! A [`Scene`] comes from a file or is built in; a [`Setup`] has a camera and lights. [`load()`] finds both kinds of scene
+//! by name. Conventions: metres, radians, right-handed, +Y up, linear colours.
 
 mod anchored;
 mod base64;

@@ -1,4 +1,4 @@
-//! One way in: a scene by its name on a command line, a file or a built-in.
+//! Loading a scene by its name on a command line: a file or a built-in scene.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::builtin::BuiltinError;
 use crate::gltf::{self, Animations, Limits, Loaded, Pose};
 use crate::{Scene, SceneError, builtin};
 
-/// What the caller may choose about loading.
+/// Loading options.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LoadOptions {
     /// The time at which animations are sampled, seconds; times outside a clip clamp to its ends. Default 0.
@@ -15,16 +15,16 @@ pub struct LoadOptions {
 
 /// Loads `builtin:NAME`, `builtin:NAME?key=value`, or the path of a `.glb` or `.gltf` file.
 ///
-/// A file is not trusted: only files in its own folder and below are read with it, and its size bounds what is
-/// allocated for it. What had to be left out or repaired is in [`Scene::warnings`].
+/// Files are untrusted: only files in the same folder and below are read with one, and its size and fixed budgets bound
+/// allocations. [`Scene::warnings`] lists what was left out or repaired.
 ///
 /// # Errors
-/// One line that says which file, where in it, and what would be right. A scene without a triangle is an error.
+/// One line with file, place and remedy. A scene without triangles is an error.
 pub fn load(spec: &str, options: &LoadOptions) -> Result<Scene, SceneError> {
     load_animated(spec, options).map(|(scene, _)| scene)
 }
 
-/// [`load`], and what it takes to have the scene at other times: `None` where nothing of it is animated.
+/// [`load`], with the animations that give the scene at other times; `None` if nothing is animated.
 ///
 /// # Errors
 /// As [`load`].
@@ -45,8 +45,8 @@ pub fn load_animated(spec: &str, options: &LoadOptions) -> Result<(Scene, Option
     not_empty(loaded, spec)
 }
 
-/// Loads a `.glb` or `.gltf` file from memory, under limits fit for bytes of unknown origin: about a million vertices
-/// and 4096 texels a side. Files beside it are refused.
+/// Loads a `.glb` or `.gltf` file from memory, with limits for bytes of unknown origin: about a million vertices and
+/// 4096 texels per side. References to other files are refused.
 ///
 /// # Errors
 /// As [`load`].
@@ -54,8 +54,8 @@ pub fn load_bytes(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<Sce
     not_empty(gltf::load_bytes(bytes, name, Pose::At(options.time_s), Limits::TIGHT)?, name).map(|(scene, _)| scene)
 }
 
-/// Loads a `.glb` or `.gltf` file that a user chose and that has been read already, as a page in a browser does: about
-/// eight million vertices and 8192 texels a side. Files beside it are refused. Gives what [`load_animated`] does.
+/// Loads a `.glb` or `.gltf` file from memory that a user chose, as a page in a browser does. Limits: about eight million
+/// vertices and 8192 texels per side. References to other files are refused. Returns the same as [`load_animated`].
 ///
 /// # Errors
 /// As [`load`].
@@ -63,7 +63,7 @@ pub fn load_chosen(bytes: &[u8], name: &str, options: &LoadOptions) -> Result<(S
     not_empty(gltf::load_bytes(bytes, name, Pose::At(options.time_s), Limits::SMALL)?, name)
 }
 
-/// A file that is there was meant where `builtin:` stands before its path.
+/// Turns the error into [`SceneError::NotBuiltin`] if `name` is the path of a file.
 fn not_a_file(error: BuiltinError, name: &str) -> SceneError {
     if Path::new(name).is_file() {
         return SceneError::NotBuiltin { path: name.into() };
@@ -71,7 +71,7 @@ fn not_a_file(error: BuiltinError, name: &str) -> SceneError {
     error.into()
 }
 
-/// A built-in was meant where its bare name is given and no file is called so.
+/// Turns the error into [`SceneError::NoSuchFile`] if no file has this name but a built-in scene does.
 fn not_a_built_in(error: SceneError, spec: &str) -> SceneError {
     let name = spec.split('?').next().unwrap_or(spec);
     match error {

@@ -1,30 +1,30 @@
-//! What a scene is, once loaded: meshes, materials, instances. Plain data on the CPU.
+//! Scene data: meshes, materials, instances. Plain data on the CPU.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use crate::Camera;
 use antumbra_light::{Aabb, Light};
 
-/// A scene: casters and receivers are all its triangles.
+/// Scene. All its triangles are both casters and receivers.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// A name for reports: the file's stem or the built-in's name.
     pub name: String,
     /// Geometry in object space, one material each.
     pub meshes: Vec<Mesh>,
-    /// Surfaces, by index from [`Mesh::material`].
+    /// Materials, indexed by [`Mesh::material`].
     pub materials: Vec<Material>,
-    /// Pictures, by index from [`Material`].
+    /// Images, indexed by [`Material`].
     pub images: Vec<Image>,
     /// Meshes placed in the world. A mesh without an instance is not in the scene.
     pub instances: Vec<Instance>,
-    /// Cameras that the asset brings, the preferred first.
+    /// Cameras of the asset, the preferred one first.
     pub cameras: Vec<Camera>,
-    /// Lights that the asset brings.
+    /// Lights of the asset.
     pub lights: Vec<Light>,
-    /// The ground that the scene was put on, by index into `instances`; see [`Scene::stand_on_ground`].
+    /// Index into `instances` of the ground that [`Scene::stand_on_ground`] added; `None` without one.
     pub ground: Option<usize>,
-    /// What the loader had to leave out or repair, one line each, for the user to read.
+    /// Loader warnings for the user, one line for each thing that was left out or repaired.
     pub warnings: Vec<String>,
 }
 
@@ -41,11 +41,11 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Linear vertex colours that multiply the base colour, as many as positions, or none.
     pub colors: Vec<Vec4>,
-    /// Three a triangle, counter-clockwise seen from the front, each below `positions.len()`.
+    /// Vertex indices, three per triangle, counter-clockwise seen from the front, each below `positions.len()`.
     pub indices: Vec<u32>,
     /// Index into [`Scene::materials`].
     pub material: usize,
-    /// Every edge is shared by exactly two triangles that wind consistently: the mesh bounds a solid.
+    /// Whether every edge is shared by exactly two triangles that wind consistently: the mesh bounds a solid.
     pub closed: bool,
 }
 
@@ -54,17 +54,17 @@ pub struct Mesh {
 pub struct Instance {
     /// Index into [`Scene::meshes`].
     pub mesh: usize,
-    /// Affine and finite.
+    /// Object-to-world transform, affine and finite.
     pub world_from_object: Mat4,
 }
 
-/// How a surface's alpha is meant.
+/// Interpretation of a surface's alpha.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AlphaMode {
     /// Alpha is ignored.
     #[default]
     Opaque,
-    /// Present where alpha ≥ cutoff.
+    /// Alpha-tested: the surface exists where alpha ≥ cutoff.
     Mask {
         /// The asset's `alphaCutoff`.
         cutoff: f32,
@@ -73,40 +73,40 @@ pub enum AlphaMode {
     Blend,
 }
 
-/// A surface: metallic-roughness, reduced to what shadows and their shading need.
+/// Metallic-roughness material, reduced to what shadows and their shading need.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// A name for messages.
     pub name: String,
-    /// Linear RGB and alpha; multiplies the image and the vertex colour.
+    /// Base colour, linear RGB and alpha; multiplies the image and the vertex colour.
     pub base_color: Vec4,
-    /// Index into [`Scene::images`]; its RGB is sRGB-encoded, its alpha linear.
+    /// Base colour image, an index into [`Scene::images`]; RGB is sRGB-encoded, alpha linear.
     pub base_color_image: Option<usize>,
-    /// How alpha is meant.
+    /// Interpretation of alpha.
     pub alpha: AlphaMode,
-    /// Fraction of light that the surface transmits, tinted by the base colour (KHR_materials_transmission); 0 for
-    /// most. Metals transmit none of it.
+    /// Fraction of light that the surface transmits, tinted by the base colour (KHR_materials_transmission); usually 0.
+    /// Metals transmit none of it.
     pub transmission: f32,
-    /// Index into [`Scene::images`]; its red, as stored, multiplies `transmission`. It lies on a mesh as the base
-    /// colour's image does, as do all images of a material.
+    /// Transmission image, an index into [`Scene::images`]; its red, as stored, multiplies `transmission`. All images of
+    /// a material have the base colour image's texture coordinates and address modes.
     pub transmission_image: Option<usize>,
-    /// 0 dielectric, 1 metal.
+    /// Metalness: 0 dielectric, 1 metal.
     pub metallic: f32,
     /// Perceptual roughness.
     pub roughness: f32,
-    /// Index into [`Scene::images`]; its green multiplies `roughness` and its blue `metallic`, as stored. Read only
-    /// where what the surface transmits depends on it: elsewhere its means are in the factors.
+    /// Metallic-roughness image, an index into [`Scene::images`]; green, as stored, multiplies `roughness`, blue `metallic`.
+    /// `None` unless transmission depends on it; the factors then include the image's means.
     pub metallic_roughness_image: Option<usize>,
-    /// What lies beneath a transmitting surface; `None` for thin ones.
+    /// Volume beneath a transmitting surface; `None` if the surface is thin.
     pub volume: Option<Volume>,
     /// Linear RGB emission.
     pub emissive: Vec3,
-    /// Shade both sides. Shadows are cast by both sides in any case.
+    /// Whether both sides are shaded. Both sides cast shadows in any case.
     pub double_sided: bool,
 }
 
 impl Material {
-    /// The images that it refers to, by their indices in [`Scene::images`].
+    /// Indices into [`Scene::images`] of the material's images.
     pub fn images(&self) -> impl Iterator<Item = usize> {
         let thickness = self.volume.as_ref().and_then(|volume| volume.thickness_image);
         [self.base_color_image, self.transmission_image, self.metallic_roughness_image, thickness].into_iter().flatten()
@@ -132,29 +132,29 @@ impl Default for Material {
     }
 }
 
-/// A volume beneath a surface, which absorbs light on its way (KHR_materials_volume).
+/// Absorbing volume beneath a surface (KHR_materials_volume).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Volume {
-    /// Way through the volume, world-space metres. A closed mesh is crossed twice: each crossing counts half of it.
+    /// Path length through the volume, world-space metres. Each of the two crossings of a closed mesh counts half of it.
     pub thickness_m: f32,
-    /// Index into [`Scene::images`]; its green, as stored, multiplies `thickness_m`.
+    /// Thickness image, an index into [`Scene::images`]; its green, as stored, multiplies `thickness_m`.
     pub thickness_image: Option<usize>,
     /// Linear RGB that white light becomes over `attenuation_distance_m`.
     pub attenuation_color: Vec3,
-    /// World-space metres.
+    /// Distance over which light becomes `attenuation_color`, world-space metres.
     pub attenuation_distance_m: f32,
 }
 
 impl Volume {
-    /// The fraction of each colour that is left after one crossing of the surface, where the image's green is
-    /// `thickness`. Beer–Lambert: attenuation is a power of the way.
+    /// Transmittance of one crossing of the surface, per colour channel (Beer–Lambert). `thickness` is the green of the
+    /// thickness image.
     pub fn attenuation(&self, thickness: f32, is_closed: bool) -> Vec3 {
         let crossings = if is_closed { 2.0 } else { 1.0 };
         self.attenuation_color.powf(thickness * self.thickness_m / (crossings * self.attenuation_distance_m))
     }
 }
 
-/// How an image is continued outside [0, 1].
+/// Address mode: how an image continues outside [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// Tiled.
@@ -162,34 +162,34 @@ pub enum Wrap {
     Repeat,
     /// Tiled, every other tile mirrored.
     Mirror,
-    /// The edge texel goes on.
+    /// The edge texel is repeated.
     Clamp,
 }
 
-/// A picture of 8-bit texels.
+/// Image of 8-bit RGBA texels.
 #[derive(Clone, Debug, Default)]
 pub struct Image {
-    /// Texels in a row.
+    /// Width, texels.
     pub width: u32,
-    /// Rows.
+    /// Height, texels.
     pub height: u32,
-    /// `width · height` texels, the first row the top. Of colours: sRGB-encoded RGB, linear alpha. Of other
-    /// quantities: as stored.
+    /// `width · height` texels, top row first. Colours are sRGB-encoded RGB with linear alpha; other quantities are as
+    /// stored.
     pub rgba8: Vec<[u8; 4]>,
-    /// Continuation along u and v.
+    /// Address modes along u and v.
     pub wrap: [Wrap; 2],
 }
 
 impl Image {
-    /// Bilinear, linear RGBA at `uv` (v runs down, as glTF); texel (i, j) has its centre at ((i + ½)/w, (j + ½)/h).
-    /// Colours are decoded before they are blended, as a GPU does with an sRGB format.
+    /// Returns bilinearly filtered linear RGBA at `uv` (v runs down, as in glTF). Texel (i, j) has its centre at
+    /// ((i + ½)/w, (j + ½)/h). Colours are decoded before they are filtered, as a GPU does with an sRGB format.
     pub fn sample(&self, uv: Vec2) -> Vec4 {
         self.sample_as(uv, |[r, g, b, a]| {
             Vec4::new(linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), fraction(a))
         })
     }
 
-    /// [`Self::sample`] of what is no colour: the stored fractions.
+    /// [`Self::sample`] for quantities other than colour: filters the stored fractions without sRGB decoding.
     pub fn sample_stored(&self, uv: Vec2) -> Vec4 {
         self.sample_as(uv, |texel| Vec4::from_array(texel.map(fraction)))
     }
@@ -209,7 +209,7 @@ impl Image {
         top.lerp(bottom, t.y)
     }
 
-    /// [`Self::sample`], alpha alone.
+    /// Alpha of [`Self::sample`].
     pub fn sample_alpha(&self, uv: Vec2) -> f32 {
         let pos = uv * Vec2::new(self.width as f32, self.height as f32) - 0.5;
         let base = pos.floor();
@@ -259,19 +259,19 @@ pub fn srgb_from_linear(v: f32) -> f32 {
     if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// A triangle in world space, with where it came from.
+/// World-space triangle, with the instance and triangle index that it comes from.
 #[derive(Clone, Copy, Debug)]
 pub struct WorldTriangle {
     /// World positions, counter-clockwise seen from the front.
     pub positions: [Vec3; 3],
     /// Index into [`Scene::instances`].
     pub instance: u32,
-    /// Which triangle of the instance's mesh.
+    /// Triangle index within the instance's mesh.
     pub triangle: u32,
 }
 
 impl Scene {
-    /// Triangles as drawn: every instance included.
+    /// Number of triangles of all instances.
     pub fn triangle_count(&self) -> usize {
         self.instances.iter().map(|i| self.meshes[i.mesh].indices.len() / 3).sum()
     }
@@ -289,12 +289,12 @@ impl Scene {
         })
     }
 
-    /// The box of all triangles in world space.
+    /// World-space bounding box of all instances.
     pub fn bounds(&self) -> Aabb {
         self.bounds_of(&self.instances)
     }
 
-    /// The box of some instances' triangles in world space.
+    /// World-space bounding box of the given instances.
     pub fn bounds_of(&self, instances: &[Instance]) -> Aabb {
         instances.iter().fold(Aabb::EMPTY, |bounds, instance| {
             let mesh = &self.meshes[instance.mesh];

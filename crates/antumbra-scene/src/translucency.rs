@@ -1,43 +1,43 @@
-//! What surfaces do to light: block it, or let some of it through (`docs/formats.md`, Visibility).
+//! Opacity and transmission of surfaces (`docs/formats.md`, Visibility).
 //!
 //! ```text
 //! passes = (1 − coverage) + coverage · transmitted
 //! transmitted = transmission · (1 − metalness) · base colour · attenuation of the volume
 //! ```
 //!
-//! Coverage is alpha of blended surfaces, 0 or 1 of masked ones, 1 of opaque ones. A blended surface that transmits
-//! nothing covers and never tints.
+//! Coverage is alpha for blended surfaces, 0 or 1 for masked ones, 1 for opaque ones. A blended surface that transmits
+//! nothing covers without tinting.
 //!
-//! A surface has one picture for both: `transmitted` in RGB, alpha in alpha. Where a material has more images than the
-//! base colour's, they are multiplied texel by texel into one, which ray tracer and GPU then filter alike.
+//! A surface has one image for both: `transmitted` in RGB, alpha in alpha. If a material has more images than the base
+//! colour's, they are multiplied texel by texel into one, which ray tracer and GPU then filter alike.
 
 use glam::{UVec2, Vec2, Vec3, Vec4};
 
 use crate::scene::srgb_from_linear;
 use crate::{AlphaMode, Image, Material, Mesh, Scene};
 
-/// What a surface does to light that meets it.
+/// Effect of a surface on light that meets it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Occluder {
-    /// Blocks all.
+    /// Blocks all light.
     Opaque,
-    /// Blocks all where the filtered alpha reaches the cutoff, nothing elsewhere.
+    /// Alpha-tested: blocks all light where the filtered alpha reaches the cutoff, none elsewhere.
     Masked {
         /// The asset's `alphaCutoff`.
         cutoff: f32,
     },
-    /// Lets some light through, as [`Scene::translucency`] says.
+    /// Lets some light through; see [`Scene::translucency`].
     Translucent,
 }
 
-/// How much of a surface is there, by its alpha.
+/// Rule for a surface's coverage, from 0 to 1, as a function of its alpha.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coverage {
-    /// All of it.
+    /// Coverage 1.
     Whole,
-    /// As much as alpha.
+    /// Coverage is alpha.
     Alpha,
-    /// All where alpha reaches the cutoff, none elsewhere.
+    /// Coverage 1 where alpha reaches the cutoff, 0 elsewhere.
     Cutoff(f32),
 }
 
@@ -51,49 +51,49 @@ impl Coverage {
     }
 }
 
-/// The picture that a surface's values are multiplied by: RGB a colour, alpha linear.
+/// Image that multiplies a surface's values: RGB a colour, alpha linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SurfacePicture {
-    /// None: white.
+    /// No image: white.
     White,
-    /// One of the scene's images, by its index.
+    /// Index into [`Scene::images`].
     Image(usize),
-    /// What [`Scene::transmitted_picture`] makes of the material's images.
+    /// The product of the material's images; see [`Scene::transmitted_picture`].
     Made,
 }
 
-/// A surface that lets some light through. Its value at a point is `factor` × the vertex colour × the picture.
+/// Translucent surface. Its value at a point is `factor` × the vertex colour × the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Translucency {
-    /// How much of the surface is there, by a value's alpha.
+    /// Coverage as a function of the value's alpha.
     pub coverage: Coverage,
-    /// The linear colour that passes where the surface is, and alpha.
+    /// Linear colour that the covered part transmits, and alpha.
     pub factor: Vec4,
-    /// What multiplies it.
+    /// Image that multiplies `factor`.
     pub picture: SurfacePicture,
 }
 
 impl Translucency {
-    /// The light that passes, of each colour, where the surface has `value`.
+    /// Fraction of light that passes per colour channel, where the surface has `value`.
     pub fn passes(&self, value: Vec4) -> Vec3 {
         let coverage = self.coverage.of(value.w);
         (1.0 - coverage) + coverage * value.truncate().clamp(Vec3::ZERO, Vec3::ONE)
     }
 
-    /// Whether a ray from the eye meets the surface where it has `value`: rays go through holes.
+    /// Whether a ray from the eye hits the surface where it has `value`: rays pass through the holes of masked surfaces.
     pub fn is_there(&self, value: Vec4) -> bool {
         !matches!(self.coverage, Coverage::Cutoff(_)) || self.coverage.of(value.w) > 0.0
     }
 }
 
 impl Material {
-    /// Whether light may pass where the surface is.
+    /// Whether the covered part of the surface may transmit light.
     fn transmits(&self) -> bool {
-        // An image of metalness may hold less than its factor.
+        // An image may lower the metalness below its factor.
         self.transmission > 0.0 && (self.metallic < 1.0 || self.metallic_roughness_image.is_some())
     }
 
-    /// What the surface does to light, as the material says; [`Scene::occluders`] looks at its mesh and images too.
+    /// Effect of the surface on light, from the material alone; [`Scene::occluders`] also examines mesh and images.
     pub fn occluder(&self) -> Occluder {
         match self.alpha {
             AlphaMode::Blend => Occluder::Translucent,
@@ -103,15 +103,15 @@ impl Material {
         }
     }
 
-    /// What passes where the surface is, by its base colour, and its alpha.
+    /// Transmission times base colour in RGB, alpha in alpha.
     fn transmitted(&self) -> Vec4 {
         (self.base_color.truncate() * self.transmission).extend(self.base_color.w)
     }
 }
 
 impl Scene {
-    /// What each mesh does to light. A blended surface that transmits nothing and whose alpha is 1 everywhere is opaque;
-    /// a mask that no texture, factor or vertex colour can bring below its cutoff is still reported as masked.
+    /// Effect of each mesh on light. A blended surface that transmits nothing and whose alpha is 1 everywhere is opaque.
+    /// A masked surface is reported as masked even if no texture, factor or vertex colour can lower alpha below its cutoff.
     pub fn occluders(&self) -> Vec<Occluder> {
         let mut is_solid_image: Vec<Option<bool>> = vec![None; self.images.len()];
         let mut is_solid = |mesh: &Mesh, material: &Material| {
@@ -133,7 +133,7 @@ impl Scene {
         self.meshes.iter().map(occluder).collect()
     }
 
-    /// How a mesh's surface lets light through.
+    /// Coverage and transmission of a mesh's surface.
     pub fn translucency(&self, mesh: &Mesh) -> Translucency {
         let material = &self.materials[mesh.material];
         let coverage = match material.alpha {
@@ -155,8 +155,8 @@ impl Scene {
         Translucency { coverage, factor, picture }
     }
 
-    /// The picture of a material that [`SurfacePicture::Made`] stands for, of closed meshes or of open ones: of as many
-    /// texels as the largest of its images.
+    /// Image of a material that [`SurfacePicture::Made`] stands for, for closed or for open meshes. Its width and height are
+    /// the largest of the material's images.
     pub fn transmitted_picture(&self, material: usize, is_closed: bool) -> Image {
         let material = &self.materials[material];
         let images = TransmittedImages::of(self, material);
@@ -177,7 +177,7 @@ impl Scene {
         }
     }
 
-    /// Whether what passes a mesh's surface may be of another colour than what meets it.
+    /// Whether a mesh's surface may change the colour of the light that passes.
     pub fn tints(&self, mesh: &Mesh) -> bool {
         let Translucency { factor, picture, .. } = self.translucency(mesh);
         let color = factor.truncate();
@@ -186,7 +186,7 @@ impl Scene {
     }
 }
 
-/// The images that what passes a surface depends on.
+/// Images on which a surface's transmission depends.
 #[derive(Clone, Copy, Default)]
 struct TransmittedImages<'a> {
     base_color: Option<&'a Image>,
@@ -210,12 +210,12 @@ impl<'a> TransmittedImages<'a> {
         [self.base_color, self.transmission, self.metallic_roughness, self.thickness]
     }
 
-    /// Whether there are others than the base colour's.
+    /// Whether there are images other than the base colour's.
     fn are_needed(&self) -> bool {
         self.all()[1..].iter().any(Option::is_some)
     }
 
-    /// What multiplies [`Material::transmitted`] at `uv`.
+    /// Factor of [`Material::transmitted`] at `uv`.
     fn value(&self, material: &Material, is_closed: bool, uv: Vec2) -> Vec4 {
         let stored = |image: Option<&Image>| image.map_or(Vec4::ONE, |image| image.sample_stored(uv));
         let color = self.base_color.map_or(Vec4::ONE, |image| image.sample(uv));
@@ -243,7 +243,7 @@ pub(crate) mod tests {
         Image { width: texels.len() as u32, height: 1, rgba8: texels.to_vec(), wrap: [Wrap::Clamp; 2] }
     }
 
-    /// What passes at the middle of texel `i` of `n`, where the pictures are as long.
+    /// Light that passes at the centre of texel `i` of `n`, where the images are `n` texels wide.
     pub(crate) fn passes(scene: &Scene, i: u32, n: u32) -> Vec3 {
         let mesh = &scene.meshes[0];
         let translucency = scene.translucency(mesh);
@@ -321,7 +321,7 @@ pub(crate) mod tests {
         // A closed mesh is crossed twice.
         scene.meshes[0].closed = true;
         close(passes(&scene, 1, 4), 0.6 + 0.4 * Vec3::new(1.0, 0.25, 0.25));
-        // Without coordinates the factors count.
+        // Without texture coordinates, only the factors apply.
         scene.meshes[0].uvs.clear();
         scene.materials[0].metallic = 0.0;
         close(passes(&scene, 0, 4), Vec3::new(1.0, 0.25, 0.25));

@@ -1,23 +1,23 @@
-//! Whether a scene is in metres, as glTF has it.
+//! Warning about scenes that are probably not in metres, the unit of glTF.
 //!
-//! Many files count in centimetres or millimetres. Nothing in them says so, and nothing looks wrong until a lamp of five centimetres lights
-//! a fox of 165 metres: penumbrae follow from metres. Only some sizes are evidence: a town may have any. So the warning is for sizes that
-//! hardly any asset in metres has.
+//! Many files use centimetres or millimetres, and nothing in them says so. Penumbrae depend on metres: a lamp of five centimetres may
+//! light a fox of 165 metres. Only some sizes are evidence, because a town may have any size. The warning is therefore limited to sizes
+//! that hardly any asset in metres has.
 
 use crate::Scene;
 use crate::setup::is_room;
 
-/// An object that stands on nothing, across and in height: beyond both come towers and cathedrals, which are modelled with the place that
-/// they stand at more often than not. (A level of a game may be as wide, and is lower.)
+/// Largest diagonal and height of an object that stands on nothing, metres. Towers and cathedrals exceed both, but usually come with
+/// their surroundings. (A level of a game may be as wide, but is lower.)
 const LARGEST_OBJECT_M: f32 = 100.0;
 const HIGHEST_OBJECT_M: f32 = 50.0;
-/// No room is higher: St Peter's nave is 46 m, its dome 117 m from the floor, and has a nave about it.
+/// Largest height of a room, metres: St Peter's nave is 46 m high; its dome reaches 117 m, but has a nave around it.
 const HIGHEST_ROOM_M: f32 = 100.0;
-/// Across: a grain of rice.
+/// Smallest diagonal of a scene, metres: a grain of rice.
 const SMALLEST_M: f32 = 0.005;
 
 impl Scene {
-    /// Warning about a scene that is probably not in metres; `None` where it may well be.
+    /// Warning about a scene that is probably not in metres; `None` if its size is plausible.
     pub fn unit_warning(&self) -> Option<String> {
         let bounds = self.bounds();
         if bounds.is_empty() {
@@ -42,7 +42,7 @@ impl Scene {
     }
 }
 
-/// In metres with three figures.
+/// Formats metres with at least three significant digits.
 fn length(metres: f32) -> String {
     if metres >= 100.0 { format!("{metres:.0} m") } else { format!("{metres:.2e} m") }
 }
@@ -71,7 +71,7 @@ mod tests {
         assert_eq!(Scene::default().unit_warning(), None);
     }
 
-    /// Objects and rooms in centimetres, and what is smaller than a grain.
+    /// Objects and rooms in centimetres are reported, and objects smaller than a grain of rice.
     #[test]
     fn other_units_are_told() {
         let mut knot = load("builtin:knot?triangles=1000", &LoadOptions::default()).unwrap();
@@ -85,7 +85,7 @@ mod tests {
         }
     }
 
-    /// Of the scenes beside the repository one is in centimetres.
+    /// The fox, in centimetres, is the only scene beside the repository that may be reported.
     #[test]
     fn of_real_scenes_the_fox_is_told_alone() {
         let Some(folder) = scenes_folder() else { return };

@@ -1,31 +1,31 @@
-//! The documentation's text as tools and tests read it: pages, blocks of code, the commands in them.
+//! Parser of the documentation for tools and tests: pages, code blocks, commands.
 
 use std::path::{Path, PathBuf};
 
 /// A page of Markdown.
 #[derive(Clone, Debug)]
 pub struct Page {
-    /// Its path from the repository's root, with `/`.
+    /// Path relative to the repository's root, with `/`.
     pub path: String,
-    /// What it says.
+    /// Markdown text.
     pub text: String,
 }
 
 /// A fenced block of code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Block<'a> {
-    /// What stands behind the fence: `sh`, `rust`.
+    /// Language after the fence: `sh`, `rust`.
     pub language: &'a str,
-    /// Its lines, each with its number from 1.
+    /// Lines with their numbers, from 1.
     pub lines: Vec<(usize, &'a str)>,
 }
 
-/// A command that a page tells its reader to run.
+/// A command in a page's `sh` block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Command {
-    /// The page and the line, for messages.
+    /// Page and line, for messages.
     pub place: String,
-    /// Its words, as a shell would part them.
+    /// Words, split as by a shell.
     pub words: Vec<String>,
 }
 
@@ -34,10 +34,10 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The pages of the book, in `docs`, by their names.
+/// Returns the pages of the book, the files of `docs`, sorted by name.
 ///
 /// # Panics
-/// Where they cannot be read.
+/// Panics if they cannot be read.
 pub fn book_pages() -> Vec<Page> {
     let mut names: Vec<String> = std::fs::read_dir(root().join("docs"))
         .expect("the folder docs")
@@ -48,16 +48,16 @@ pub fn book_pages() -> Vec<Page> {
     names.iter().map(|name| page(&format!("docs/{name}"))).collect()
 }
 
-/// A page by its path from the root.
+/// Returns a page by its path from the root.
 ///
 /// # Panics
-/// Where it cannot be read.
+/// Panics if it cannot be read.
 pub fn page(path: &str) -> Page {
     let text = std::fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
     Page { path: path.into(), text }
 }
 
-/// The fenced blocks of a page.
+/// Returns the fenced blocks of a page.
 pub fn blocks(text: &str) -> Vec<Block<'_>> {
     let (mut blocks, mut open) = (Vec::new(), None::<Block<'_>>);
     for (index, line) in text.lines().enumerate() {
@@ -71,7 +71,7 @@ pub fn blocks(text: &str) -> Vec<Block<'_>> {
     blocks
 }
 
-/// The commands in a page's blocks of `sh`, in their order. Comments are left out; a line that ends in `\` goes on.
+/// Returns the commands in a page's `sh` blocks, in order, without comments. A `\` at the end of a line continues it.
 pub fn commands(page: &Page) -> Vec<Command> {
     let mut commands = Vec::new();
     for block in blocks(&page.text).iter().filter(|block| block.language == "sh") {
@@ -92,7 +92,7 @@ pub fn commands(page: &Page) -> Vec<Command> {
     commands
 }
 
-/// The text of a page without its blocks.
+/// Returns the text of a page without its blocks.
 pub fn prose(text: &str) -> String {
     let mut is_code = false;
     let lines = text.lines().filter(|line| {
@@ -103,15 +103,15 @@ pub fn prose(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Code within sentences: what stands between backticks, on one line each.
+/// Returns the code spans within sentences, each joined to one line.
 pub fn spans(text: &str) -> Vec<String> {
     let prose = prose(text);
-    // A span may go on over lines, but not over paragraphs.
+    // A span may continue on the next line, but not in the next paragraph.
     let spans = prose.split("\n\n").flat_map(|paragraph| paragraph.split('`').skip(1).step_by(2));
     spans.map(|span| span.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
 }
 
-/// A line's words up to a comment. What stands in double or single quotes is one word.
+/// Splits a line into words, up to a comment. Text in double or single quotes is one word.
 pub fn words(line: &str) -> Vec<String> {
     let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
     for character in line.chars() {

@@ -1,10 +1,9 @@
-//! What the tests of every room do where the machine lacks something: they say *skipped*, or fail where it is required.
+//! Skipping of tests on machines that lack something: such tests report *skipped*, or fail if the missing part is required.
 //!
-//! A test runner knows only passed and failed, and hides what a passed test prints. So a skip is also written down, where
-//! [`SKIPPED_LIST`] says, for `cargo xtask test` to count; and where [`REQUIRE_ADAPTER`] or `CI` says that there is to be
-//! an adapter, there are no skips for want of one.
+//! A test runner knows only passed and failed tests, and hides the output of passed ones. So a skip is also written to the file of
+//! [`SKIPPED_LIST`], for `cargo xtask test` to count. If [`REQUIRE_ADAPTER`] or `CI` requires an adapter, a missing one is a failure.
 //!
-//! [`book`] reads the documentation, for the tests that hold it to what it says.
+//! [`book`] parses the documentation for the tests that check it.
 
 pub mod book;
 
@@ -12,18 +11,18 @@ use std::fmt::Display;
 use std::io::Write;
 use std::path::PathBuf;
 
-/// The variable that decides whether a test without an adapter fails: `1` yes, `0` no. Where it is not set, `CI` decides in
-/// the same way. `cargo xtask ci` sets it.
+/// Environment variable that makes tests fail without an adapter: `1` yes, `0` no. If it is not set, `CI` decides in the
+/// same way. `cargo xtask ci` sets it.
 pub const REQUIRE_ADAPTER: &str = "ANTUMBRA_REQUIRE_ADAPTER";
 
-/// The variable that names a file to which each skipped test adds a line with its reason. `cargo xtask test` sets it.
+/// Environment variable with a file to which each skipped test adds a line with its reason. `cargo xtask test` sets it.
 pub const SKIPPED_LIST: &str = "ANTUMBRA_SKIPPED_LIST";
 
-/// The variable that names the folder of test scenes, which are not part of the repository.
+/// Environment variable with the folder of test scenes, which are not part of the repository.
 pub const SCENES: &str = "ANTUMBRA_SCENES";
 
-/// The folder of test scenes, where this machine has one: what [`SCENES`] names, or `shared/scenes` beside or inside the workspace.
-/// Where there is none, says that the test is skipped.
+/// Returns the folder of test scenes: the one in [`SCENES`], or `shared/scenes` beside or inside the workspace. If there is
+/// none, reports the test as skipped.
 pub fn scenes_folder() -> Option<PathBuf> {
     let workspace = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..");
     let candidates = [
@@ -38,7 +37,7 @@ pub fn scenes_folder() -> Option<PathBuf> {
     found
 }
 
-/// The folder `cases` beside [`scenes_folder`]: small inputs that once failed.
+/// Returns the folder `cases` beside [`scenes_folder`]: small inputs that once failed.
 pub fn cases_folder() -> Option<PathBuf> {
     let found = scenes_folder()?.parent().map(|folder| folder.join("cases")).filter(|folder| folder.is_dir());
     if found.is_none() {
@@ -47,22 +46,22 @@ pub fn cases_folder() -> Option<PathBuf> {
     found
 }
 
-/// Says that this test, or a part of it, is skipped.
+/// Reports that this test, or a part of it, is skipped.
 pub fn skip(reason: impl Display) {
     let line = format!("skipped: {reason}");
     println!("{line}");
     if let Some(list) = std::env::var_os(SKIPPED_LIST) {
-        // One write to the end of the file: tests of other processes write, too.
+        // A single append, because tests in other processes write to the file, too.
         let added = std::fs::OpenOptions::new().create(true).append(true).open(&list);
         let written = added.and_then(|mut file| file.write_all(format!("{reason}\n").as_bytes()));
         written.unwrap_or_else(|error| panic!("{SKIPPED_LIST}: {}: {error}", list.display()));
     }
 }
 
-/// Says that this test is skipped because the machine has no graphics adapter.
+/// Reports that this test is skipped because the machine has no graphics adapter.
 ///
 /// # Panics
-/// Where an adapter is required, with the one line that says what to install.
+/// Panics if an adapter is required, with one line that says what to install.
 pub fn skip_without_adapter() {
     let value = |name: &str| std::env::var(name).ok();
     assert!(
@@ -73,7 +72,7 @@ pub fn skip_without_adapter() {
     skip("no graphics adapter");
 }
 
-/// Whether an adapter is required, by the values of [`REQUIRE_ADAPTER`] and of `CI`.
+/// Whether an adapter is required, given the values of [`REQUIRE_ADAPTER`] and `CI`.
 fn is_required(own: Option<&str>, ci: Option<&str>) -> bool {
     let said = |value: &&str| !value.is_empty();
     own.filter(said).or(ci.filter(said)).is_some_and(|value| value != "0" && value != "false")

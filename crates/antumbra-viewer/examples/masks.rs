@@ -1,8 +1,9 @@
-//! Draws cases of `antumbra_viewer::masks` and writes the masks into a folder: `cargo run -p antumbra-viewer --example
-//! masks -- FOLDER [techniques | NAME...]`, all of them, the first of each technique, or the first of those named alone. `cargo xtask web --check` holds those of a browser against them.
+//! Draws cases of `antumbra_viewer::masks` and writes the masks into a folder: `cargo run -p antumbra-viewer --example masks -- FOLDER
+//! [techniques | NAME...]`. By default all cases are drawn; `techniques` draws only the first case of each technique, and names draw only
+//! the first cases of those techniques. `cargo xtask web --check` compares a browser's masks with these.
 //!
-//! `cases.txt` has the adapter in its first line, then a line a case; the mask of line *n*, counted from 0 after the first, is
-//! `n.f32`: 32-bit floats, little-endian, row by row from the top.
+//! The first line of `cases.txt` names the adapter; each further line names a case. The mask of the case on line *n*,
+//! counted from 0 after the first line, is `n.f32`: 32-bit floats, little-endian, row by row from the top.
 
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> Result<(), String> {
@@ -27,7 +28,7 @@ fn main() -> Result<(), String> {
             continue;
         }
         let rest = async || {
-            // A device that is lost says so by the next frame's error.
+            // A lost device is reported by the next frame's error.
             let _ = gpu.device().poll(wgpu::PollType::wait_indefinitely());
         };
         let mask = pollster::block_on(masks.draw(case, rest)).map_err(|why| format!("{}: {why}", case.name()))?;
@@ -37,6 +38,6 @@ fn main() -> Result<(), String> {
     write("cases.txt".into(), lines.as_bytes())
 }
 
-/// Examples are built for browsers only by asking for all of them.
+/// Stub for browsers, where examples are built only if all of them are requested.
 #[cfg(target_arch = "wasm32")]
 fn main() {}

@@ -1,14 +1,13 @@
-//! Random input for a time, and what is in memory meanwhile: `cargo run -p antumbra-viewer --example random_input -- SECONDS
-//! [SEED] [FOLDER] [TECHNIQUES]`. The folder's files are opened and dropped beside built-in scenes, broken ones as well; without
-//! names of techniques, with commas between them, all are chosen from.
+//! Feeds the viewer random input and prints its memory use: `cargo run -p antumbra-viewer --example random_input -- SECONDS
+//! [SEED] [FOLDER] [TECHNIQUES]`. Files of FOLDER, valid or broken, are opened and dropped like built-in scenes. TECHNIQUES
+//! are names separated by commas; without them every technique may be chosen.
 //!
-//! Every half minute the application goes back to where it began and a line says what is held there: what the process has in
-//! memory, which the driver has its part in; the heap that Rust code holds, the application's and wgpu's; objects on the
-//! device. Whatever goes wrong ends it by a panic.
+//! Every half minute the application returns to its initial state and prints a line: the resident memory of the process, which includes
+//! the driver's; the heap of Rust code, which includes wgpu's; the number of objects on the device. Any failure ends the run with a panic.
 
 #[cfg(not(target_arch = "wasm32"))]
 mod counting {
-    //! The system's allocator, counting the bytes that are held.
+    //! The system's allocator with a count of the allocated bytes.
 
     use std::alloc::{GlobalAlloc, Layout, System};
     use std::sync::atomic::{AtomicI64, Ordering};
@@ -32,7 +31,7 @@ mod counting {
     #[global_allocator]
     static ALLOCATOR: Counting = Counting;
 
-    /// What Rust code holds on the heap, bytes.
+    /// Bytes that Rust code has allocated on the heap.
     pub fn held_bytes() -> i64 {
         HELD_BYTES.load(Ordering::Relaxed)
     }
@@ -93,7 +92,7 @@ fn mebibytes(bytes: i64) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
-/// What the process has in memory, where the system tells as Linux does.
+/// Resident memory of the process, bytes; `None` on systems without Linux's `/proc/self/status`.
 #[cfg(not(target_arch = "wasm32"))]
 fn resident_bytes() -> Option<i64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
@@ -102,6 +101,6 @@ fn resident_bytes() -> Option<i64> {
     Some(kibibytes << 10)
 }
 
-/// Examples are built for browsers only by asking for all of them.
+/// Stub for browsers, where examples are built only if all of them are requested.
 #[cfg(target_arch = "wasm32")]
 fn main() {}

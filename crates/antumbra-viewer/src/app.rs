@@ -1,4 +1,4 @@
-//! The window: what comes in goes to the state, the state is drawn, and panels show what is measured of it.
+//! The application: input changes the state, the renderer draws the state, and panels show the measurements.
 
 mod actions;
 #[cfg(not(target_arch = "wasm32"))]
@@ -31,24 +31,24 @@ use crate::state::State;
 use crate::truth::LiveTruth;
 use crate::ui::{self, Panels, Readings};
 
-/// The scene of a viewer that was given none.
+/// Scene that opens if none is named.
 const FIRST_SCENE: &str = "builtin:lantern-wall";
-/// Width below which a window opens without the panel at the side, which would leave nothing of the image, in points.
+/// Window width below which the side panel starts hidden, because it would leave no room for the image, points.
 const NARROW_WINDOW: f32 = 640.0;
 
-/// Where an outcome goes that outlives the window.
+/// Shared slot for an outcome that outlives the window.
 pub type Outcome = Arc<Mutex<Option<Ended>>>;
 
-/// Why a window has closed by itself.
+/// Reason why a window has closed by itself.
 #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is not closed, but loaded anew"))]
 pub enum Ended {
-    /// There is nothing left to do, or it cannot be done.
+    /// The task is complete, or it failed.
     Done(Result<(), String>),
-    /// Its graphics device is lost: why, and what another window goes on with.
+    /// The graphics device is lost: the reason, and the state for the next window.
     Lost(String, Box<Kept>),
 }
 
-/// What outlives a window and its device.
+/// State that outlives a window and its device.
 #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is loaded anew"))]
 pub struct Kept {
     state: State,
@@ -66,35 +66,35 @@ pub struct App {
     state: State,
     history: History,
     renderer: Renderer,
-    /// The renderer's output, and what egui calls it.
+    /// The renderer's output and its identifier in egui.
     texture: Option<(wgpu::TextureView, egui::TextureId)>,
     size_px: UVec2,
-    /// Of the scene opened last, until its picture has a size that it can fill.
+    /// Framing of the newly opened scene, until the image's size is known.
     unframed: Option<Framing>,
-    /// The pixel whose numbers are shown.
+    /// Pixel under the pointer, whose values are shown.
     asked_px: Option<UVec2>,
     scene: Option<Arc<Scene>>,
-    /// Of an animated scene.
+    /// Poser of the scene, if it is animated.
     poser: Option<Poser>,
     loader: Loader,
     file_dialog: FileDialog,
     truth: LiveTruth,
-    /// Of each side: the version of the mask that was read, and its error's inputs.
+    /// For each side: the version of the mask that was read, and its visibility by pixel.
     masks: [Option<(u64, Vec<f32>)>; 2],
     panels: Panels,
-    /// What happened last, and whether it is bad.
+    /// The last message, and whether it reports a failure.
     message: (String, bool),
     wake: Wake,
     last_frame: Instant,
     was_unfinished: bool,
-    /// Where the picture goes that is on its way back.
+    /// File for the image that is being read back.
     saving: Option<PathBuf>,
     screenshot: Option<Screenshot>,
     outcome: Outcome,
 }
 
 impl App {
-    /// The application in a window that has a device.
+    /// Creates the application for a window that has a device.
     pub fn new(ctx: &egui::Context, render_state: RenderState, options: ViewerOptions, outcome: Outcome) -> Self {
         let mut app = Self::bare(ctx, render_state, options.screenshot, outcome);
         app.state.is_split = options.against.is_some();
@@ -113,7 +113,7 @@ impl App {
         app
     }
 
-    /// The application with nothing open.
+    /// Creates the application with no scene open.
     fn bare(ctx: &egui::Context, render_state: RenderState, screenshot: Option<PathBuf>, outcome: Outcome) -> Self {
         let gpu = Gpu::new(&render_state.device, &render_state.queue);
         let for_wake = ctx.clone();
@@ -151,7 +151,7 @@ impl App {
         }
     }
 
-    /// The application in another window, as it was in the one before, whose device was lost.
+    /// Continues in a new window the application of one whose device was lost.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn kept(ctx: &egui::Context, render_state: RenderState, kept: Kept, outcome: Outcome) -> Self {
         let Kept { state, history, scene, poser, panels, screenshot } = kept;
@@ -163,7 +163,7 @@ impl App {
         Self { state, history, scene, poser, panels, ..app }
     }
 
-    /// Closes the window where its device is lost, and keeps all else. Nothing may be drawn then.
+    /// Closes the window and keeps its state if the device is lost. Returns true then: the caller must not draw.
     fn give_up_lost_device(&mut self, ctx: &egui::Context) -> bool {
         let Some(why) = self.renderer.lost() else { return false };
         let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
@@ -197,21 +197,21 @@ impl App {
         ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 
-    /// Another technique for the left side, as from its list.
+    /// Chooses the technique of the left side, as its list does.
     #[cfg(target_arch = "wasm32")]
     pub fn choose(&mut self, kind: TechniqueKind) {
         self.state.sides[0].set_kind(kind);
         (self.wake)();
     }
 
-    /// Moves the chosen light, metres in world space.
+    /// Moves the selected light by a vector in world space, metres.
     #[cfg(target_arch = "wasm32")]
     pub fn move_light(&mut self, by_m: glam::Vec3) {
         crate::state::move_by(&mut self.state.setup.lights[self.state.light], by_m);
         (self.wake)();
     }
 
-    /// The scene, the technique that draws, and the newest message, once nothing is left to do.
+    /// The scene, the technique drawn and the newest message; `None` while work is left.
     #[cfg(target_arch = "wasm32")]
     pub fn settled(&self) -> Option<String> {
         let open = self.state.scene.as_ref().filter(|_| self.loader.pending().is_none())?;
@@ -234,7 +234,7 @@ impl eframe::App for App {
 }
 
 impl App {
-    /// One frame.
+    /// Handles input and draws one frame.
     fn show(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         if self.give_up_lost_device(&ctx) {

@@ -1,4 +1,4 @@
-//! How a hand moves the camera: around its target, across the picture, nearer, through the scene.
+//! Camera motions: orbit, look, pan, zoom and flight.
 //!
 //! Every motion keeps the camera usable: the view never becomes parallel to the up hint, and the eye never reaches the
 //! target.
@@ -6,28 +6,28 @@
 use antumbra_scene::Camera;
 use glam::{Quat, Vec2, Vec3};
 
-/// The view stays this far from the up hint, radians: there the horizon is still well defined.
+/// Minimum angle between view direction and up hint, radians: the horizon is still well defined there.
 const LEAST_POLE_ANGLE_RAD: f32 = 0.02;
 
-/// The unit directions of the picture in world space.
+/// Unit vectors of the image's axes in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes {
-    /// Into the picture.
+    /// Into the image.
     pub forward: Vec3,
-    /// To the picture's right.
+    /// To the image's right.
     pub right: Vec3,
-    /// To the picture's top.
+    /// To the image's top.
     pub up: Vec3,
 }
 
-/// The picture's axes.
+/// Returns the image's axes.
 pub fn axes(camera: &Camera) -> Axes {
     let forward = (camera.target - camera.eye).normalize();
     let right = forward.cross(camera.up).normalize();
     Axes { forward, right, up: right.cross(forward) }
 }
 
-/// Turns `forward` by `yaw_rad` about the up hint, to the left, and by `pitch_rad` up, but never past a pole.
+/// Turns `forward` by `yaw_rad` about the up hint, to the left, and by `pitch_rad` upwards, but never past a pole.
 fn turned(camera: &Camera, yaw_rad: f32, pitch_rad: f32) -> Vec3 {
     let Axes { forward, right, .. } = axes(camera);
     let pole = camera.up.normalize();
@@ -37,20 +37,20 @@ fn turned(camera: &Camera, yaw_rad: f32, pitch_rad: f32) -> Vec3 {
     (Quat::from_axis_angle(pole, yaw_rad) * Quat::from_axis_angle(right, pitch_rad) * forward).normalize()
 }
 
-/// Moves the eye around the target, so that what is seen turns by these angles.
+/// Moves the eye around the target, so that the view turns by these angles.
 pub fn orbit(camera: &mut Camera, yaw_rad: f32, pitch_rad: f32) {
     let distance = camera.eye.distance(camera.target);
     camera.eye = camera.target - distance * turned(camera, yaw_rad, pitch_rad);
 }
 
-/// Looks around from where the eye is.
+/// Turns the view about the eye.
 pub fn look(camera: &mut Camera, yaw_rad: f32, pitch_rad: f32) {
     let distance = camera.eye.distance(camera.target);
     camera.target = camera.eye + distance * turned(camera, yaw_rad, pitch_rad);
 }
 
-/// Moves eye and target across the picture; `by_heights` is in heights of the picture, right and down, and what lies at the
-/// target's distance follows the hand.
+/// Moves eye and target parallel to the image; `by_heights` is in image heights, right and down. Points at the target's
+/// distance follow the pointer.
 pub fn pan(camera: &mut Camera, by_heights: Vec2) {
     let Axes { right, up, .. } = axes(camera);
     let height_m = 2.0 * camera.eye.distance(camera.target) * (0.5 * camera.fov_y_rad).tan();
@@ -62,13 +62,13 @@ pub fn pan(camera: &mut Camera, by_heights: Vec2) {
 /// Multiplies the distance to the target.
 pub fn zoom(camera: &mut Camera, factor: f32) {
     let away = camera.eye - camera.target;
-    // Not nearer than what the near plane would cut off, nor so far that single precision loses the target.
+    // The near plane would cut off a nearer target; single precision would lose a farther one.
     let least_m = 4.0 * camera.near_m;
     let distance = (away.length() * factor).clamp(least_m, 1e6 * least_m);
     camera.eye = camera.target + distance * away.normalize();
 }
 
-/// Moves eye and target along the picture's axes, metres: right, up, forward.
+/// Moves eye and target along the image's axes, metres: right, up, forward.
 pub fn fly(camera: &mut Camera, by_m: Vec3) {
     let Axes { forward, right, up } = axes(camera);
     let offset = right * by_m.x + up * by_m.y + forward * by_m.z;

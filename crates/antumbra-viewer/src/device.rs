@@ -1,8 +1,8 @@
-//! The device that the viewer draws with: WebGPU's default limits, larger pictures and scenes where they can be.
+//! The viewer's device: WebGPU's default limits, with larger textures and buffers if the adapter supports them.
 
 use antumbra::Gpu;
 
-/// What the viewer asks of an adapter.
+/// Descriptor of the device that the viewer requests from an adapter.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let limits = adapter.limits();
     wgpu::DeviceDescriptor {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use wasm_bindgen::JsCast;
 
-/// Lets the browser keep a file, under the last part of `path`. `None` where it cannot.
+/// Downloads bytes as a file named as the last component of `path`; `None` if the browser cannot.
 pub fn download(path: &Path, bytes: &[u8]) -> Option<()> {
     let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(bytes));
     let blob = web_sys::Blob::new_with_u8_array_sequence(&parts).ok()?;

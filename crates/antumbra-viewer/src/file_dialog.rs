@@ -1,6 +1,6 @@
-//! The system's dialog that chooses a file to open or a place to save to: the desktop's, or the browser's.
+//! The file dialog of the desktop or the browser, for opening and saving.
 //!
-//! It is open beside the window, which goes on, and one at a time. What is chosen comes by [`FileDialog::take`].
+//! The dialog does not block the window, and only one is open at a time. [`FileDialog::take`] returns the chosen file.
 
 #[cfg(not(target_arch = "wasm32"))]
 use std::path::Path;
@@ -11,49 +11,49 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use crate::aside::Wake;
 
-/// What was chosen.
+/// A file chosen in the dialog.
 #[derive(Debug)]
 pub struct Chosen {
-    /// Its path; in a browser its name alone.
+    /// The file's path; in a browser only its name.
     pub path: PathBuf,
-    /// What is in it: a browser gives no path to read it by.
+    /// The file's content, because a browser gives no path to read.
     #[cfg(target_arch = "wasm32")]
     pub bytes: Vec<u8>,
 }
 
-/// What a file is chosen for.
+/// Purpose of the dialog.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Purpose {
-    /// A scene or a setup is opened.
+    /// Open a scene or a setup.
     #[default]
     Open,
-    /// Camera and lights are saved.
+    /// Save camera and lights.
     #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser has a place for downloads"))]
     SaveSetup,
-    /// The picture is saved.
+    /// Save the image.
     #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser has a place for downloads"))]
     SavePicture,
 }
 
-/// The dialog, open or not.
+/// The dialog, open or closed.
 #[derive(Debug, Default)]
 pub struct FileDialog {
     answer: Option<Receiver<Option<Chosen>>>,
-    /// What for it was opened last.
+    /// Purpose with which the dialog was opened last.
     purpose: Purpose,
-    /// As on a system that has none.
+    /// Whether the system has no dialog.
     is_absent: bool,
 }
 
 impl FileDialog {
-    /// The dialog of a system that has none: nobody is there to close it.
+    /// A dialog that behaves as on a system without one, for tests, where nobody could close it.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn absent() -> Self {
         Self { is_absent: true, ..Self::default() }
     }
 
-    /// Opens it, where it is not open; `name` is that of the file to save. `wake` is called when something is chosen or nothing is. On
-    /// the thread that draws, where macOS wants dialogs to be made.
+    /// Opens the dialog unless it is open; `name` is the file to save. Calls `wake` when the dialog closes. Call this on
+    /// the thread that draws: macOS requires it.
     pub fn open(&mut self, purpose: Purpose, name: &str, wake: Wake) {
         if self.answer.is_some() {
             return;
@@ -69,7 +69,7 @@ impl FileDialog {
                 Some(file) => read(file).await,
                 None => None,
             };
-            // Nobody waits any longer where the window has closed.
+            // The receiver is gone if the window has closed.
             let _ = sender.send(chosen);
             wake();
         };
@@ -79,7 +79,8 @@ impl FileDialog {
         wasm_bindgen_futures::spawn_local(answer);
     }
 
-    /// Once it has closed, what was chosen in it and what for; `None` within where nothing was, or where the system has no dialog.
+    /// Returns the purpose and the chosen file once the dialog has closed. The inner `None` means that nothing was chosen
+    /// or that the system has no dialog.
     pub fn take(&mut self) -> Option<(Purpose, Option<Chosen>)> {
         let answer = match self.answer.as_ref()?.try_recv() {
             Err(TryRecvError::Empty) => return None,
@@ -91,11 +92,11 @@ impl FileDialog {
     }
 }
 
-/// The dialog for a purpose.
+/// Opens the system's dialog for a purpose.
 #[cfg(not(target_arch = "wasm32"))]
 fn asked(purpose: Purpose, name: &str) -> Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> {
     let dialog = rfd::AsyncFileDialog::new();
-    // A path that was entered: its folder is where the dialog begins.
+    // The dialog starts in the folder of the entered path.
     let path = Path::new(name);
     let dialog = match path.parent().filter(|folder| folder.is_dir()) {
         Some(folder) => dialog.set_directory(folder),
@@ -135,13 +136,13 @@ mod tests {
         let (sender, answer) = channel();
         let mut dialog = FileDialog { answer: Some(answer), is_absent: true, purpose: Purpose::Open };
         assert!(dialog.take().is_none(), "it is still open");
-        // Opening it again opens no other.
+        // A second dialog does not open.
         dialog.open(Purpose::SaveSetup, "setup.toml", Arc::new(|| ()));
         sender.send(Some(Chosen { path: "scene.glb".into() })).unwrap();
         let (purpose, chosen) = dialog.take().unwrap();
         assert_eq!((purpose, chosen.unwrap().path), (Purpose::Open, PathBuf::from("scene.glb")));
         assert!(dialog.take().is_none());
-        // Where there is none, nothing is chosen.
+        // Without a dialog nothing is chosen.
         dialog.open(Purpose::SavePicture, "picture.png", Arc::new(|| ()));
         assert!(dialog.take().is_some_and(|(purpose, chosen)| purpose == Purpose::SavePicture && chosen.is_none()));
     }

@@ -1,15 +1,15 @@
-//! See soft shadows move: a window on a scene, its lights and every technique.
+//! Interactive viewer of soft shadows: a window that shows a scene, its lights and every technique.
 //!
-//! - [`state`] — what is shown and how; a command line or a setup file can say all of it. Knows no window and no GPU.
-//! - [`camera`] — how a hand moves the camera.
-//! - [`renderer`] — the picture of a state, drawn on whatever device it is given.
-//! - [`truth`] — rays on other threads, while nothing moves.
-//! - [`masks`] — what every technique draws of small scenes, to hold one device against another.
-//! - `random_input` — the whole application under a hand that does anything, without a window.
+//! - [`state`] — scene, lights, techniques and view; a command line or a setup file can express all of it. Needs no window and no GPU.
+//! - [`camera`] — camera motions.
+//! - [`renderer`] — draws the image of a state on any device.
+//! - [`truth`] — ground truth traced in the background while nothing moves.
+//! - [`masks`] — masks of every technique on small scenes, for comparing devices.
+//! - `random_input` — the whole application under random input, without a window.
 //! - [`loader`] — scenes and setups from files.
-//! - [`options`] — what the viewer starts with.
+//! - [`options`] — start-up options.
 //!
-//! These know no window. The window and its panels are around them: [`run`] opens it on a desktop, `web::Page` in a browser.
+//! These modules need no window. The window and its panels use them: [`run`] opens it on a desktop, `web::Page` in a browser.
 #![forbid(unsafe_code)]
 
 mod app;

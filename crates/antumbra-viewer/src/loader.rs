@@ -1,5 +1,4 @@
-//! Scenes and setups by name, from files and from files dropped on a page, aside, so that the window goes on while a large
-//! one loads.
+//! Background loading of scenes and setups by name, from files, and from files dropped on a page. The window stays responsive.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,64 +10,63 @@ use glam::Vec3;
 use crate::aside::{Wake, aside};
 use crate::message::one_line;
 
-/// A scene that was loaded.
+/// A loaded scene with its setup.
 #[derive(Debug)]
 pub struct Loaded {
-    /// As it was named.
+    /// The name by which it was requested.
     pub spec: String,
-    /// The scene, counted from the anchor.
+    /// The scene, relative to the anchor.
     pub scene: Arc<Scene>,
-    /// The world position near its camera that it is counted from: far from the world's origin floats are coarse.
+    /// World position near the camera that serves as origin, because floats are coarse far from the world's origin.
     pub anchor: Vec3,
-    /// Camera and lights for it, counted from the anchor; those that it implied before it was put on a ground.
+    /// Camera and lights that the scene implied before it was put on a ground, relative to the anchor.
     pub assumed: Setup,
-    /// What makes a camera that the scene fills a picture of, counted from the world's origin; `None` where it brought its own, or
-    /// a setup did.
+    /// Framing for a camera that shows the whole scene, in world space; `None` if the scene or a setup file has a camera.
     pub framing: Option<Framing>,
-    /// The setup file given with it, counted from the anchor.
+    /// The requested setup file, relative to the anchor.
     pub setup: Option<(PathBuf, Setup)>,
-    /// What it takes to have it at other times; `None` where nothing of it is animated.
+    /// Animations for posing the scene at other times; `None` if nothing is animated.
     pub animations: Option<Arc<Animations>>,
-    /// The time that it is shown at, seconds.
+    /// Time of the scene's pose, seconds.
     pub time_s: f32,
-    /// It stands on a ground that was put there.
+    /// Whether a ground was added below the scene.
     pub has_ground: bool,
-    /// What was left out or assumed, in lines.
+    /// Warnings about omissions and assumptions, one per line.
     pub notes: Vec<String>,
 }
 
-/// A scene as it is asked for.
+/// A request for a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
-    /// By its name.
+    /// The scene's name.
     pub spec: String,
     /// A setup file.
     pub setup: Option<PathBuf>,
-    /// The time at which it is shown, seconds.
+    /// Time of the scene's pose, seconds.
     pub time_s: f32,
-    /// Whether it is put on a ground.
+    /// Whether a ground is added.
     pub ground: Ground,
 }
 
 impl Wanted {
-    /// As it comes.
+    /// Request for a scene with default options.
     pub fn plain(spec: impl Into<String>) -> Self {
         Self { spec: spec.into(), ..Self::default() }
     }
 }
 
-/// What was opened.
+/// An opened file.
 #[derive(Debug)]
 pub enum Opened {
     /// A scene.
     Scene(Box<Loaded>),
-    /// Camera and lights, by the name of their file.
+    /// Camera and lights, with the path of their file.
     Setup(PathBuf, Setup),
 }
 
 type Outcome = Result<Opened, String>;
 
-/// Loads one thing at a time; the newest request counts.
+/// Background loader of one file at a time; the newest request replaces the one before.
 #[derive(Debug, Default)]
 pub struct Loader {
     pending: Option<(String, Receiver<Outcome>)>,
@@ -79,13 +77,13 @@ impl Loader {
     pub fn load(&mut self, wanted: Wanted, wake: Wake) {
         let sender = self.expect(&wanted.spec);
         aside(move || {
-            // Nobody waits any longer where another scene was asked for meanwhile.
+            // The receiver is gone if another scene was requested meanwhile.
             let _ = sender.send(load_now(wanted).map(|loaded| Opened::Scene(Box::new(loaded))));
             wake();
         });
     }
 
-    /// Loads what was dropped on the page: a `.glb`, or a setup's `.toml`. It stays on this machine.
+    /// Loads a file dropped on the page: a `.glb`, or a setup's `.toml`. The file stays on this machine.
     #[cfg(target_arch = "wasm32")]
     pub fn load_dropped(&mut self, file: egui::DroppedFileHandle, wake: Wake) {
         let name = file.path().display().to_string();
@@ -98,12 +96,12 @@ impl Loader {
         });
     }
 
-    /// Loads what was chosen on the page, as what is dropped there.
+    /// Loads a file chosen on the page, as [`load_dropped`](Self::load_dropped) does.
     #[cfg(target_arch = "wasm32")]
     pub fn load_bytes(&mut self, name: String, bytes: Vec<u8>, wake: Wake) {
         let sender = self.expect(&name);
         aside(move || {
-            // Nobody waits any longer where another scene was asked for meanwhile.
+            // The receiver is gone if another scene was requested meanwhile.
             let _ = sender.send(open_bytes(name, &bytes));
             wake();
         });
@@ -115,12 +113,12 @@ impl Loader {
         sender
     }
 
-    /// What is being loaded.
+    /// Name of the file that is being loaded.
     pub fn pending(&self) -> Option<&str> {
         self.pending.as_ref().map(|(spec, _)| spec.as_str())
     }
 
-    /// The outcome, once it is there: what was opened, or one line.
+    /// Returns the outcome once loading has finished: the opened file, or an error in one line.
     pub fn take(&mut self) -> Option<Outcome> {
         let outcome = self.pending.as_ref()?.1.try_recv().ok()?;
         self.pending = None;
@@ -129,7 +127,7 @@ impl Loader {
 }
 
 fn load_now(wanted: Wanted) -> Result<Loaded, String> {
-    // The setup first: it is quickly read, and a large scene is not.
+    // The setup comes first: reading it is fast, so its errors appear early.
     let setup = match &wanted.setup {
         Some(path) => Some((path.clone(), read_setup(path)?)),
         None => None,
@@ -139,7 +137,7 @@ fn load_now(wanted: Wanted) -> Result<Loaded, String> {
     Ok(finished(wanted, setup, loaded))
 }
 
-/// Puts a scene on a ground where that is wanted, as the laboratory does.
+/// Adds a ground if one is wanted, as the laboratory does, and moves the scene to its anchor.
 fn finished(
     wanted: Wanted,
     setup: Option<(PathBuf, Setup)>,
@@ -147,7 +145,7 @@ fn finished(
 ) -> Loaded {
     let mut notes = scene.warnings.clone();
     notes.extend(scene.unit_warning());
-    // Of what stands there, not of what it stands on.
+    // The assumed setup is that of the scene without the ground.
     let assumed = Setup::assumed(&scene);
     let has_ground = wanted.ground.is_for(&scene, setup.is_none() && assumed.framing.is_some());
     if has_ground && wanted.ground == Ground::Auto {
@@ -172,7 +170,7 @@ fn finished(
     }
 }
 
-/// What the bytes of a file are, by its name.
+/// Parses a file's bytes by the extension of its name.
 #[cfg(any(test, target_arch = "wasm32"))]
 fn open_bytes(name: String, bytes: &[u8]) -> Outcome {
     let why = |error: antumbra_scene::SceneError| one_line(&error.to_string());
@@ -185,7 +183,7 @@ fn open_bytes(name: String, bytes: &[u8]) -> Outcome {
     Ok(Opened::Scene(Box::new(finished(Wanted::plain(name), None, loaded))))
 }
 
-/// Whether a file of this name is a setup.
+/// Whether a file name is that of a setup.
 pub fn is_setup(name: &str) -> bool {
     name.to_lowercase().ends_with(".toml")
 }
@@ -193,39 +191,39 @@ pub fn is_setup(name: &str) -> bool {
 /// Reads a setup file.
 ///
 /// # Errors
-/// One line.
+/// Fails with one line.
 pub fn read_setup(path: &Path) -> Result<Setup, String> {
     Setup::from_file(path).map_err(|error| one_line(&error.to_string()))
 }
 
-/// Writes a setup file, whole or not at all.
+/// Writes a setup file atomically.
 ///
 /// # Errors
-/// One line.
+/// Fails with one line.
 pub fn write_setup(path: &Path, setup: &Setup) -> Result<(), String> {
     write_whole(path, setup.to_toml().as_bytes())
 }
 
-/// Writes a file under another name, then gives it its own.
+/// Writes a file atomically: under a temporary name that is then renamed.
 ///
 /// # Errors
-/// One line.
+/// Fails with one line.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let mut part = path.as_os_str().to_owned();
     part.push(".part");
     let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
     written.map_err(|error| {
-        // Where even this fails there is nothing to remove.
+        // If this fails, too, there is nothing to remove.
         let _ = std::fs::remove_file(&part);
         format!("{}: cannot be written: {error}; choose a folder that can be written to", path.display())
     })
 }
 
-/// Gives a file to the browser to keep.
+/// Gives a file to the browser as a download.
 ///
 /// # Errors
-/// One line.
+/// Fails with one line.
 #[cfg(target_arch = "wasm32")]
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
     crate::download::download(path, bytes).ok_or_else(|| format!("{}: the browser takes no download", path.display()))

@@ -1,8 +1,8 @@
-//! What every technique draws of small scenes, to hold one device against another: a browser's against the system's.
+//! Masks of every technique on small scenes, for comparing devices: a browser's with the system's.
 //!
-//! The cases are the same wherever they run. Together they make every pipeline that a parameter can ask for: each
-//! technique on opaque casters, on casters with holes, on tinted ones, and with every choice and switch turned. All at the
-//! lowest quality, since software devices draw them too.
+//! The cases are the same on every device. Together they create every pipeline that a parameter can request: each technique
+//! on opaque, alpha-tested and tinted casters, and with every choice and switch at its other values. All use the lowest
+//! quality, because software devices draw them, too.
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::{Gpu, Quality, TechniqueKind};
@@ -14,13 +14,13 @@ use crate::message::one_line;
 use crate::renderer::{Compile, Renderer};
 use crate::state::{Show, Side, State};
 
-/// The size of masks: software devices take a while for more.
+/// Size of the masks, pixels; small because software devices are slow.
 pub const SIZE_PX: UVec2 = UVec2::new(96, 64);
 
-/// Frames until a picture that is not there will not come: each waits for the device.
+/// Maximum number of frames to wait for a mask. Each frame waits for the device.
 const MOST_FRAMES: u32 = 3000;
 
-/// A picture of a technique, of the scene's first light, as the scene's own camera sees it.
+/// A mask to draw: a technique, the scene's first light and the scene's own camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
     /// A built-in scene.
@@ -30,7 +30,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// `overlap pcss filter=false`.
+    /// The case's name: scene, technique and settings, such as `overlap pcss filter=false`.
     pub fn name(&self) -> String {
         let scene = self.scene.trim_start_matches("builtin:");
         let settings = self.side.settings().into_iter().map(|(key, value)| format!(" {key}={value}"));
@@ -38,10 +38,10 @@ impl Case {
     }
 }
 
-/// Opaque casters, casters with holes, tinted casters: each a few hundred triangles.
+/// Scenes with opaque, alpha-tested and tinted casters, of a few hundred triangles each.
 const SCENES: [&str; 3] = ["builtin:overlap", "builtin:fence-alpha", "builtin:stained-glass"];
 
-/// Every case, those of a scene together.
+/// Returns all cases, grouped by scene.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for scene in SCENES {
@@ -52,10 +52,10 @@ pub fn cases() -> Vec<Case> {
             let mut side = quick(kind);
             side.set(key, &text);
             if (key, text.as_str()) == ("placement", "manual") {
-                // It asks for places, in metres from the light: any between the scene's casters.
+                // `manual` needs distances from the light, metres; any between the scene's casters will do.
                 side.set("split_depths", "2, 3, 4");
             }
-            // Some settings are refused beside others at their defaults.
+            // Some settings are refused beside the defaults of others.
             if side.refusal(key).is_none() {
                 cases.push(Case { scene: SCENES[0], side });
             }
@@ -64,21 +64,21 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// A technique at the lowest quality.
+/// Returns a technique at the lowest quality.
 fn quick(kind: TechniqueKind) -> Side {
     let mut side = Side::new(kind);
     side.set_quality(Quality::Fast);
     side
 }
 
-/// The choices and switches of a technique that the lowest quality does not have. Views of what a technique holds are no
-/// masks.
+/// Returns the choices and switches of a technique that differ from the lowest quality. Debug views are excluded, because
+/// they are not masks.
 fn turned(kind: TechniqueKind) -> Vec<(&'static str, String)> {
     let side = quick(kind);
     let other = |spec: &'static ParamSpec| match side.usual(spec) {
         ParamValue::Bool(is_on) => vec![(spec.key, (!is_on).to_string())],
         ParamValue::Choice(usual) if spec.key != "show" && spec.range.is_none() => {
-            // Browsers have maps of one sample and of four.
+            // Browsers support 1 and 4 samples per texel only.
             let is_everywhere = |choice: &&&str| spec.key != "msaa" || matches!(**choice, "1" | "4");
             let others = spec.choices.iter().filter(|choice| **choice != usual).filter(is_everywhere);
             others.map(|choice| (spec.key, (*choice).to_owned())).collect()
@@ -97,10 +97,10 @@ pub struct Masks {
 }
 
 impl Masks {
-    /// Makes a device on the adapter that the system or the browser gives.
+    /// Creates a device on the default adapter of the system or the browser.
     ///
     /// # Errors
-    /// One line where it gives none.
+    /// Fails with one line if there is no adapter or no device.
     pub async fn new() -> Result<Self, String> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default()).await;
@@ -112,7 +112,7 @@ impl Masks {
         Ok(Self { gpu: Gpu::new(&device, &queue), adapter: one_line(&adapter), open: None })
     }
 
-    /// The adapter's name.
+    /// Name of the adapter.
     pub fn adapter(&self) -> &str {
         &self.adapter
     }
@@ -122,11 +122,11 @@ impl Masks {
         &self.gpu
     }
 
-    /// The mask of a case: visibility by pixel, the mean of its channels, [`SIZE_PX`] of them. `rest` is waited for
-    /// between frames; the device has to come to its work meanwhile.
+    /// Draws the mask of a case: visibility by pixel, averaged over channels, [`SIZE_PX`] values. `rest` is awaited between
+    /// frames and must let the device work.
     ///
     /// # Errors
-    /// One line where the scene or the technique cannot be had, or the device complains of anything.
+    /// Fails with one line if the scene or the technique is unavailable, or the device reports an error.
     pub async fn draw(&mut self, case: &Case, rest: impl AsyncFn()) -> Result<Vec<f32>, String> {
         self.fit_scene(case)?;
         let Some((_, renderer, state)) = &mut self.open else { return Err("no scene is open".into()) };
@@ -141,7 +141,7 @@ impl Masks {
             if let Some(why) = renderer.sides[0].problem().filter(|_| !drawn.is_unfinished) {
                 return Err(why.to_owned());
             }
-            // Of the last frame alone: one before it may not know yet what is seen, or have run out of room.
+            // Only the last frame counts: an earlier one may lack feedback about visible receivers, or have overflowed.
             if asked == Some(renderer.version())
                 && is_there
                 && let Some((version, mask)) = renderer.take_mask(0, 0)
@@ -166,7 +166,7 @@ impl Masks {
         let mut state = State::new(case.side.kind(), TechniqueKind::Hard);
         state.open(case.scene, &scene, None);
         state.setup.lights.truncate(1);
-        // *Shaded* has ratio masks.
+        // *Shaded* would use ratio masks.
         state.show = Show::Visibility;
         let mut renderer = Renderer::new(&self.gpu, Compile::AtOnce);
         renderer.open(&scene, state.scene.as_ref().map_or(0, |open| open.generation));

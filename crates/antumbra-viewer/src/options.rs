@@ -1,4 +1,4 @@
-//! What the viewer starts with, and why it may not start.
+//! Start-up options of the viewer, and its errors.
 
 use std::path::PathBuf;
 
@@ -7,32 +7,32 @@ use glam::UVec2;
 
 use crate::state::{Show, Side};
 
-/// What the viewer starts with.
+/// Start-up options of the viewer.
 #[derive(Clone, Debug)]
 pub struct ViewerOptions {
-    /// A scene by its name; without one the first built-in that shows something of everything.
+    /// Name of the scene; `None` opens a built-in scene.
     pub scene: Option<String>,
     /// Camera and lights.
     pub setup: Option<PathBuf>,
-    /// The time at which an animated scene is shown at first, seconds.
+    /// Initial time of an animated scene, seconds.
     pub time_s: f32,
-    /// Whether the scene is put on a ground.
+    /// Whether a ground is added.
     pub ground: Ground,
     /// The technique.
     pub side: Side,
-    /// Another, to compare with.
+    /// Technique of the right side, to compare with; `None` shows one technique.
     pub against: Option<Side>,
-    /// Which image is shown.
+    /// View that is shown.
     pub show: Show,
     /// The window's size, points.
     pub size: UVec2,
-    /// Part of the adapter's name, driver or backend, in any case; `None` takes the fastest.
+    /// Part of the adapter's name, driver or backend, ignoring case; `None` selects the fastest.
     pub adapter: Option<String>,
-    /// Writes a picture of the window here once it stands still, and ends.
+    /// File for a screenshot of the window; it is written once the window is idle, and then the viewer ends.
     pub screenshot: Option<PathBuf>,
 }
 
-/// Why there is no viewer.
+/// Reason why the viewer cannot run.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewerError {
     /// There is no display, or no adapter that can draw to it.
@@ -40,12 +40,12 @@ pub enum ViewerError {
         "the window cannot be opened: {0}; the viewer needs a display and a graphics driver that can draw to it; `antumbra render` needs no display"
     )]
     Window(String),
-    /// The device was lost, and so was the next one.
+    /// The device was lost, and its replacement was lost, too.
     #[error(
         "the graphics device is lost ({0}), and was as soon as it was made anew; try again, or another `--adapter`"
     )]
     Lost(String),
-    /// The scene, the setup or a file is wrong.
+    /// The scene, the setup or a file is invalid.
     #[error("{0}")]
     Input(String),
 }

@@ -1,5 +1,4 @@
-//! The open scene at the time that is wanted: posed aside, one time after the other, so that the window goes on while a large
-//! scene moves.
+//! Background posing of the open scene, one time at a time. The window stays responsive while a large scene moves.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -10,26 +9,26 @@ use glam::Vec3;
 use crate::aside::{Wake, aside};
 use crate::message::one_line;
 
-/// Poses one scene.
+/// Poses one animated scene.
 #[derive(Debug)]
 pub struct Poser {
     animations: Arc<Animations>,
     has_ground: bool,
-    /// The world position that the scene is counted from.
+    /// World position that serves as the scene's origin.
     anchor: Vec3,
-    /// The time of the scene that was taken last, or could not be had.
+    /// Time of the last result, even if it failed, seconds.
     shown_s: f32,
     pending: Option<(f32, Receiver<Result<Scene, String>>)>,
 }
 
 impl Poser {
-    /// Poses by `animations`, whose scene is shown at `shown_s`, stands on a ground of ours or not, and is counted from
-    /// `anchor`.
+    /// Creates a poser for `animations`, whose scene is shown at `shown_s`. `has_ground` tells whether the viewer added a
+    /// ground; `anchor` is the scene's origin.
     pub fn new(animations: Arc<Animations>, has_ground: bool, anchor: Vec3, shown_s: f32) -> Self {
         Self { animations, has_ground, anchor, shown_s, pending: None }
     }
 
-    /// Wants the scene at `time_s`. `wake` is called once [`take`](Self::take) has one.
+    /// Requests the scene at `time_s`. Calls `wake` once [`take`](Self::take) has a result.
     pub fn want(&mut self, time_s: f32, wake: &Wake) {
         if self.pending.is_some() || time_s == self.shown_s {
             return;
@@ -45,14 +44,14 @@ impl Poser {
                 }
                 scene.count_from(anchor);
             }
-            // Nobody waits any longer where another scene was opened meanwhile.
+            // The receiver is gone if another scene was opened meanwhile.
             let _ = sender.send(posed);
             wake();
         });
         self.pending = Some((time_s, result));
     }
 
-    /// The scene at a time that was wanted, without its pictures, or one line.
+    /// Returns the scene at a requested time, without its images, or an error in one line.
     pub fn take(&mut self) -> Option<Result<Scene, String>> {
         let (time_s, result) = self.pending.as_ref()?;
         let posed = result.try_recv().ok()?;
@@ -61,7 +60,7 @@ impl Poser {
         Some(posed)
     }
 
-    /// Whether another time is shown than `time_s`.
+    /// Whether the shown time differs from `time_s`.
     pub fn is_behind(&self, time_s: f32) -> bool {
         self.pending.is_some() || time_s != self.shown_s
     }

@@ -1,5 +1,4 @@
-//! Small pictures of the built-in scenes, traced aside on the processor one after the other when they are first asked for, and
-//! kept.
+//! Thumbnails of the built-in scenes. They are traced in the background, one at a time, when first requested, and cached.
 
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
@@ -14,27 +13,27 @@ use crate::aside::{Wake, aside};
 
 /// A thumbnail's size, pixels.
 pub const SIZE_PX: UVec2 = UVec2::new(96, 60);
-/// Light points a pixel.
+/// Light samples per pixel.
 const POINTS: u32 = 4;
-/// Of what is lit from everywhere, to what the light lights.
+/// Ambient fraction of the brightest illumination.
 const AMBIENT: f32 = 0.25;
-/// Behind the scene; sRGB.
+/// Background colour, sRGB.
 const BACKGROUND: [u8; 3] = [150, 158, 168];
 
-/// What there is of a scene's thumbnail.
+/// State of a thumbnail.
 enum Thumbnail {
-    /// Asked for, and not begun.
+    /// Requested, not started.
     Wanted,
     Traced(egui::TextureHandle),
-    /// It cannot be had; the name alone says what the scene is.
+    /// Unavailable; the scene's name is shown alone.
     Missing,
 }
 
-/// Thumbnails by the scenes' names.
+/// Thumbnails by scene name.
 #[derive(Default)]
 pub struct Thumbnails {
     known: HashMap<&'static str, Thumbnail>,
-    /// Which is being traced.
+    /// The thumbnail that is being traced.
     pending: Option<(&'static str, Receiver<Option<egui::ColorImage>>)>,
 }
 
@@ -45,7 +44,7 @@ impl std::fmt::Debug for Thumbnails {
 }
 
 impl Thumbnails {
-    /// A scene's thumbnail, once it is traced; `wake` is called when it is worth asking again.
+    /// Returns a scene's thumbnail once it is traced. `wake` is called when asking again is worthwhile.
     pub fn of(&mut self, ctx: &egui::Context, name: &'static str, wake: &Wake) -> Option<&egui::TextureHandle> {
         self.take(ctx);
         let known = self.known.entry(name).or_insert(Thumbnail::Wanted);
@@ -53,7 +52,7 @@ impl Thumbnails {
             let (sender, traced) = channel();
             let wake = wake.clone();
             aside(move || {
-                // Nobody waits any longer where the window was closed meanwhile.
+                // The receiver is gone if the window was closed meanwhile.
                 let _ = sender.send(traced_picture(name));
                 wake();
             });
@@ -80,7 +79,7 @@ impl Thumbnails {
     }
 }
 
-/// The scene under its own camera and first light, as flat colours.
+/// Renders the scene with its own camera and first light, in flat colours.
 fn traced_picture(name: &str) -> Option<egui::ColorImage> {
     let scene = load(&format!("builtin:{name}"), &LoadOptions::default()).ok()?;
     let Setup { camera, lights } = Setup::for_scene(&scene);
@@ -92,7 +91,7 @@ fn traced_picture(name: &str) -> Option<egui::ColorImage> {
     let lit = receivers.points.iter().zip(&visibility);
     let irradiances: Vec<f32> =
         lit.map(|(point, v)| point.as_ref().map_or(0.0, |point| v * irradiance(&lights[0], point))).collect();
-    // The brightest but for a few is white's.
+    // White is the 90th percentile, so a few bright pixels do not darken the rest.
     let mut sorted: Vec<f32> = irradiances.iter().copied().filter(|e| *e > 0.0).collect();
     sorted.sort_by(f32::total_cmp);
     let white = sorted.get(sorted.len() * 9 / 10).copied().unwrap_or(1.0);
@@ -108,14 +107,14 @@ fn traced_picture(name: &str) -> Option<egui::ColorImage> {
     Some(egui::ColorImage::new([SIZE_PX.x as usize, SIZE_PX.y as usize], pixels))
 }
 
-/// Of a surface, were nothing in the way: from the light's centre, but for a factor.
+/// Unshadowed irradiance of a surface point from the light's centre, up to a constant factor.
 fn irradiance(light: &Light, point: &ReceiverPoint) -> f32 {
     let to_light = if light.is_distant() { -light.axis } else { light.center - point.position };
     let cosine = point.normal.dot(to_light.normalize_or_zero()).max(0.0);
     if light.is_distant() { cosine } else { cosine / to_light.length_squared().max(1e-6) }
 }
 
-/// The surface's own colour at the point, linear.
+/// Base colour of the surface at the point, linear.
 fn base_color(scene: &Scene, point: &ReceiverPoint) -> Vec3 {
     let Some(instance) = scene.instances.get(point.instance as usize) else { return Vec3::splat(0.5) };
     let mesh = &scene.meshes[instance.mesh];
@@ -124,7 +123,7 @@ fn base_color(scene: &Scene, point: &ReceiverPoint) -> Vec3 {
         instance.world_from_object.transform_point3(mesh.positions[vertex])
     });
     let [ab, ac, ap] = [corners[1] - corners[0], corners[2] - corners[0], point.position - corners[0]];
-    // Areas over the whole's, along the triangle's normal.
+    // Sub-triangle areas relative to the triangle's, projected on its normal.
     let normal = ab.cross(ac);
     let squared = normal.length_squared().max(f32::MIN_POSITIVE);
     let barycentric = Vec2::new(ap.cross(ac).dot(normal), ab.cross(ap).dot(normal)) / squared;

@@ -1,4 +1,4 @@
-//! The viewer on a page: on a canvas, by the browser's WebGPU.
+//! The viewer in a web page: on a canvas, with the browser's WebGPU.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,7 +13,7 @@ use crate::app::{App, Outcome};
 use crate::device::device_descriptor;
 use crate::options::ViewerOptions;
 
-/// The viewer that runs on a canvas.
+/// The viewer on a canvas.
 #[derive(Clone)]
 pub struct Page {
     runner: eframe::WebRunner,
@@ -26,10 +26,10 @@ impl std::fmt::Debug for Page {
 }
 
 impl Page {
-    /// Draws on `canvas` from now on, at whatever size it has.
+    /// Starts the viewer on `canvas` and follows its size.
     ///
     /// # Errors
-    /// One line where the browser gives no adapter or no device.
+    /// Fails with one line if the browser gives no adapter or no device.
     pub async fn start(canvas: web_sys::HtmlCanvasElement, options: ViewerOptions) -> Result<Self, String> {
         let mut setup = WgpuSetupCreateNew::without_display_handle();
         setup.instance_descriptor.backends = wgpu::Backends::BROWSER_WEBGPU;
@@ -50,29 +50,28 @@ impl Page {
         Ok(Self { runner })
     }
 
-    /// Chooses the left side's technique.
+    /// Chooses the technique of the left side.
     pub fn choose(&self, kind: TechniqueKind) {
         if let Some(mut app) = self.runner.app_mut::<App>() {
             app.choose(kind);
         }
     }
 
-    /// Moves the chosen light, metres in world space.
+    /// Moves the selected light by a vector in world space, metres.
     pub fn move_light(&self, by_m: glam::Vec3) {
         if let Some(mut app) = self.runner.app_mut::<App>() {
             app.move_light(by_m);
         }
     }
 
-    /// What stands at the bottom of the window, once nothing is left to do: the scene, the technique that draws, and the
-    /// newest message. `None` before.
+    /// The status text: the scene, the technique drawn and the newest message; `None` while work is left.
     pub fn settled(&self) -> Option<String> {
         self.runner.app_mut::<App>().and_then(|app| app.settled())
     }
 }
 
-/// Lets the browser draw until the device has done all that was submitted: frames submitted faster than a software device
-/// draws them pile up by the thousand.
+/// Yields to the browser until the device has completed all submitted work. Otherwise frames for a slow software device
+/// would pile up by the thousand.
 pub async fn work_done(queue: &wgpu::Queue) {
     let is_done = Arc::new(AtomicBool::new(false));
     let done = is_done.clone();
@@ -83,7 +82,7 @@ pub async fn work_done(queue: &wgpu::Queue) {
     }
 }
 
-/// What a JavaScript error says.
+/// Text of a JavaScript error.
 fn message_of(error: &JsValue) -> String {
     let text = error.as_string().or_else(|| error.dyn_ref::<js_sys::Error>().map(|error| error.message().into()));
     text.unwrap_or_else(|| format!("{error:?}"))

@@ -1,4 +1,4 @@
-//! Opens the window on the adapter that was asked for, with the features and limits that the library wants.
+//! The desktop window: opens it on the requested adapter with the features and limits that the library wants.
 
 use std::path::Path;
 use std::sync::{Arc, PoisonError};
@@ -13,17 +13,16 @@ use crate::loader::read_setup;
 use crate::message::one_line;
 use crate::options::{ViewerError, ViewerOptions};
 
-/// The environment variable that names the adapter when the options do not.
+/// Environment variable that names the adapter when the options do not.
 pub const ADAPTER_VARIABLE: &str = "ANTUMBRA_ADAPTER";
 
-/// A device that is lost sooner than this after it was made is not made once more.
+/// Minimum lifetime of a device; one that is lost sooner is not replaced.
 const LEAST_LIFE: Duration = Duration::from_secs(10);
 
-/// Opens the window and returns once it is closed. Where the graphics device is lost, another window goes on with another
-/// device where the one before was.
+/// Opens the window and returns once it is closed. If the graphics device is lost, a new window continues with a new device.
 ///
 /// # Errors
-/// Where there is no desktop or no adapter for it, or where a picture of the window was asked for and cannot be had.
+/// Fails if there is no desktop, no adapter for it, or a requested screenshot cannot be taken.
 pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
     check_input(&options)?;
     let (size, adapter) = (options.size, options.adapter.clone());
@@ -42,13 +41,13 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
     }
 }
 
-/// What a window begins with.
+/// Initial state of a window.
 enum Start {
     Options(Box<ViewerOptions>),
     Kept(Box<Kept>),
 }
 
-/// Opens a window and returns once it is closed: by itself, or by whoever looks at it.
+/// Opens a window and returns once it is closed, by itself or by the user.
 fn run_window(size: glam::UVec2, adapter: Option<String>, start: Start) -> Result<Option<Ended>, ViewerError> {
     let size = [size.x as f32, size.y as f32];
     let native = eframe::NativeOptions {
@@ -81,13 +80,13 @@ fn run_window(size: glam::UVec2, adapter: Option<String>, start: Start) -> Resul
     Ok(ended)
 }
 
-/// What a message says behind the place in a source file that it names.
+/// Strips the source location from a message, and its full stop.
 fn without_source(message: &str) -> &str {
     let behind = message.split_once(".rs:").and_then(|(_, place)| place.split_once(": "));
     behind.map_or(message, |(_, what)| what).trim_end_matches('.')
 }
 
-/// Says what is wrong with the arguments before a window opens for nothing. What is in a scene file shows once it loads.
+/// Checks the arguments before a window opens. Errors within a scene file appear when it loads.
 fn check_input(options: &ViewerOptions) -> Result<(), ViewerError> {
     if let Some(path) = &options.setup {
         read_setup(path).map_err(ViewerError::Input)?;
@@ -104,11 +103,11 @@ fn check_input(options: &ViewerOptions) -> Result<(), ViewerError> {
     why.map_or(Ok(()), |why| Err(ViewerError::Input(why)))
 }
 
-/// The device as the laboratory makes it: WebGPU's limits, larger pictures and scenes where they can be.
+/// Device setup as in the laboratory: WebGPU's limits, with larger textures and buffers if the adapter supports them.
 fn setup(adapter: Option<String>) -> WgpuSetupCreateNew {
     let mut setup = WgpuSetupCreateNew::without_display_handle();
     setup.instance_descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
-    // See the laboratory's device: validation layers of before 2023 complain of every shader with debug information.
+    // As in the laboratory's device: validation layers before 2023 reject every shader with debug information.
     setup.instance_descriptor.flags = (setup.instance_descriptor.flags - wgpu::InstanceFlags::DEBUG).with_env();
     setup.native_adapter_selector =
         Some(Arc::new(move |adapters, surface| select(adapters, surface, adapter.as_deref()).cloned()));
@@ -116,7 +115,7 @@ fn setup(adapter: Option<String>) -> WgpuSetupCreateNew {
     setup
 }
 
-/// The best adapter that can draw to the window and has the name.
+/// Selects the best adapter that can draw to the window and matches the name.
 fn select<'a>(
     adapters: &'a [wgpu::Adapter],
     surface: Option<&wgpu::Surface<'_>>,

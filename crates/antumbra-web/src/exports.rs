@@ -1,4 +1,4 @@
-//! Functions and classes that JavaScript sees.
+//! Functions and classes exported to JavaScript.
 
 use antumbra::TechniqueKind;
 use antumbra_scene::{LoadOptions, export_glb, load};
@@ -8,7 +8,7 @@ use antumbra_viewer::{ViewerOptions, web};
 use glam::{UVec2, Vec3};
 use wasm_bindgen::prelude::*;
 
-/// What the viewer starts with where the address does not say.
+/// Default technique of the viewer.
 const FIRST_TECHNIQUE: TechniqueKind = TechniqueKind::Smrt;
 
 /// The viewer on a canvas.
@@ -20,7 +20,7 @@ pub struct Viewer {
 
 #[wasm_bindgen]
 impl Viewer {
-    /// Starts on a canvas with what the page's address asks for; a name that means nothing is an error, in one line.
+    /// Starts the viewer on a canvas with the values of the page's address. An unknown name is an error in one line.
     pub async fn start(
         canvas: web_sys::HtmlCanvasElement,
         scene: Option<String>,
@@ -51,19 +51,19 @@ impl Viewer {
         Ok(Self { page: web::Page::start(canvas, options).await? })
     }
 
-    /// Chooses the technique.
+    /// Chooses the technique of the left side.
     pub fn choose(&self, technique: &str) -> Result<(), String> {
         self.page.choose(side_called(technique)?.kind());
         Ok(())
     }
 
-    /// Moves the chosen light, metres in world space.
+    /// Moves the selected light by a vector in world space, metres.
     #[wasm_bindgen(js_name = moveLight)]
     pub fn move_light(&self, x: f32, y: f32, z: f32) {
         self.page.move_light(Vec3::new(x, y, z));
     }
 
-    /// Once the picture stands still: scene, technique and message.
+    /// Scene, technique and message; `None` until the image is complete.
     pub fn settled(&self) -> Option<String> {
         self.page.settled()
     }
@@ -76,20 +76,20 @@ fn side_called(name: &str) -> Result<Side, String> {
     })
 }
 
-/// The names of all techniques.
+/// Names of all techniques.
 #[wasm_bindgen(js_name = techniqueNames)]
 pub fn technique_names() -> Vec<String> {
     TechniqueKind::ALL.iter().map(|kind| kind.name().to_owned()).collect()
 }
 
-/// A built-in scene as the bytes of a `.glb`.
+/// Returns a built-in scene as the bytes of a `.glb` file.
 #[wasm_bindgen(js_name = glbOf)]
 pub fn glb_of(spec: &str) -> Result<Vec<u8>, String> {
     let scene = load(spec, &LoadOptions::default()).map_err(|error| error.to_string())?;
     export_glb(&scene).map_err(|error| error.to_string())
 }
 
-/// Masks of every technique, drawn beside the viewer on a device of their own.
+/// Masks of every technique, drawn on a device of their own.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Masks {
@@ -99,29 +99,29 @@ pub struct Masks {
 
 #[wasm_bindgen]
 impl Masks {
-    /// Makes the device.
+    /// Creates the device.
     pub async fn create() -> Result<Masks, String> {
         Ok(Self { masks: masks::Masks::new().await?, cases: masks::cases() })
     }
 
-    /// How many there are.
+    /// Number of cases.
     #[wasm_bindgen(getter)]
     pub fn count(&self) -> usize {
         self.cases.len()
     }
 
-    /// The name of one.
+    /// Name of a case.
     pub fn name(&self, index: usize) -> String {
         self.cases[index].name()
     }
 
-    /// The adapter's name.
+    /// Name of the adapter.
     #[wasm_bindgen(getter)]
     pub fn adapter(&self) -> String {
         self.masks.adapter().to_owned()
     }
 
-    /// Draws one: visibility by pixel.
+    /// Draws the mask of a case: visibility by pixel.
     pub async fn draw(&mut self, index: usize) -> Result<Vec<f32>, String> {
         let queue = self.masks.gpu().queue().clone();
         self.masks.draw(&self.cases[index], async || web::work_done(&queue).await).await

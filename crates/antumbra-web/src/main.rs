@@ -1,6 +1,6 @@
-//! What the page calls: the viewer on a canvas, and, for the page's test, masks of every technique.
+//! The module behind the web page: the viewer on a canvas, and masks of every technique for the page's test.
 //!
-//! `cargo xtask web` builds it for browsers. Elsewhere it only says so.
+//! `cargo xtask web` builds it for browsers. On other targets the program only prints a hint.
 
 #[cfg(target_arch = "wasm32")]
 mod exports;

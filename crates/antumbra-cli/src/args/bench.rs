@@ -58,22 +58,22 @@ pub struct BenchArgs {
     /// Minimum number of warm-up frames; at least one is drawn, and more until two take about as long
     #[arg(long, value_name = "N", default_value = "3", value_parser = values::warm_up)]
     pub warm_up: u32,
-    /// Time limit in minutes; the measurement that runs then is finished. Default: 10, or until --deadline
+    /// Time limit in minutes; a running measurement is completed. Default: 10, or until --deadline
     #[arg(long, value_name = "N", value_parser = values::minutes)]
     pub minutes: Option<u32>,
-    /// Also writes everything as JSON
+    /// Also writes all results as JSON
     #[arg(long, value_name = "out.json")]
     pub json: Option<PathBuf>,
-    /// Also writes one file that can be sent: adapter, driver, versions and times, of built-in scenes
+    /// Also writes a file to share: adapter, driver, versions, and times on built-in scenes
     #[arg(long, value_name = "card.json", conflicts_with_all = ["setup", "light"])]
     pub share: Option<PathBuf>,
-    /// Measures what BENCHMARKS.md shows and this file lacks, within --minutes
+    /// Measures the entries of BENCHMARKS.md that this file lacks, within --minutes
     #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE)]
     pub suite: Option<PathBuf>,
-    /// Only these tables of the suite, separated by commas
+    /// Tables of the suite to measure, separated by commas; default: all
     #[arg(long, value_name = "TABLE,...", value_delimiter = ',', requires = "suite", value_parser = values::suite_part)]
     pub parts: Vec<Part>,
-    /// Prints the results file of a suite as a page
+    /// Prints the results file of a suite as a Markdown page
     #[arg(long, value_name = "results.json", conflicts_with_all = NOT_OF_A_SUITE, conflicts_with = "suite")]
     pub tables: Option<PathBuf>,
     /// Prints a folder of shared results as a page
@@ -85,7 +85,7 @@ pub struct BenchArgs {
     pub adapter: AdapterArgs,
 }
 
-/// Options that choose what is measured, which a suite does itself.
+/// Options that select measurements; a suite makes its own selection.
 const NOT_OF_A_SUITE: [&str; 16] = [
     "scenes",
     "setup",

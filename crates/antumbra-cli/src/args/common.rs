@@ -32,7 +32,7 @@ pub enum Ground {
 }
 
 impl Ground {
-    /// As the scenes have it.
+    /// Converts to the scene crate's type.
     pub fn when(self) -> antumbra_scene::Ground {
         match self {
             Self::Auto => antumbra_scene::Ground::Auto,

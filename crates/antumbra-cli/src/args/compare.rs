@@ -63,8 +63,7 @@ pub struct CompareArgs {
     /// Bends smooth normals so that shading ends where triangles face away from the light
     #[arg(long)]
     pub coherent: bool,
-    /// Ground truth: traced rays, or, for techniques with a kernel of fixed width, exact filtering of their own shadow map by
-    /// that kernel
+    /// Ground truth: traced rays, or, for techniques with a kernel of fixed width, exact filtering of their own shadow map by that kernel
     #[arg(long, value_name = "traced|filtered", default_value = "traced", value_parser = values::truth)]
     pub truth: Truth,
     /// Light samples per pixel of the traced ground truth

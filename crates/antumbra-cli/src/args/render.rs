@@ -7,10 +7,10 @@ use clap::Args;
 use super::common::{AdapterArgs, ViewArgs};
 use crate::values::{self, Setting};
 
-/// What the shading of a light is multiplied by.
+/// Factor of a light's shading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum ShadingFactor {
-    /// The part of the irradiance that arrives, where the technique has it; else visibility
+    /// Visible fraction of the light's irradiance, if the technique computes it; else visibility
     #[default]
     Ratio,
     /// Visibility
@@ -35,7 +35,7 @@ pub struct RenderArgs {
     pub scene: String,
     #[command(flatten)]
     pub view: ViewArgs,
-    /// Technique, with a quality if you like: pcss, pcss:fast; or a preset file: advice.toml
+    /// Technique with optional quality: pcss, pcss:fast; or a preset file: advice.toml
     #[arg(long, value_name = "NAME[:QUALITY]", default_value = "smrt", value_parser = values::technique)]
     pub technique: values::Technique,
     /// Sets a parameter of the technique; may be given several times
@@ -56,10 +56,11 @@ pub struct RenderArgs {
     /// Bends smooth normals so that shading ends where triangles face away from the light
     #[arg(long)]
     pub coherent: bool,
-    /// Factor of a light's shading: the part of its irradiance that arrives, where the technique has it (weights=irradiance), or visibility
+    /// Factor of a light's shading: the visible fraction of its irradiance, if the technique computes it
+    /// (weights=irradiance), or visibility
     #[arg(long, value_name = "BY", value_enum, ignore_case = true, default_value = "ratio")]
     pub shading: ShadingFactor,
-    /// Number of frames to draw; the last is written. Techniques that accumulate converge
+    /// Number of frames to draw; the last is written. Accumulating techniques converge over frames
     #[arg(long, value_name = "N", default_value = "1", value_parser = values::frames)]
     pub frames: u32,
     /// Also writes the time of every pass, in milliseconds (JSON)

@@ -32,7 +32,7 @@ pub struct WindowArgs {
     /// Adds a ground below the scene; auto: if the scene is an object that stands on nothing
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
-    /// Technique, with a quality if you like: pcss, pcss:fast; or a preset file: advice.toml
+    /// Technique with optional quality: pcss, pcss:fast; or a preset file: advice.toml
     #[arg(long, value_name = "NAME[:QUALITY]", default_value = "smrt", value_parser = values::technique)]
     pub technique: values::Technique,
     /// Second technique, to the right of a divider

@@ -19,9 +19,9 @@ use crate::progress::Bars;
 use crate::stdout::say;
 use crate::table;
 
-/// Searches, writes what is asked for, and says what to take and why.
+/// Runs the search, writes its results, and prints the recommendation.
 pub fn advise(args: &AdviseArgs, bars: &Bars) -> Result<(), Failure> {
-    // Before the long work, not after it.
+    // Checks come before the long search.
     if let Some(dir) = &args.output {
         check_folder(dir, MEASUREMENTS_NAME, "no measurements of an advice")?;
     }
@@ -55,7 +55,7 @@ pub fn advise(args: &AdviseArgs, bars: &Bars) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Every time with every setup.
+/// Loads the scene at every time, and combines it with every setup.
 fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, Vec<AdviseView>), Failure> {
     let (mut scenes, mut views) = (Vec::new(), Vec::new());
     let sizes: Vec<UVec2> = args.size.into_iter().collect();
@@ -155,7 +155,7 @@ fn mib(one: &Candidate) -> f64 {
     one.memory_bytes as f64 / f64::from(1 << 20)
 }
 
-/// The command and the Rust that use it.
+/// Prints the command and the Rust code that use the recommendation.
 fn print_use(advice: &Advice, scene_arguments: &str, preset: Option<&Path>) {
     let config = &advice.best.config;
     let chosen = preset

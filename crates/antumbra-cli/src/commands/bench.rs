@@ -27,20 +27,20 @@ use crate::progress::Bars;
 use crate::stdout::say;
 use crate::table;
 
-/// What is measured unless scenes are given: few triangles, one dense closed mesh, many triangles in many layers.
+/// Default scenes: few triangles, one dense closed mesh, many triangles in many layers.
 const DEFAULT_SCENES: [&str; 3] = ["builtin:overlap", "builtin:knot", "builtin:street"];
-/// The same for a file that is shared: those of which there are results of other cards.
+/// Default scenes of a shared file: those measured on other cards.
 const SHARED_SCENES: [&str; 2] = ["builtin:columns", "builtin:street"];
 
-/// The size where none is given: a size of window, or on a software adapter one that all techniques draw in minutes.
+/// Default image sizes: of a window, of a shared file, and for a software adapter, where all techniques take minutes in total.
 const DEFAULT_SIZE: UVec2 = UVec2::new(1280, 720);
 const SHARED_SIZE: UVec2 = UVec2::new(1920, 1080);
 const SOFTWARE_SIZE: UVec2 = UVec2::new(480, 270);
 
-/// Minutes where neither they nor a deadline are given.
+/// Default time limit without a deadline, minutes.
 const DEFAULT_MINUTES: u32 = 10;
 
-/// Measures and prints; writes JSON where asked to.
+/// Measures and prints; writes JSON if requested.
 pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
     let limits = args.run.limits();
     if let Some(path) = &args.tables {
@@ -75,7 +75,7 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
     }
 }
 
-/// What can be known to be wrong before anything is loaded; the baseline, where there is one.
+/// Validates the options before anything is loaded. Returns the baseline, if any.
 fn check(args: &BenchArgs) -> Result<Option<Baseline>, Failure> {
     if args.run.resume && args.json.is_none() {
         return Err(Failure::Input("--resume: bench resumes the file of --json; add --json times.json".into()));
@@ -114,7 +114,7 @@ fn sizes(args: &BenchArgs, lab: &LabDevice) -> Vec<UVec2> {
     }
 }
 
-/// A run of measurements, and where it is written.
+/// A run of measurements with its output.
 struct Run<'a> {
     args: &'a BenchArgs,
     lab: &'a LabDevice,
@@ -160,7 +160,7 @@ impl Run<'_> {
         Ok((rows, against))
     }
 
-    /// What the file depends on beside program and adapter.
+    /// Settings that a resumed file must match, besides program and adapter.
     fn settings(&self) -> Value {
         let scene = |scene: &BenchScene| {
             json!({
@@ -181,7 +181,7 @@ impl Run<'_> {
     }
 }
 
-/// A slice of the suite.
+/// Measures a time slice of the suite.
 fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
     check_json_path(path)?;
     let lab = open_device(&args.adapter)?;
@@ -193,7 +193,7 @@ fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What will be measured and how long that takes, in a line.
+/// Describes the planned measurements and their duration in one line.
 fn plan(scenes: &[BenchScene], techniques: usize, sizes: &[UVec2], at_most: Duration, adapter: &str) -> String {
     let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let sizes_text: Vec<_> = sizes.iter().map(|size| format!("{}x{}", size.x, size.y)).collect();
@@ -233,7 +233,7 @@ fn print(adapter: &AdapterReport, rows: &[BenchRow]) {
     table::print(&cells);
 }
 
-/// A row's cells behind the technique's name.
+/// Returns a row's cells after the technique's name.
 fn figures(row: &BenchRow) -> Vec<String> {
     let none = || "–".to_owned();
     let (timings, memory_bytes, start_up) = match &row.outcome {

@@ -31,13 +31,12 @@ use crate::table;
 use crate::values::{Motions, techniques_of};
 use baseline::{BaselineFile, baselines, check_view};
 
-/// However many frames are asked for, no technique is timed for longer than this: on a software adapter a frame of
-/// many views takes seconds.
+/// Maximum time for measuring a technique, even if more frames are requested: on a software adapter a frame of many views takes seconds.
 const AT_MOST: Duration = Duration::from_secs(3);
-/// And however few, short ones are timed for as long: a machine that does something else for a moment changes no median.
+/// Minimum time for measuring a technique, even if fewer frames are requested, so that short disturbances do not change the median.
 const AT_LEAST: Duration = Duration::from_millis(250);
 
-/// Compares, writes the report or the reports, and prints the figures.
+/// Runs the comparison, writes the reports, and prints the results.
 pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
     let mut pace = Pace::new(args.run.limits());
     let techniques = args.preset.map_or_else(|| args.techniques.0.clone(), |preset| techniques_of(&preset));
@@ -45,7 +44,7 @@ pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
     let motion = motion_options(&args.motion, args.shadow_distance)?;
     let folders = folders_for(&args.scenes);
     let baselines = baselines(args, &folders)?;
-    // Before the long work, not after it.
+    // Checks come before the long work.
     let out = if args.run.resume { OutputDir::resume(&args.output) } else { OutputDir::create(&args.output) }?;
     let lab = open_device(&args.adapter)?;
     let mut expected = expected_files(&choices, motion.as_ref(), &folders);
@@ -79,12 +78,12 @@ pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
     if missing.is_empty() { Ok(()) } else { Err(Failure::incomplete(&missing, planned, &Kept::ToResume(&args.output))) }
 }
 
-/// What is missing in a folder of several, or in the only one.
+/// Name of a missing result, prefixed by its folder if there are several.
 fn named(folder: &str, name: &str) -> String {
     if folder.is_empty() { name.to_owned() } else { format!("{folder}, {name}") }
 }
 
-/// A folder for each scene in the report's own; for one scene that itself.
+/// Returns a subfolder of the report for each scene; the report's own folder for a single scene.
 fn folders_for(scenes: &[String]) -> Vec<String> {
     if scenes.len() == 1 {
         return vec![String::new()];
@@ -96,7 +95,7 @@ fn folders_for(scenes: &[String]) -> Vec<String> {
     folders
 }
 
-/// Every file that there will be, relative to the report's folder.
+/// Returns all files of the report, relative to its folder.
 fn expected_files(choices: &[TechniqueChoice], motion: Option<&MotionOptions>, folders: &[String]) -> Vec<String> {
     let techniques: Vec<String> = choices.iter().map(TechniqueChoice::name).collect();
     let motions = motion.map_or(&[][..], |options| &options.motions);
@@ -109,9 +108,9 @@ fn expected_files(choices: &[TechniqueChoice], motion: Option<&MotionOptions>, f
     folders.iter().flat_map(below).chain(index).collect()
 }
 
-/// Why there is no report of a scene.
+/// Reason why a scene has no report.
 enum Unfinished {
-    /// The deadline came before its truth was traced.
+    /// The deadline came before its ground truth was traced.
     Deadline,
     Failed(Failure),
 }
@@ -134,7 +133,7 @@ impl From<FileError> for Unfinished {
     }
 }
 
-/// What the scenes share.
+/// Data that the scenes share.
 struct Site<'a> {
     args: &'a CompareArgs,
     choices: &'a [TechniqueChoice],
@@ -145,7 +144,7 @@ struct Site<'a> {
 }
 
 impl Site<'_> {
-    /// Compares on one scene and writes its report, which grows with every technique.
+    /// Runs the comparison on one scene and writes its report, which grows with every technique.
     fn report_on(
         &mut self,
         scene: &str,
@@ -193,7 +192,7 @@ impl Site<'_> {
             std::fs::create_dir_all(&dir).map_err(|error| FileError::from_write(&dir, &error))?;
             let writer = writer.get_or_insert_with(|| ReportWriter::new(&dir));
             writer.write(report)?;
-            // An earlier report stays until there is something in its place.
+            // An earlier report stays until this one has content.
             if !expected.is_empty() {
                 out.place_now(std::mem::take(expected))?;
                 writer.moved_to(&out.path().join(folder));
@@ -210,13 +209,13 @@ impl Site<'_> {
     }
 }
 
-/// What says what is seen, and how it is shaded and shadowed.
+/// Arguments that define view, shading and shadow distance.
 fn arguments_of(args: &CompareArgs, scene: &str) -> String {
     let distance = args.shadow_distance.map_or(String::new(), |metres| format!(" --shadow-distance {metres}"));
     scene_arguments(scene, &args.view) + &distance + if args.coherent { " --coherent" } else { "" }
 }
 
-/// What is to move, with the cameras of its path read; `None` where nothing is.
+/// Returns the motions to measure, with the cameras of the path; `None` without motion.
 fn motion_options(args: &MotionArgs, shadow_distance_m: Option<f32>) -> Result<Option<MotionOptions>, Failure> {
     let Some(Motions(motions)) = &args.motion else { return Ok(None) };
     let needs = |option: &str, motion: Motion| {
@@ -241,13 +240,13 @@ fn motion_options(args: &MotionArgs, shadow_distance_m: Option<f32>) -> Result<O
     }))
 }
 
-/// A folder's name for a scene: its own name, with a number where that is taken.
+/// Returns a scene's folder name: the scene's name, with a number if that is taken.
 fn folder_for(scene: &str, taken: &[String]) -> String {
     let bare = builtin::spec_of(scene).unwrap_or(scene);
     let stem = Path::new(bare).file_stem().unwrap_or_default().to_string_lossy();
     let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
     let name: String = stem.chars().map(plain).collect();
-    // File systems may not tell cases apart.
+    // File systems may ignore case.
     let is_taken = |name: &str| taken.iter().any(|folder| folder.eq_ignore_ascii_case(name));
     let is_free = |name: &str| !name.is_empty() && !is_taken(name);
     if is_free(&name) {
@@ -287,7 +286,7 @@ fn print(report: &Report) {
         "MIB",
     ];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
-    // Numbered as in the report, where a preset has a technique at its defaults, too.
+    // Names are numbered as in the report, because a preset may list a technique twice.
     rows.extend(report.rows.iter().zip(report.names()).map(|(row, name)| {
         let figures = match &row.outcome {
             Outcome::Measured(measured) => {

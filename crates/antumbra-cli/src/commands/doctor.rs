@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::stdout::say;
 use crate::table;
 
-/// A feature beyond WebGPU's core: its name, and what uses it.
+/// Features beyond WebGPU's core, with names and uses.
 const FEATURES: [(wgpu::Features, &str, &str); 4] = [
     (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without it, of whole frames"),
     (wgpu::Features::DEPTH_CLIP_CONTROL, "depth clip control", "casters nearer than a light map's near plane"),
@@ -27,7 +27,7 @@ const FEATURES: [(wgpu::Features, &str, &str); 4] = [
     ),
 ];
 
-/// A limit's name, and where it is among others.
+/// A limit's name, and its accessor.
 type NamedLimit = (&'static str, fn(&wgpu::Limits) -> u64);
 
 const LIMITS: [NamedLimit; 7] = [
@@ -40,7 +40,7 @@ const LIMITS: [NamedLimit; 7] = [
     ("shared memory a workgroup, bytes", |limits| limits.max_compute_workgroup_storage_size.into()),
 ];
 
-/// Lists adapters, features and limits, and what each technique lacks here.
+/// Lists adapters, features and limits, and reasons why techniques are unavailable here.
 pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
     let adapters = list_adapters();
     if adapters.is_empty() {
@@ -90,7 +90,7 @@ fn print_device(adapter: &AdapterReport, problems: &[(TechniqueKind, Option<Stri
     table::print(&rows);
 }
 
-/// The same facts; a technique's value is null where it is ready.
+/// Returns the same information as JSON. The value of an available technique is null.
 fn as_json(adapters: &[AdapterReport], in_use: &AdapterReport, problems: &[(TechniqueKind, Option<String>)]) -> Value {
     let of_adapter = |adapter: &AdapterReport| {
         json!({

@@ -10,7 +10,7 @@ use crate::args::{Cli, ManArgs};
 use crate::failure::Failure;
 use crate::stdout::say;
 
-/// Writes a manual page for the program and one for each command.
+/// Writes a manual page for the program and one per command.
 pub fn man(args: &ManArgs) -> Result<(), Failure> {
     let folder = &args.output;
     fs::create_dir_all(folder).map_err(|error| Failure::Input(format!("cannot make {}: {error}", folder.display())))?;
@@ -20,7 +20,7 @@ pub fn man(args: &ManArgs) -> Result<(), Failure> {
     let mut pages = 0;
     while let Some(command) = commands.pop() {
         commands.extend(command.get_subcommands().cloned());
-        // `antumbra sweep plan` has the page antumbra-sweep-plan(1).
+        // For example, `antumbra sweep plan` has the page antumbra-sweep-plan(1).
         let name = command.get_display_name().unwrap_or_else(|| command.get_name()).to_owned();
         let mut page = Vec::new();
         Man::new(command).render(&mut page).expect("memory takes a page");

@@ -1,4 +1,4 @@
-//! The commands, one file each.
+//! The commands, one file each, and their shared helpers.
 
 mod advise;
 mod bench;
@@ -49,7 +49,7 @@ use crate::failure::Failure;
 use crate::suggest::did_you_mean;
 use crate::values::{Setting, Technique};
 
-/// What the command line says about the device.
+/// Returns the device options of the command line.
 fn device_options(args: &AdapterArgs) -> DeviceOptions {
     DeviceOptions { adapter: args.adapter.clone(), wanted_features: Gpu::WANTED_FEATURES }
 }
@@ -58,21 +58,21 @@ fn open_device(args: &AdapterArgs) -> Result<LabDevice, Failure> {
     Ok(LabDevice::new(&device_options(args))?)
 }
 
-/// A scene and how it is looked at, both counted from `anchor`: what is drawn and traced ten kilometres from the world's origin
-/// rounds as at it.
+/// A scene with camera and lights, relative to `anchor`, so that rounding ten kilometres from the world's origin is the
+/// same as at the origin.
 struct LoadedScene {
     scene: Scene,
     setup: Setup,
-    /// In the world.
+    /// Anchor in world space.
     anchor: Vec3,
-    /// It stands on a ground that was put there.
+    /// Whether a ground was added below the scene.
     has_ground: bool,
 }
 
-/// Loads the scene and its setup, and passes on what the loader had to leave out and what was assumed.
-/// A camera that frames the scene does so for pictures of this width over their height.
+/// Loads the scene and its setup. Reports the loader's omissions and assumptions as notes. `aspect` is the width over
+/// height of the images that an assumed camera must frame.
 fn load_scene(spec: &str, args: &SceneArgs, aspect: f32, progress: &dyn Progress) -> Result<LoadedScene, Failure> {
-    // The setup first: it is quickly read, and a large scene is not.
+    // The setup comes first: reading it is fast, so its errors appear early.
     let setup = args.setup.as_deref().map(Setup::from_file).transpose()?;
     progress.begin(&format!("loading {spec}"), 0);
     let mut scene = load(spec, &LoadOptions { time_s: args.time })?;
@@ -89,7 +89,7 @@ fn load_scene(spec: &str, args: &SceneArgs, aspect: f32, progress: &dyn Progress
         assumed.setup
     });
     let has_ground = args.ground.when().is_for(&scene, is_framed);
-    // After the camera, which frames what stands there and not what it stands on.
+    // The ground comes after the camera, which frames the scene without it.
     if has_ground {
         scene.stand_on_ground();
     }
@@ -101,20 +101,20 @@ fn load_scene(spec: &str, args: &SceneArgs, aspect: f32, progress: &dyn Progress
     Ok(LoadedScene { scene, setup: setup.counted_from(anchor), anchor, has_ground })
 }
 
-/// Width over height of the narrowest of some pictures, of which those that nobody gave a size are 16 : 9.
+/// Width over height of the narrowest image; 16 : 9 for an empty list.
 fn narrowest(sizes_px: &[UVec2]) -> f32 {
     let aspects = sizes_px.iter().map(|size_px| size_px.x as f32 / size_px.y as f32);
     aspects.min_by(f32::total_cmp).unwrap_or(16.0 / 9.0)
 }
 
-/// Has a camera's shadows end at a distance, where one is given on the command line.
+/// Sets a camera's shadow distance if one is given.
 fn end_shadows(camera: &mut Camera, distance_m: Option<f32>) {
     if let Some(end_m) = distance_m {
         camera.shadow_distance = Some(ShadowDistance::new(end_m));
     }
 }
 
-/// Refuses to write where there is something else than an earlier run, which has the file `own`: `of` what, where it has not.
+/// Refuses a folder that is not empty and lacks `own`, the file that marks an earlier run. `of` names the missing content in the message.
 fn check_folder(dir: &Path, own: &str, of: &str) -> Result<(), Failure> {
     check_named(dir)?;
     if dir.exists() && !dir.is_dir() {
@@ -127,7 +127,7 @@ fn check_folder(dir: &Path, own: &str, of: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes a folder that passed [`check_folder`], where it is not there.
+/// Creates a folder that passed [`check_folder`], unless it exists.
 fn make_folder(dir: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(dir).map_err(|error| not_written(dir, &error.to_string()))
 }
@@ -136,7 +136,7 @@ fn not_written(dir: &Path, why: &str) -> Failure {
     Failure::Input(format!("cannot write {}: {why}; name another folder", dir.display()))
 }
 
-/// The arguments that say what is seen, as they were given.
+/// Returns the arguments that define the view, as they were given.
 fn scene_arguments(spec: &str, view: &ViewArgs) -> String {
     let mut words = vec![spec.to_owned()];
     if let Some(setup) = &view.scene.setup {
@@ -154,14 +154,14 @@ fn scene_arguments(spec: &str, view: &ViewArgs) -> String {
     words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
 }
 
-/// The command line that runs now, as one could paste it.
+/// Returns the current command line, quoted for a shell.
 fn command_line() -> String {
-    // A path need not be Unicode.
+    // A path need not be Unicode, so it is converted with losses.
     let words = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
     std::iter::once("antumbra".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
-/// A word as a POSIX shell reads it back.
+/// Quotes a word for a POSIX shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./:,=+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -171,10 +171,10 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// The index of the light called `name`; the first without a name.
+/// Returns the index of the light called `name`; 0 without a name.
 fn light_index(lights: &[Light], name: Option<&str>) -> Result<usize, Failure> {
     let Some(name) = name else { return Ok(0) };
-    // A file may have names that differ in case alone.
+    // An exact match comes first, because names may differ in case alone.
     let is_alike = |light: &Light| light.name.to_lowercase() == name.to_lowercase();
     let found = lights.iter().position(|light| light.name == name).or_else(|| lights.iter().position(is_alike));
     found.ok_or_else(|| {
@@ -184,8 +184,8 @@ fn light_index(lights: &[Light], name: Option<&str>) -> Result<usize, Failure> {
     })
 }
 
-/// Writes the visibility of the light that was chosen by name; without a name that of every light, the first to `path` and
-/// the others beside it: `v.exr`, `v.fill.exr`.
+/// Writes the visibility of the chosen light to `path`. Without a choice writes all lights: the first to `path`, the others
+/// beside it (`v.exr`, `v.fill.exr`).
 fn write_visibilities(
     path: &Path,
     lights: &[Light],
@@ -207,7 +207,7 @@ fn write_visibilities(
     Ok(())
 }
 
-/// A file beside another, named for something too; with a number where that name is taken.
+/// Returns the path of a file beside another, with `name` inserted; numbered if that path is taken.
 fn beside(path: &Path, name: &str, taken: &[PathBuf]) -> PathBuf {
     let plain = |c: char| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' };
     let name: String = name.chars().map(plain).collect();
@@ -221,7 +221,7 @@ fn beside(path: &Path, name: &str, taken: &[PathBuf]) -> PathBuf {
         .expect("numbers do not end")
 }
 
-/// Deals the settings out to the techniques that they are for. Each must be of use to at least one.
+/// Assigns the settings to the techniques to which they apply. Each must apply to at least one.
 fn choices(techniques: &[Technique], settings: &[Setting]) -> Result<Vec<TechniqueChoice>, Failure> {
     let of = |named: &Technique| TechniqueChoice {
         settings: named.settings.clone(),
@@ -247,7 +247,7 @@ fn choices(techniques: &[Technique], settings: &[Setting]) -> Result<Vec<Techniq
     Ok(choices)
 }
 
-/// Says what is wrong with a setting that fits no chosen technique.
+/// Explains why a setting applies to no chosen technique.
 fn why_unused(techniques: &[Technique], setting: &Setting) -> String {
     let key = &setting.key;
     let is = |technique: &Technique, (kind, quality): (TechniqueKind, Option<Quality>)| {
@@ -273,26 +273,26 @@ fn why_unused(techniques: &[Technique], setting: &Setting) -> String {
     format!("--set: {} {verb} no parameter `{key}`{hint}; there are {}", names.join(", "), keys.join(", "))
 }
 
-/// Whether a technique has a parameter of that name, in any case.
+/// Whether a technique has a parameter of that name, ignoring case.
 fn has_parameter(kind: TechniqueKind, key: &str) -> bool {
     kind.param_specs().iter().any(|spec| spec.key.eq_ignore_ascii_case(key))
 }
 
-/// A parameter and its value as they are declared, checked before anything long begins.
+/// Validates a parameter's value, and returns key and value as declared.
 fn read_setting(kind: TechniqueKind, key: &str, value: &str) -> Result<(String, String), Failure> {
     let (spec, value) = kind.read(key, value).map_err(|error| Failure::Input(format!("--set: {error}")))?;
     Ok((spec.key.to_owned(), value.to_string()))
 }
 
-/// The commit that this program was built from.
+/// Commit from which this program was built.
 const COMMIT: &str = env!("ANTUMBRA_COMMIT");
 
-/// Writes JSON that people can read, whole or not at all.
+/// Writes indented JSON atomically.
 fn write_json(path: &Path, value: &Value) -> Result<(), Failure> {
     Ok(put_json(path, value)?)
 }
 
-/// The same for those who fail as the laboratory does.
+/// Writes indented JSON atomically; fails with the laboratory's error type.
 fn put_json(path: &Path, value: &Value) -> Result<(), LabError> {
     Ok(write_atomically(path, format!("{value:#}\n").as_bytes())?)
 }

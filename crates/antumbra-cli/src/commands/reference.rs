@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::progress::Bars;
 use crate::stdout::say;
 
-/// Traces and writes the picture, and the visibility where asked for.
+/// Traces the ground truth, and writes the image and, if requested, the visibility.
 pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
     check_picture_path(&args.output)?;
     args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
@@ -22,7 +22,7 @@ pub fn reference(args: &ReferenceArgs, bars: &Bars) -> Result<(), Failure> {
         load_scene(&args.scene, &args.view.scene, narrowest(&[args.view.size]), bars)?;
     let chosen = args.light.as_deref().map(|name| light_index(&setup.lights, Some(name))).transpose()?;
     let options = VisibilityOptions { samples: args.samples, seed: args.seed, ..VisibilityOptions::default() };
-    // An adapter that is named and not there is known before the long work; without any, the truth can be had all the same.
+    // The device is opened before the long work, so that a wrong adapter name fails early. Tracing itself needs no adapter.
     let lab = match LabDevice::new(&device_options(&args.adapter)) {
         Ok(lab) => Some(lab),
         Err(DeviceError::NoAdapter) if args.adapter.adapter.is_none() => None,

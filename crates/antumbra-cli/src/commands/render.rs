@@ -20,14 +20,14 @@ use crate::commands::{
 use crate::failure::Failure;
 use crate::progress::Bars;
 
-/// Times are medians of these, as far as there is time.
+/// Timing parameters: number of frames of the medians, and time limit.
 const TIMED: Timing =
     Timing { warm_up: 2, frames: 11, at_least: Duration::ZERO, at_most: Duration::from_secs(30), end: None };
 
-/// Renders and writes the picture, and what else is asked for.
+/// Renders and writes the image and the other requested files.
 pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     let choice = choices(std::slice::from_ref(&args.technique), &args.settings)?.remove(0);
-    // Before the long work, not after it.
+    // Checks come before the long work.
     check_picture_path(&args.output)?;
     args.visibility.as_deref().map_or(Ok(()), check_visibility_path)?;
     args.timings.as_deref().map_or(Ok(()), check_json_path)?;
@@ -49,7 +49,7 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
         lights.clone().map(|light| view.draw(technique, light, args.frames)).collect::<Result<Vec<_>, _>>()
     };
     let drawn = match draw(&mut technique) {
-        // Weights take memory. Nobody asked for them.
+        // Irradiance weights take memory. They are a default, so fall back to visibility without them.
         Err(LabError::Technique(Error::Unsupported { .. })) if shading != choice => {
             shading = choice.clone();
             technique = view.create(&shading)?;
@@ -58,7 +58,7 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
         drawn => drawn?,
     };
     let picture = view.shade(&visibilities_of(&drawn))?;
-    // A mask by irradiance is no visibility.
+    // A mask weighted by irradiance is not visibility, so the visibility needs another draw.
     let apart =
         if args.visibility.is_some() && shading != choice { Some(draw(&mut view.create(&choice)?)?) } else { None };
     bars.end();
@@ -75,7 +75,7 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
         write_visibilities(path, &setup.lights, &visibilities_of(drawn), chosen, bars)?;
     }
     if let Some(path) = &args.timings {
-        // By a state of its own: what is written is as it would be without.
+        // Timing uses a state of its own, so that it does not change the written image.
         let timed = |light: usize| {
             let TechniqueRun { timings, memory_bytes, auto_map_sizes, .. } =
                 view.run(&mut view.create(&shading)?, light, &TIMED)?;

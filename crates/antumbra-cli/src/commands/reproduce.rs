@@ -25,7 +25,7 @@ use crate::values::is_all;
 /// An exhibit with its full name.
 type Named = (String, &'static Paper, &'static Exhibit);
 
-/// Lists the papers' exhibits, or runs some.
+/// Lists the papers' exhibits, or runs the chosen ones.
 pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     if args.ids.is_empty() && !args.all {
         if args.output.is_some() || args.json.is_some() {
@@ -96,7 +96,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     Err(Failure::incomplete(session.missing(), all, &dir.as_deref().map_or(alone, Kept::ToResume)))
 }
 
-/// What can be known to be wrong before the long work; the baseline, where there is one.
+/// Validates the options before the long work. Returns the baseline, if any.
 fn check(args: &ReproduceArgs, dir: Option<&Path>) -> Result<Option<Baseline>, Failure> {
     if args.run.resume && dir.is_none() {
         return Err(Failure::Input("--resume: reproduce resumes a folder; name it by -o DIR".into()));
@@ -110,7 +110,7 @@ fn check(args: &ReproduceArgs, dir: Option<&Path>) -> Result<Option<Baseline>, F
     Ok(args.run.baseline.as_deref().map(|path| Baseline::read(path, Source::Reproduce)).transpose()?)
 }
 
-/// What stands after an exhibit's name to run it in the same way.
+/// Returns the arguments after an exhibit's name that repeat the run.
 fn arguments(args: &ReproduceArgs, dir: Option<&Path>) -> String {
     let mut text = String::new();
     let mut add = |name: &str, value: Option<String>| {
@@ -203,7 +203,7 @@ fn choose(args: &ReproduceArgs) -> Result<Vec<Named>, Failure> {
                 did_you_mean(id, names)
             )));
         }
-        // A paper and one of its figures are that figure once.
+        // An exhibit that is named directly and by its paper runs once.
         for one in matching {
             if chosen.iter().all(|(name, ..)| *name != one.0) {
                 chosen.push(one);

@@ -72,7 +72,7 @@ fn list_as_json() -> Value {
 
 type Exporter = fn(&Scene) -> Result<Vec<u8>, SceneError>;
 
-/// Text or container, as the file's name says.
+/// Returns the exporter for a path's extension: text or binary container.
 fn exporter_for(output: &Path) -> Result<Exporter, Failure> {
     Ok(match check_ending(output, "a scene", &["glb", "gltf"])? {
         "glb" => export_glb,

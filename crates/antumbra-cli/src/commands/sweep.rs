@@ -14,7 +14,7 @@ use crate::progress::Bars;
 use crate::stdout::say;
 use crate::values::{Setting, Technique};
 
-/// Plans, runs a part, or puts together.
+/// Plans a sweep, runs a shard, or merges results.
 pub fn sweep(args: &SweepArgs, bars: &Bars) -> Result<(), Failure> {
     match &args.command {
         SweepCommand::Plan(args) => plan(args, bars),
@@ -45,7 +45,7 @@ fn plan(args: &SweepPlanArgs, bars: &Bars) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Every choice that a setting is for, once with each of its values.
+/// Multiplies each choice to which a setting applies by the setting's values.
 fn varied(
     techniques: &[Technique],
     chosen: Vec<TechniqueChoice>,
@@ -76,7 +76,7 @@ fn varied(
 }
 
 fn run(args: &SweepRunArgs, bars: &Bars) -> Result<(), Failure> {
-    // What is wrong with the folder is said before a device is looked for.
+    // Errors of the folder come before a device is opened.
     Plan::read(&args.dir)?;
     let lab = open_device(&args.adapter)?;
     let done = run_shard(&lab, &args.dir, args.shard, COMMIT, bars)?;

@@ -10,7 +10,7 @@ use crate::stdout::say;
 use crate::table;
 use crate::technique_text::plain;
 
-/// Lists the techniques, or what is to be known of one.
+/// Lists the techniques, or describes one.
 pub fn techniques(args: &TechniquesArgs) -> Result<(), Failure> {
     if args.json {
         let value = args.name.map_or_else(|| TechniqueKind::ALL.iter().map(|kind| json_of(*kind)).collect(), json_of);
@@ -61,7 +61,7 @@ fn print_one(kind: TechniqueKind) {
     say!("\nSet them with --set KEY=VALUE (render) or --set {kind}.KEY=VALUE (compare, bench).");
 }
 
-/// Where it departs from its paper, and what turns that off.
+/// Prints a technique's departures from its paper, and the settings that undo them.
 fn print_printed(kind: TechniqueKind) {
     let Some(printed) = kind.printed() else { return };
     say!("\nAs published: {kind}:{}. What ours does instead:", Quality::Paper);
@@ -77,7 +77,7 @@ fn print_printed(kind: TechniqueKind) {
     }
 }
 
-/// A technique's facts, parameters and qualities.
+/// Returns a technique's description, parameters and qualities.
 fn json_of(kind: TechniqueKind) -> Value {
     let facts = kind.facts();
     let qualities: Map<String, Value> = Quality::LADDER
@@ -115,11 +115,11 @@ fn json_of_parameter(spec: &ParamSpec) -> Value {
     })
 }
 
-/// Numbers and switches as JSON has them, the others by name.
+/// Returns numbers and switches as JSON values, other values as text.
 fn number_of(value: &ParamValue) -> Value {
     match value {
         ParamValue::Bool(value) => json!(value),
-        // As it is written: 0.1 rather than the nearest double's digits.
+        // Parsing the text keeps 0.1 as it is; converting the `f32` to a double would add digits.
         ParamValue::U32(_) | ParamValue::F32(_) => {
             let text = value.to_string();
             serde_json::from_str(&text).unwrap_or(Value::String(text))

@@ -3,7 +3,7 @@
 use crate::args::WindowArgs;
 use crate::failure::Failure;
 
-/// Opens the window, and returns once it is closed.
+/// Opens the window and returns once it is closed.
 #[cfg(feature = "viewer")]
 pub fn view(args: WindowArgs) -> Result<(), Failure> {
     use antumbra_lab::output_files::{check_ending, check_writable};
@@ -45,7 +45,7 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
     })
 }
 
-/// Says how to get a window.
+/// Reports that this build has no window, and how to get it.
 #[cfg(not(feature = "viewer"))]
 pub fn view(_args: WindowArgs) -> Result<(), Failure> {
     let what = "this program was built without its window; build it with `cargo build --bin antumbra`, which has it";

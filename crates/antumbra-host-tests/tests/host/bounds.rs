@@ -1,4 +1,4 @@
-//! Casters whose bounds are unknown or reach far: what lies outside a light's range of depths changes nothing.
+//! Casters with unknown or large bounds: geometry outside a light's depth range does not affect masks.
 
 use antumbra::TechniqueKind;
 use antumbra::light::{Aabb, Light, LightShape};
@@ -9,14 +9,14 @@ use antumbra_host_tests::rays::{Rays, Truth, rmse};
 use antumbra_host_tests::scene::{Camera, Scene, base_light, base_light_of};
 use glam::{Mat4, Vec3};
 
-/// Points of the light that the truth is of.
+/// Light samples of the reference.
 const POINTS: u32 = 256;
 
-/// What bounds may change of a mask's error: where nobody knows how near receivers are, a map's texels are wider, and a lamp's view
-/// is cut into rings that known bounds leave empty (`pcss` under the lamp has .0083 in one view, .0119 in several).
+/// Maximum change of a mask's error due to bounds. Without bounds of receivers, texels are larger, and a lamp's view is split into rings
+/// that known bounds would show to be empty (the error of `pcss` under the lamp is .0083 in one view, .0119 in several).
 const MOST_MORE: f64 = 0.004;
 
-/// The base scene with every object's matrices in a buffer, in the same box of all.
+/// The base scene with every object's matrix in a buffer, with the same bounds for all.
 fn gpu_driven(device: &Device, scene: &Scene, bounds: Option<Aabb>) -> HostCasters {
     let matrices: Vec<Mat4> = scene.objects.iter().map(|object| object.world_from_object).collect();
     let buffer = matrix_buffer(device, &matrices);
@@ -35,7 +35,7 @@ struct Base {
 }
 
 impl Base {
-    /// Under the base scene's lamp and under a sun.
+    /// Draws the base scene for its own lamp and for a sun.
     fn new(ground_half_m: f32) -> Option<Self> {
         let device = Device::shared()?;
         let camera = Camera::base();
@@ -49,7 +49,7 @@ impl Base {
         Some(Self { device, picture: Picture::draw(device, &scene, &camera), scene, lights })
     }
 
-    /// The error of a mask by default parameters, where the host knows the receivers' bounds or does not.
+    /// Error of a mask with default parameters; `bounds` are the receivers' bounds, if the host knows them.
     fn error(&self, kind: TechniqueKind, casters: &HostCasters, of_light: usize, bounds: Option<Aabb>) -> f64 {
         rmse(&self.mask(kind, casters, of_light, bounds), &self.lights[of_light].1)
     }
@@ -61,7 +61,7 @@ impl Base {
     }
 }
 
-/// The techniques that maps' depths matter to in each their own way.
+/// Techniques that use the depths of maps in different ways.
 const TECHNIQUES: [&str; 4] = ["pcss", "multi_layer", "essm", "sample_based"];
 
 #[test]
@@ -77,7 +77,7 @@ fn bounds_of_instances_may_reach_any_distance() {
 
 fn masks_are_as_good_with(bounds: &[Option<Aabb>]) {
     let Some(base) = Base::new(10.0) else { return };
-    // In buffers all the same: what is turned inside out nobody knows of those.
+    // The baseline uses buffers, too, because the library cannot know whether matrices in buffers mirror objects.
     let known = gpu_driven(base.device, &base.scene, Some(base.scene.bounds()));
     let far: Vec<_> = bounds.iter().map(|bounds| gpu_driven(base.device, &base.scene, *bounds)).collect();
     for name in TECHNIQUES {
@@ -98,7 +98,7 @@ fn masks_are_as_good_with(bounds: &[Option<Aabb>]) {
     }
 }
 
-/// A ground that reaches to the horizon, and bounds of it that say so.
+/// A ground that extends to the horizon, with bounds of that size.
 #[test]
 fn a_ground_may_reach_to_the_horizon() {
     let Some(near) = Base::new(10.0) else { return };

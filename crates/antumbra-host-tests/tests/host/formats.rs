@@ -1,7 +1,7 @@
-//! Masks of every format, of every light shape, in one view and in several, by every technique: no validation message.
+//! Every technique draws masks of every format, for every light shape in one view and in several, without validation messages.
 //!
-//! wgpu's validation asks no driver, so the device is the one that does nothing; that of the machine is asked in the long tier, and what masks
-//! of every format hold in the library's tests.
+//! wgpu's validation needs no driver, so the no-op device suffices. The long tier also uses the machine's device. The
+//! library's own tests check the content of every format.
 
 use antumbra::light::{Light, LightShape};
 use antumbra::{Frame, Mask, MaskChannels, Recorder, TechniqueKind};
@@ -11,7 +11,7 @@ use antumbra_host_tests::raster::Picture;
 use antumbra_host_tests::scene::{Camera, Scene, base_light_of};
 use glam::{UVec2, Vec2, Vec3};
 
-/// Every shape, small.
+/// Small lights of every shape.
 fn shapes() -> [LightShape; 6] {
     [
         LightShape::Rectangle { size_m: Vec2::new(1.2, 0.8) },
@@ -23,7 +23,7 @@ fn shapes() -> [LightShape; 6] {
     ]
 }
 
-/// A light that one view holds, and one of the same shape that is split into several: a lamp among what receives.
+/// A light that needs one view, and one of the same shape among the receivers that is split into several.
 fn lights(shape: LightShape) -> [Light; 2] {
     let several = match &shape {
         LightShape::Points { .. } => {
@@ -52,7 +52,7 @@ fn no_message_on_the_machine_s_own_device() {
 
 fn says_nothing(device: &Device) {
     let camera = Camera { size_px: UVec2::new(16, 9), ..Camera::base() };
-    // A sun has one view of a few metres, and several of kilometres.
+    // A sun needs one view for a few metres and several for kilometres.
     let [small, large] = [1.0, 2500.0].map(|half_m| {
         let scene = Scene::base(half_m);
         (Picture::draw(device, &scene, &camera), HostCasters::new(device, &scene))

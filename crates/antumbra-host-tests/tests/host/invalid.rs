@@ -1,5 +1,4 @@
-//! Input that is refused: by every technique, in one line that says what is wrong and what would be right, before anything
-//! is recorded.
+//! Invalid input: every technique refuses it in one line that names the problem and valid values, before anything is recorded.
 
 use antumbra::casters::{Caster, Indices, InstanceBuffer, Instances, Mesh as LibraryMesh, PositionFormat, Positions};
 use antumbra::light::{Aabb, Light, LightShape, ShadowDistance};
@@ -17,7 +16,7 @@ use wgpu::TextureFormat as Format;
 
 const SIZE: UVec2 = UVec2::new(16, 9);
 
-/// A frame that every technique takes.
+/// A frame that every technique accepts.
 struct Good {
     device: &'static Device,
     picture: Picture,
@@ -45,7 +44,7 @@ impl Good {
         Frame { light: &self.light, casters: self.casters.all(), receivers: self.picture.receivers(), mask: &self.mask }
     }
 
-    /// Every technique refuses the changed frame in one line that has all `words` in it.
+    /// Checks that every technique refuses the changed frame in one line that contains all `words`.
     fn is_refused(&mut self, words: &[&str], change: impl for<'a> Fn(Frame<'a>) -> Frame<'a>) {
         let mut shadows = std::mem::take(&mut self.shadows);
         for shadow in &mut shadows {
@@ -60,7 +59,7 @@ impl Good {
     }
 }
 
-/// A view of a texture of its own, of the size of the receivers.
+/// Creates a texture of the receivers' size and returns its view.
 fn view(device: &Device, format: Format, usage: wgpu::TextureUsages) -> wgpu::TextureView {
     texture(device, SIZE, 1, format, usage).create_view(&wgpu::TextureViewDescriptor::default())
 }
@@ -102,7 +101,7 @@ fn lights_and_cameras() {
     seen_by(&mut good, &["shadow distance"], |it| {
         it.shadow_distance = Some(ShadowDistance { end_m: f32::NAN, fade_m: 1.0 });
     });
-    // A box of no receivers is no error, nor is an infinite one.
+    // Empty and infinite bounds of receivers are valid.
     for bounds in [Aabb::EMPTY, Aabb::EVERYTHING] {
         let receivers = good.picture.receivers().with_bounds(bounds);
         mask_of(
@@ -208,7 +207,7 @@ fn masks_in_textures() {
         .expect("in the texture");
 }
 
-/// A reference that outlives the test's frames: leaked, since the changed frame borrows for any lifetime.
+/// Leaks a copy, because the changed frame borrows for any lifetime.
 fn long<T: Clone>(value: &T) -> &'static T {
     Box::leak(Box::new(value.clone()))
 }
@@ -217,7 +216,7 @@ fn long<T: Clone>(value: &T) -> &'static T {
 fn casters_of_a_frame() {
     let Some(mut good) = Good::new() else { return };
     let device = good.device;
-    // Of the same instance, and of another, whose objects have the same numbers.
+    // Devices of the same instance and of another; objects of both have the same identifiers.
     for other in [Some(device.another()), Device::new()].into_iter().flatten() {
         let of_other: &'static HostCasters = Box::leak(Box::new(HostCasters::new(&other, &Scene::base(10.0))));
         good.is_refused(&["the set of casters", "another device"], |frame| Frame { casters: of_other.all(), ..frame });
@@ -263,7 +262,7 @@ fn casters_of_a_frame() {
     }
 }
 
-/// Meshes, instances and surfaces that a set refuses.
+/// A set refuses invalid meshes, instances and surfaces.
 #[test]
 fn casters_of_a_set() {
     let Some(device) = Device::shared() else { return };
@@ -315,14 +314,14 @@ fn parameters_out_of_range() {
     assert!(error.contains("pcss: `samples` cannot be `0`"), "{error}");
 }
 
-/// A strip with a restart, in 16 and 32 bits and without indices, casts what the list of its triangles does.
+/// A strip with a restart, with 16-bit or 32-bit indices or without indices, casts the same shadow as its triangle list.
 #[test]
 fn strips_cast_what_their_triangles_do() {
     let Some(device) = Device::shared() else { return };
     let camera = Camera { size_px: UVec2::new(48, 27), ..Camera::base() };
     let ground = Object::of(Mesh::ground(10.0));
     let picture = Picture::draw(device, &Scene { objects: vec![ground.clone()] }, &camera);
-    // Two squares apart, and a vertex that would be seen if it were drawn to.
+    // Two separate squares, and a vertex that would be visible if it were connected to them.
     let corner = |x: f32, z: f32| Vec3::new(x, 1.5, z);
     let mut positions = Vec::new();
     for x in [-2.0, 0.5] {
@@ -372,7 +371,7 @@ fn strips_cast_what_their_triangles_do() {
     }
 }
 
-/// After all that was refused a state draws as ever.
+/// A state draws correctly after refused frames.
 #[test]
 fn what_was_refused_leaves_nothing() {
     let Some(mut good) = Good::new() else { return };

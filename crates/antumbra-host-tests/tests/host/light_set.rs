@@ -1,5 +1,5 @@
-//! Many lights within a budget: which are redrawn, how old masks grow, what is made, and how far the masks are from those of a frame in
-//! which all are redrawn.
+//! Light sets with a budget: which lights are redrawn, the age of masks, created resources, and the error against frames
+//! that redraw all lights.
 
 use std::collections::HashMap;
 use std::time::Instant;
@@ -17,10 +17,10 @@ use glam::{Mat4, UVec2, Vec2, Vec3};
 
 use super::many::{crowd, place};
 
-/// Range of the lamps: each reaches a part of the crowd.
+/// Range of the lamps, metres: each reaches a part of the crowd.
 const RANGE_M: f32 = 2.5;
 
-/// Where lamp `i` of `count` is, in rows over the crowd.
+/// Position of lamp `i` of `count`, in rows above the crowd.
 fn lamp_at(i: usize, count: usize) -> Vec3 {
     let side = (count as f32).sqrt().ceil();
     let (column, row) = ((i as f32) % side, (i as f32 / side).floor());
@@ -31,7 +31,7 @@ fn lamp(center: Vec3) -> RangedLight {
     RangedLight::new(Light::new(LightShape::Sphere { radius_m: 0.08 }, center, center - Vec3::Y), RANGE_M)
 }
 
-/// A hall of lamps over a crowd of boxes.
+/// Lamps above a crowd of boxes.
 struct Hall<'a> {
     device: &'a Device,
     casters: HostCasters,
@@ -61,7 +61,7 @@ impl<'a> Hall<'a> {
         self.casters.update(self.device);
     }
 
-    /// One frame of the lights, with receivers that may be the picture's; the lights that it redraws.
+    /// Draws one frame with modified receivers. Returns the redrawn lights.
     fn draw_of(
         &mut self,
         budget: Budget,
@@ -82,7 +82,7 @@ impl<'a> Hall<'a> {
         self.draw_of(budget, |receivers| receivers)
     }
 
-    /// One of a depth buffer that stays as it is.
+    /// Draws one frame with an unchanged depth buffer.
     fn draw_still(&mut self, budget: Budget) -> Vec<LightId> {
         self.draw_of(budget, |receivers| receivers.with_version(0))
     }
@@ -96,8 +96,8 @@ impl<'a> Hall<'a> {
     }
 }
 
-/// Where all changes in every frame, so many lights are redrawn in each as the budget says; none waits longer than five times the frames
-/// in which all could be redrawn, and what is redrawn makes no wgpu object.
+/// If everything changes in every frame, each frame redraws as many lights as the budget allows. No light waits longer than
+/// five times the number of frames that redrawing all takes, and redrawing creates no wgpu resource.
 #[test]
 fn budgets_are_kept_and_no_light_waits_for_ever() {
     let device = Device::idle();
@@ -134,7 +134,7 @@ fn budgets_are_kept_and_no_light_waits_for_ever() {
     }
 }
 
-/// What 64 lamps over a hundred boxes take of which 20 move, by several budgets: of the processor for each frame, and of memory.
+/// Prints CPU time per frame and memory for 64 lamps above a hundred boxes, 20 of which move, with several budgets.
 #[test]
 #[ignore = "prints figures"]
 fn what_sixty_four_lamps_take() {
@@ -162,7 +162,7 @@ fn what_sixty_four_lamps_take() {
     }
 }
 
-/// Nothing that moves outside of a lamp's range changes its mask; a lamp that moves is redrawn alone.
+/// Casters that move outside a lamp's range do not affect its mask; a lamp that moves is redrawn alone.
 #[test]
 fn only_lights_that_something_changed_for_are_redrawn() {
     let device = Device::idle();
@@ -172,7 +172,7 @@ fn only_lights_that_something_changed_for_are_redrawn() {
     assert_eq!(hall.draw_still(all).len(), 16);
     assert_eq!(hall.draw_still(all).len(), 0);
     assert_eq!(hall.states(), [MaskState::Current; 16]);
-    // A box at one end of the crowd: it moves within .3 m of its place, and is .3 m wide.
+    // This box at one end of the crowd moves within .3 m of its position and is .3 m wide.
     hall.move_boxes(std::iter::once(0), 40);
     let drawn = hall.draw_still(all);
     let corner = Vec3::new(-4.5, 0.5, -4.5);
@@ -186,20 +186,20 @@ fn only_lights_that_something_changed_for_are_redrawn() {
     let moved = hall.ids[9];
     hall.lights.set_light(moved, lamp(lamp_at(9, 16) + 0.1 * Vec3::X)).expect("a good light");
     assert_eq!(hall.draw_still(all), [moved]);
-    // A parameter changes the mask, another range does not if the same casters are in it.
+    // A changed parameter causes a redraw; an unchanged frame does not.
     hall.lights.shadow_mut(hall.ids[3]).expect("one of the set's").set("samples", "8").expect("in range");
     assert_eq!(hall.draw_still(all), [hall.ids[3]]);
     assert_eq!(hall.draw_still(all).len(), 0);
 }
 
-/// What the camera sees nothing of is culled; what comes into view has no mask until it is drawn, and goes before what has one.
+/// Lights without visible receivers are culled. A light that becomes visible has no mask until it is drawn, and has priority.
 #[test]
 fn lights_out_of_view_are_culled_and_begin_anew() {
     let device = Device::idle();
     let shadows = (0..16).map(|_| small_shadow(&device, kind_of("hard"))).collect();
     let mut hall = Hall::new(&device, UVec2::new(16, 9), shadows);
     hall.draw(Budget::Lights(u32::MAX));
-    // Looks away from the hall.
+    // The camera looks away from the hall.
     let camera = Camera { eye: Vec3::new(40.0, 5.0, 8.0), target: Vec3::new(90.0, 0.0, 0.0), ..Camera::base() };
     let view_from_world = camera.view_from_world();
     let away = hall.draw_of(Budget::Lights(2), |mut receivers| {
@@ -217,7 +217,7 @@ fn lights_out_of_view_are_culled_and_begin_anew() {
     }
 }
 
-/// Lights with maps of different sizes: texels are those of what was drawn last.
+/// A budget in texels counts the maps that each light drew last, which differ in size.
 #[test]
 fn texels_are_counted_by_what_lights_draw() {
     let device = Device::idle();
@@ -227,7 +227,7 @@ fn texels_are_counted_by_what_lights_draw() {
     let mut hall = Hall::new(&device, size_px, sizes.map(of_size).into());
     let pixels = 16 * 9;
     hall.draw(Budget::Texels(u64::MAX));
-    // A lamp has as many maps as faces of a cube about it have receivers.
+    // A lamp has a map for each cube face with receivers.
     let costs: Vec<u64> = (hall.ids.iter().zip(sizes))
         .map(|(id, size)| {
             let maps = hall.lights.shadow(*id).expect("one of the set's").drawn_maps();
@@ -249,12 +249,12 @@ fn texels_are_counted_by_what_lights_draw() {
         over += u32::from(spent > budget);
         places.into_iter().for_each(|i| drawn[i] += 1);
     }
-    // The large one alone is more than the budget, and has its turn.
+    // The large map alone exceeds the budget, but has its turn.
     let is_over = over == drawn[3] && (2..=40).contains(&over);
     assert!(drawn.iter().all(|times| *times >= 2) && is_over, "{drawn:?}, {over} frames over the budget");
 }
 
-/// Work that is dropped leaves masks that are drawn anew, and an error in one light's frame spoils no other's.
+/// Dropped work leaves masks to be redrawn, and an error in one light's frame does not affect the others.
 #[test]
 fn frames_that_come_to_nothing_are_made_up_for() {
     let device = Device::idle();
@@ -268,7 +268,7 @@ fn frames_that_come_to_nothing_are_made_up_for() {
     assert_eq!(hall.draw_still(Budget::Lights(1)).len(), 1);
     let missing = |hall: &Hall<'_>| hall.states().iter().filter(|state| **state == MaskState::Missing).count();
     assert_eq!(missing(&hall), 3);
-    // One mask does not fit.
+    // One mask has the wrong size.
     let small = Mask::new(device.wgpu(), UVec2::new(8, 8));
     let missing_one = *hall.ids.iter().find(|id| hall.state(**id) == MaskState::Missing).expect("three are");
     let good = hall.lights.mask(missing_one).expect("one of the set's").clone();
@@ -281,7 +281,7 @@ fn frames_that_come_to_nothing_are_made_up_for() {
     assert_eq!(hall.draw_still(all).len(), 0);
 }
 
-/// What is refused, each in one line.
+/// Each invalid input is refused in one line.
 #[test]
 fn bad_lights_masks_and_budgets_are_refused() {
     let device = Device::idle();
@@ -321,8 +321,8 @@ fn bad_lights_masks_and_budgets_are_refused() {
     assert!(hall.lights.set_light(id, good).expect_err("removed").to_string().contains("the light is not in this set"));
 }
 
-/// Masks of eight lamps over a crowd that moves, in some budget's frames: their root mean square from those of frames that redraw all,
-/// over pixels within range of the lamps.
+/// The RMS difference from frames that redraw all lights falls as the budget grows: eight lamps above a moving crowd, over
+/// pixels within the lamps' range.
 #[test]
 fn masks_come_nearer_to_those_of_all_lights_redrawn_as_the_budget_grows() {
     let Some(device) = Device::shared() else { return };
@@ -339,7 +339,7 @@ fn masks_come_nearer_to_those_of_all_lights_redrawn_as_the_budget_grows() {
         let of_lights = (0..8).map(shadow).collect();
         let packed = Mask::packed(device.wgpu(), size_px, MaskChannels::One, Mask::FORMAT, 8);
         let mut hall = Hall::with_masks(device, size_px, of_lights, packed);
-        // The first frame draws all.
+        // The first frame draws all lights.
         hall.draw(Budget::Lights(u32::MAX));
         let of_frame = |frame: u32| {
             hall.move_boxes(0..100, 4 * frame);
@@ -361,7 +361,7 @@ fn masks_come_nearer_to_those_of_all_lights_redrawn_as_the_budget_grows() {
     assert!(rms.windows(2).all(|pair| pair[1] < 0.95 * pair[0]), "{rms:?}");
 }
 
-/// Packed masks hold what masks of their own do, rounded to eight bits, whichever of them a frame redraws.
+/// Packed masks equal separate masks, rounded to eight bits, whichever of them a frame redraws.
 #[test]
 fn packed_masks_are_those_of_their_own() {
     let Some(device) = Device::shared() else { return };
@@ -375,7 +375,7 @@ fn packed_masks_are_those_of_their_own() {
         let of_all = hall.lights.light(id).expect("one of the set's").clone();
         hall.lights.set_light(id, RangedLight { range_m: f32::INFINITY, ..of_all }).expect("a good light");
     }
-    // Two a frame: what was drawn before stays.
+    // Each frame draws two lights and keeps the masks drawn before.
     for _ in 0..3 {
         assert_eq!(device.validated("packed", || hall.draw_still(Budget::Lights(2))).len(), 2);
     }
@@ -391,7 +391,7 @@ fn packed_masks_are_those_of_their_own() {
     }
 }
 
-/// Within a light's range the casters that reach into it are all that matter.
+/// Within a light's range only casters that reach into it matter.
 #[test]
 fn casters_beyond_the_range_shade_nothing_within_it() {
     let Some(device) = Device::shared() else { return };

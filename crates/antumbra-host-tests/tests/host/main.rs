@@ -1,4 +1,4 @@
-//! What an independent host expects of the library.
+//! Tests of the library by an independent host.
 
 mod bounds;
 mod formats;

@@ -1,4 +1,4 @@
-//! Many moving lamps among many moving casters: what they take, and that they make nothing anew.
+//! Many moving lamps among many moving casters: CPU time, memory, and no creation of resources.
 
 use std::time::{Duration, Instant};
 
@@ -18,7 +18,7 @@ pub(crate) fn crowd() -> Scene {
     scene
 }
 
-/// Where a box is in a frame.
+/// Matrix of a box in a frame.
 pub(crate) fn place(i: usize, frame: u32) -> Mat4 {
     let turn = frame as f32 * 0.05 + i as f32;
     let middle = Vec3::new((i % 10) as f32 - 4.5, 0.5, (i / 10) as f32 - 4.5);
@@ -26,7 +26,7 @@ pub(crate) fn place(i: usize, frame: u32) -> Mat4 {
         * Mat4::from_rotation_y(turn)
 }
 
-/// Where a lamp is in a frame, among the boxes.
+/// A lamp among the boxes in a frame.
 fn lamp(i: usize, frame: u32) -> Light {
     let turn = frame as f32 * 0.03 + 0.7 * i as f32;
     let middle = Vec3::new((i % 8) as f32 - 3.5, 1.6, 2.0 * (i / 8) as f32 - 3.0);
@@ -50,7 +50,7 @@ impl<'a> Crowd<'a> {
         Self { device, casters: HostCasters::new(device, &scene), picture, shadows }
     }
 
-    /// One frame of all lamps in one submission; gives what the processor took for it.
+    /// Draws one frame of all lamps in one submission. Returns its CPU time.
     fn draw(&mut self, frame: u32) -> Duration {
         for i in 0..100 {
             self.casters.set_matrix(i + 1, place(i, frame));
@@ -74,7 +74,7 @@ impl<'a> Crowd<'a> {
     }
 }
 
-/// Where maps are shared each light draws its own before it reads it: the masks are those of lights that own theirs.
+/// With shared maps each light draws its map before reading it, so the masks equal those of lights that own maps.
 #[test]
 fn lights_that_share_maps_have_the_masks_of_those_that_own_them() {
     let Some(device) = Device::shared() else { return };
@@ -93,16 +93,16 @@ fn lights_that_share_maps_have_the_masks_of_those_that_own_them() {
         assert!(owned == shared, "{name}");
         println!("{name}: {of_owned:?}, {of_shared:?}");
         assert!(of_owned.own_maps > 0 && of_shared.own_maps == 0, "{name}: {of_owned:?}, {of_shared:?}");
-        // Eight lamps of several parts each take turns with one part's textures.
+        // Eight lamps of several parts each share the textures of one part.
         assert!(of_shared.shared - of_owned.shared <= of_owned.own_maps / 8, "{name}: {of_owned:?}, {of_shared:?}");
-        // A budget in between is kept to.
+        // A budget in between is respected.
         let (some, of_some) = draw(of_owned.own_maps / 2);
         assert!(some == owned, "{name}");
         assert!((1..=of_owned.own_maps / 2).contains(&of_some.own_maps), "{name}: {of_some:?}");
     }
 }
 
-/// Thirty-two lamps at default settings hold to the memory that is promised of the techniques of one map. What all take is printed.
+/// Thirty-two lamps at default settings need no more memory than promised for the techniques of one map. Memory of all is printed.
 #[test]
 fn thirty_two_lamps_hold_to_their_memory() {
     const PROMISED: [&str; 5] = ["pcss", "smrt", "essm", "vssm", "cssm"];
@@ -130,10 +130,10 @@ fn thirty_two_lamps_hold_to_their_memory() {
     }
 }
 
-/// A number of lamps, and settings of their techniques beside the small ones.
+/// Number of lamps, and settings of their techniques in addition to the small ones.
 type Lamps = (usize, Vec<(&'static str, &'static str)>);
 
-/// Thirty-two lamps; and some with what has a size of its own that follows from where lamps and casters are.
+/// Thirty-two lamps, and some with resources whose size depends on the positions of lamps and casters.
 fn steady_lamps(kind: TechniqueKind) -> Vec<Lamps> {
     let has = |key: &str| kind.param_specs().iter().any(|spec| spec.key == key);
     // Tiles of tables are 32 to 64 texels wide.
@@ -143,7 +143,7 @@ fn steady_lamps(kind: TechniqueKind) -> Vec<Lamps> {
     all
 }
 
-/// Once they have drawn ten frames, lamps among 101 casters, of which all but the ground move, create no wgpu object.
+/// After ten frames, lamps among 101 casters, which all move except the ground, create no wgpu resource.
 fn moving_lamps(kinds: &[TechniqueKind]) {
     let device = Device::idle();
     for kind in kinds {
@@ -162,7 +162,7 @@ fn moving_lamps(kinds: &[TechniqueKind]) {
     }
 }
 
-/// As many tests as there are cores on small machines: each takes some ten seconds.
+/// Split into as many tests as small machines have cores: each takes about ten seconds.
 mod moving_lamps_make_nothing {
     use super::TechniqueKind;
 
@@ -191,7 +191,7 @@ mod moving_lamps_make_nothing {
     }
 }
 
-/// What 32 lamps at default settings create in frames 10 to 60, and take, by every technique.
+/// Prints the resources that 32 lamps at default settings create in frames 10 to 60, and their memory, by technique.
 #[test]
 #[ignore = "prints figures, and takes minutes"]
 fn what_thirty_two_lamps_create_and_take() {

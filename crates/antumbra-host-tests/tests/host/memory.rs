@@ -1,4 +1,4 @@
-//! What a light takes is known before it is allocated: a plan's numbers are those of the frame drawn, to the byte.
+//! Memory plans: the planned memory of a light equals that of the frame drawn, to the byte.
 
 use antumbra::light::{Light, LightShape};
 use antumbra::{AnyShadow, Frame, Gpu, Mask, MaskChannels, MemoryBytes, MemoryPlan, Recorder, TechniqueKind};
@@ -8,7 +8,7 @@ use antumbra_host_tests::raster::Picture;
 use antumbra_host_tests::scene::{Camera, Scene, base_light, base_light_of};
 use glam::{UVec2, Vec3};
 
-/// A panel, a lamp in the middle of what it lights, and a sun over kilometres.
+/// A panel, a lamp among its receivers, and a sun over kilometres.
 fn lights() -> [Light; 3] {
     let lamp = base_light_of(LightShape::Sphere { radius_m: 0.1 });
     [
@@ -18,16 +18,16 @@ fn lights() -> [Light; 3] {
     ]
 }
 
-/// Size of map and view.
+/// Size of frame and map.
 #[derive(Clone, Copy)]
 enum Size {
-    /// The technique's own map.
+    /// The technique's default map size.
     Own,
     Small,
 }
 
 impl Size {
-    /// A frame's size in pixels, and what the technique is set to.
+    /// Returns a frame's size in pixels, and the technique's settings.
     fn of(self, kind: TechniqueKind) -> (UVec2, Vec<(&'static str, &'static str)>) {
         let has = |key: &str| kind.param_specs().iter().any(|spec| spec.key == key);
         let small = [("map_size", "128"), ("view_size", "64"), ("samples", "8"), ("sub", "true")];
@@ -38,10 +38,10 @@ impl Size {
     }
 }
 
-/// A mask of a format that is converted.
+/// A mask format that requires conversion.
 const CONVERTED: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
-/// Each size and each format of a mask once; and the other pairs of them.
+/// Pairs that cover each size and each mask format once; then the remaining pairs.
 const PAIRS: [(Size, wgpu::TextureFormat); 2] = [(Size::Own, Mask::FORMAT), (Size::Small, CONVERTED)];
 const OTHER_PAIRS: [(Size, wgpu::TextureFormat); 2] = [(Size::Own, CONVERTED), (Size::Small, Mask::FORMAT)];
 
@@ -51,19 +51,19 @@ fn shadow_of(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> AnySh
     shadow
 }
 
-/// What a light retains, and what all share.
+/// Memory that a light retains, and memory that all lights share.
 type Taken = (u64, MemoryBytes);
 
-/// One frame, recorded where the device is a real one.
+/// Prepares and records one frame. Returns its memory.
 fn taken(shadow: &mut AnyShadow, gpu: &Gpu, frame: &Frame<'_>, encoder: &mut wgpu::CommandEncoder) -> Taken {
     shadow.prepare(frame).expect("a good frame").record(&mut Recorder::new(encoder, None));
     (shadow.memory_bytes(), gpu.memory_bytes())
 }
 
-/// Every technique, three lights, sizes with formats: the plan creates nothing on the device and has the numbers of the frame that is
-/// drawn, which leave out next to nothing of what is allocated.
+/// For every technique, three lights, sizes and formats, the plan creates nothing on the device and has the numbers of the
+/// frame drawn. Reported memory omits next to nothing of the allocated memory.
 fn plans_are_kept(device: &Device, kinds: &[TechniqueKind], pairs: &[(Size, wgpu::TextureFormat)]) {
-    /// Uniforms and stand-ins of one texel that reports leave out, bytes for all views that a light is split into.
+    /// Maximum of unreported memory: uniforms and placeholder textures of one texel, bytes for all views into which a light is split.
     const MOST_LEFT_OUT: u64 = 128 << 10;
     for kind in kinds {
         for (size, format) in pairs {
@@ -114,7 +114,7 @@ fn every_size_and_format_takes_what_was_planned() {
     plans_are_kept(&Device::idle(), TechniqueKind::ALL, &OTHER_PAIRS);
 }
 
-/// Receivers and mask of half the size are what lights share, and planned, too.
+/// Half-resolution receivers and masks, which lights share, are planned, too.
 #[test]
 fn half_resolution_takes_what_was_planned() {
     let device = Device::idle();
@@ -132,7 +132,7 @@ fn half_resolution_takes_what_was_planned() {
                 let mut shadow = shadow_of(gpu, kind_of(name), &[]);
                 shadow.set_half_resolution(is_half);
                 let taken = taken(&mut shadow, gpu, &frame, &mut encoder);
-                // What lights share goes with the last of them.
+                // Shared resources are freed with the last light, so the state is kept.
                 (taken, shadow)
             };
             let [full_plan, plan] = [(); 2].map(|()| MemoryPlan::new(&gpu));
@@ -149,14 +149,14 @@ fn half_resolution_takes_what_was_planned() {
     }
 }
 
-/// The same where limits, features and the driver's faults are those of the machine.
+/// Plans also match on the machine's device, with its limits, features and driver faults.
 #[test]
 fn a_light_takes_what_was_planned_on_the_machine_s_own_device() {
     let Some(device) = Device::shared() else { return };
     plans_are_kept(device, &["pcss", "essm", "multi_layer"].map(kind_of), &[PAIRS, OTHER_PAIRS].concat());
 }
 
-/// Lights take turns with shared memory and divide the budget, in a plan as when they are drawn.
+/// Lights share memory and divide the budget in a plan as they do when drawn.
 #[test]
 fn many_lights_take_what_was_planned() {
     let device = Device::idle();
@@ -187,7 +187,7 @@ fn many_lights_take_what_was_planned() {
             shared.own_maps > 0 && planned.iter().any(|bytes| *bytes < planned[0]),
             "{name}: {planned:?}, {shared:?}"
         );
-        // A plan beside these lights has what they leave of the budget.
+        // A plan beside these lights has the rest of the budget.
         let beside = MemoryPlan::new(&device.gpu);
         let (_, all, _) = taken(beside.gpu(), &masks(beside.gpu()));
         assert!(all.own_maps + real_shared.own_maps <= 40 << 20, "{name}: {all:?} beside {real_shared:?}");
@@ -195,7 +195,7 @@ fn many_lights_take_what_was_planned() {
     }
 }
 
-/// Nothing of a planned view need exist: receivers and mask of 4K are planned, too, by their descriptors.
+/// A plan needs no resource to exist: receivers and a mask of 4K are planned by their descriptors.
 #[test]
 fn what_is_planned_takes_no_memory() {
     let device = Device::idle();

@@ -1,4 +1,4 @@
-//! Lights, cameras and grounds in places that hosts put them: inside solids, in housings, beside walls, above wide grounds.
+//! Lights, cameras and grounds in difficult positions: inside solids, in housings, beside walls, above wide grounds.
 
 use antumbra::light::{Aabb, Light, LightShape};
 use antumbra_host_tests::device::Device;
@@ -8,10 +8,10 @@ use antumbra_host_tests::rays::{Rays, Truth, lit_loss, rmse, umbra_leak};
 use antumbra_host_tests::scene::{Camera, Mesh, Object, Scene, base_light, base_light_of};
 use glam::{Mat4, Vec2, Vec3};
 
-/// Points of the light that the truth is of.
+/// Light samples of the reference.
 const POINTS: u32 = 256;
 
-/// A scene as the host has drawn it, under a light, and the truth.
+/// A scene drawn by the host with a light, and its reference visibility.
 struct Place {
     device: &'static Device,
     casters: HostCasters,
@@ -21,7 +21,7 @@ struct Place {
 }
 
 impl Place {
-    /// `None` where there is no adapter.
+    /// Draws the scene; `None` without an adapter.
     fn new(scene: &Scene, camera: &Camera, light: Light) -> Option<Self> {
         let device = Device::shared()?;
         Some(Self {
@@ -33,13 +33,13 @@ impl Place {
         })
     }
 
-    /// The mask of a technique by default parameters.
+    /// Draws a technique's mask with default parameters.
     fn mask_by(&self, technique: &str) -> Vec<f32> {
         let mut shadow = kind_of(technique).create(&self.device.gpu).expect("any device");
         mask_of(self.device, &mut shadow, &self.light, self.casters.all(), self.picture.receivers())
     }
 
-    /// Holds techniques by default parameters to the most that each may err.
+    /// Checks the error of techniques with default parameters against a maximum for each.
     fn holds(&self, what: &str, bounds: &[(&str, f64)]) {
         let errors: Vec<f64> = bounds.iter().map(|(name, _)| rmse(&self.mask_by(name), &self.truth)).collect();
         println!("{what}: {:?}", bounds.iter().map(|(name, _)| *name).zip(&errors).collect::<Vec<_>>());
@@ -49,7 +49,7 @@ impl Place {
     }
 }
 
-/// The base scene with more in it.
+/// The base scene with additional meshes.
 fn base_with(objects: impl IntoIterator<Item = Mesh>) -> Scene {
     let mut scene = Scene::base(10.0);
     scene.objects.extend(objects.into_iter().map(Object::of));
@@ -60,7 +60,7 @@ fn sphere(radius_m: f32, center: Vec3) -> Light {
     Light::new(LightShape::Sphere { radius_m }, center, center - Vec3::Y)
 }
 
-/// A rasteriser rounds the depths of a ground that reaches to the horizon.
+/// A ground of kilometres gives errors as small as one of metres, although depth rounding is coarser.
 #[test]
 fn a_ground_of_kilometres_is_as_right_as_one_of_metres() {
     let scene = Scene::base(5000.0);
@@ -68,7 +68,7 @@ fn a_ground_of_kilometres_is_as_right_as_one_of_metres() {
     place.holds("a ground of 5 km", &[("sample_based", 0.02), ("alias_free", 0.06), ("multi_view", 0.02)]);
 }
 
-/// Roofs at the borders of an orthographic picture, which an eye in its middle would not see.
+/// Roofs at the borders of an orthographic image cast correct shadows; a perspective eye at the centre would not see them.
 #[test]
 fn orthographic_cameras_see_along_their_axis() {
     let roof = Mesh::cuboid(Vec3::splat(-1.2), Vec3::splat(1.2));
@@ -92,7 +92,7 @@ fn orthographic_cameras_see_along_their_axis() {
     );
 }
 
-/// A solid that holds camera and receivers keeps the light of a lamp outside from them.
+/// A solid that contains camera and receivers blocks a lamp outside.
 #[test]
 fn inside_a_solid_it_is_dark() {
     let scene = base_with([Mesh::cuboid(Vec3::new(-9.0, -0.5, -9.0), Vec3::new(9.0, 8.0, 9.5))]);
@@ -113,8 +113,8 @@ fn inside_a_solid_it_is_dark() {
     );
 }
 
-/// Walls of a closed room that a lamp outside grazes: to what lies at their feet one wall is many depths. Its map holds no more than the
-/// room, since the host says how far receivers reach. With `list_accumulation=multiply` .0065 of the light leaked, and the rmse was .026.
+/// Walls of a closed room at grazing angles to a lamp outside: for receivers at their feet, one wall has many depths. The map covers only
+/// the room, because the receivers' bounds are known. With `list_accumulation=multiply`, leakage is .0065 and the RMSE .026.
 #[test]
 fn walls_of_many_depths_stay_closed() {
     let room = Aabb { min: Vec3::new(-3.0, 0.0, -2.0), max: Vec3::new(3.0, 3.0, 2.0) };
@@ -137,8 +137,8 @@ fn walls_of_many_depths_stay_closed() {
     assert!(error <= 0.013, "a room under a lamp: rmse {error}");
 }
 
-/// A closed box about a bulb, nearer to it than the bulb is wide: from the corners of a cube's faces the bulb is seen wider than from
-/// their middles, and the box lies beyond what a face's map holds.
+/// A closed box around a bulb, nearer than the bulb's diameter. At the corners of cube faces the bulb appears wider than at
+/// their centres, and the box lies outside a face's depth range.
 #[test]
 fn shells_about_bulbs_stay_closed() {
     let center = Vec3::new(0.5, 2.4, 0.5);
@@ -147,7 +147,7 @@ fn shells_about_bulbs_stay_closed() {
     place.holds("a shell about a bulb", &[("hard", 0.001), ("pcss", 0.001), ("essm", 0.006), ("backprojection", 0.01)]);
 }
 
-/// A cover that is nearer than the light is large.
+/// A cover that is nearer to the light than the light is wide.
 #[test]
 fn covers_of_lights_stay_closed() {
     for distance_m in [0.02, 0.2] {
@@ -175,7 +175,7 @@ fn covers_of_lights_stay_closed() {
     }
 }
 
-/// A sphere that the ground cuts off from below.
+/// A spherical lamp that the ground cuts from below.
 #[test]
 fn a_lamp_may_lie_on_the_ground() {
     let scene = Scene::base(10.0);
@@ -186,7 +186,7 @@ fn a_lamp_may_lie_on_the_ground() {
     );
 }
 
-/// A light twelve times as long as wide: kernels as narrow as a texel or two are cut between texels on both sides.
+/// A light twelve times as long as wide: narrow kernels of one or two texels are clipped at subtexel precision on both sides.
 #[test]
 fn thin_lights_are_as_soft_as_they_are_long() {
     let light = base_light_of(LightShape::Rectangle { size_m: Vec2::new(1.2, 0.1) });
@@ -204,7 +204,7 @@ fn thin_lights_are_as_soft_as_they_are_long() {
     );
 }
 
-/// A bulb two centimetres before a wall, which it lights below one degree.
+/// A bulb two centimetres in front of a wall, which it lights at angles below one degree.
 #[test]
 fn walls_beside_bulbs_are_lit() {
     let scene = base_with([Mesh::cuboid(Vec3::new(-6.0, 0.0, -2.2), Vec3::new(6.0, 4.0, -2.0))]);
@@ -212,7 +212,7 @@ fn walls_beside_bulbs_are_lit() {
     place.holds("a bulb before a wall", &[("hard", 0.1), ("pcss", 0.1), ("sample_based", 0.02), ("multi_view", 0.02)]);
 }
 
-/// A wall that a bulb touches hides none of it from what is before the wall.
+/// A wall that touches a bulb does not block it for receivers in front of the wall.
 #[test]
 fn walls_that_bulbs_touch_hide_nothing_of_them() {
     let scene = base_with([Mesh::cuboid(Vec3::new(-6.0, 0.0, -2.2), Vec3::new(6.0, 4.0, -2.0))]);
@@ -223,7 +223,7 @@ fn walls_that_bulbs_touch_hide_nothing_of_them() {
     );
 }
 
-/// A bulb in a box that is open below: from everywhere it is a disc, however far to the side the ground lies that it lights.
+/// A bulb in a box that is open below appears as a disc from all sides, however far to the side the lit ground is.
 #[test]
 fn bulbs_are_discs_from_all_sides() {
     let (center, half, wall) = (Vec3::new(0.3, 3.0, 0.6), 0.07, 0.004);
@@ -240,7 +240,8 @@ fn bulbs_are_discs_from_all_sides() {
     place.holds("a bulb in a housing", &[("multi_view", 0.02), ("reprojection_layered", 0.02), ("sample_based", 0.02)]);
 }
 
-/// A tall wall in the light: from the light's middle its feet lie before its top, where segments to the light's near side pass.
+/// A tall wall in the light: seen from the light's centre its foot is in front of its top, where shadow rays to the light's
+/// near side pass.
 #[test]
 fn tall_walls_do_not_darken_what_they_face() {
     let scene = base_with([Mesh::cuboid(Vec3::new(-6.0, 0.0, -1.8), Vec3::new(6.0, 6.0, -1.6))]);
@@ -256,8 +257,8 @@ fn tall_walls_do_not_darken_what_they_face() {
     assert!(lost <= 0.0003, "a tall wall: {lost} of what is lit is dark");
 }
 
-/// Benches with eaves, whose walls are edge-on to the lamp above them, and a plate close below it: most of the range of depths lies
-/// between the two.
+/// Benches with eaves, whose walls are edge-on to the lamp above, and a plate close below the lamp: most of the depth range
+/// is between bench and plate.
 #[test]
 fn no_light_comes_below_eaves() {
     let bench = |x: f32| Mesh::cuboid(Vec3::new(x, 0.0, -2.0), Vec3::new(x + 0.3, 0.4, 2.0));
@@ -273,7 +274,7 @@ fn no_light_comes_below_eaves() {
     place.holds("eaves under a lamp", &[("smrt", 0.05)]);
 }
 
-/// Posts' sides that look away from the middle of a wide lamp and see a part of it: their own surface, edge-on in the map, hides nothing.
+/// Sides of posts that face away from a wide lamp's centre but see a part of it: their own surface, edge-on in the map, does not block it.
 #[test]
 fn sides_that_face_away_from_a_lamp_s_middle_see_the_rest_of_it() {
     let post = |x: f32| Mesh::cuboid(Vec3::new(x, 0.0, -0.1), Vec3::new(x + 0.05, 1.0, 0.1));
@@ -285,7 +286,7 @@ fn sides_that_face_away_from_a_lamp_s_middle_see_the_rest_of_it() {
     place.holds("sides of posts", &[("smrt", 0.03), ("pcss", 0.03), ("bitmask", 0.02), ("sample_based", 0.02)]);
 }
 
-/// A room of walls of five millimetres around the receivers, and the lamp outside.
+/// A room with walls of five millimetres around the receivers, and the lamp outside.
 #[test]
 fn corners_of_thin_walls_do_not_leak() {
     let (low, high, wall) = (Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 3.0, 3.0), 0.005);

@@ -1,5 +1,5 @@
-//! Techniques as their papers print them, and each switch by itself, against the ray tracer. Bounds are what was measured; a
-//! claim of a paper stands as an ordering.
+//! Techniques as published, and each switch alone, against the ray tracer. Bounds are measured values; claims of a paper
+//! are tested as orderings.
 
 use antumbra::{Quality, TechniqueKind};
 use antumbra_lab::device::LabDevice;
@@ -7,7 +7,7 @@ use antumbra_lab::metrics::Metrics;
 
 use crate::common::{Judged, lab};
 
-/// What the paper sets, and then these.
+/// Metrics with the paper's parameters, overridden by `then`.
 fn as_printed(lab: &LabDevice, judged: &Judged, kind: TechniqueKind, then: &[(&str, &str)]) -> Metrics {
     let printed: Vec<_> =
         kind.quality_settings(Quality::Paper).into_iter().map(|(key, value)| (key, value.to_string())).collect();
@@ -23,12 +23,12 @@ fn rmse(metrics: &Metrics) -> f64 {
     metrics.rmse.expect("judged pixels")
 }
 
-/// What is printed, by itself.
+/// RMSE with the paper's parameters alone.
 fn printed(lab: &LabDevice, judged: &Judged, kind: TechniqueKind) -> f64 {
     rmse(&as_printed(lab, judged, kind, &[]))
 }
 
-/// 256 light points suffice for what errs by hundredths.
+/// 256 light samples suffice for errors of hundredths.
 fn judged(spec: &str) -> Judged {
     Judged::with_truth_of(spec, 256, |_| {})
 }
@@ -53,8 +53,8 @@ fn papers_keep_their_figures() {
     }
 }
 
-/// μ = 20 and R = 80 as published turn lit ground dark; c = μ ln 2 is what 20 bits hold. What is left is at contacts, of which
-/// comparisons of narrow kernels, ours, take most away.
+/// μ = 20 and R = 80 as published darken lit ground; c = μ ln 2 is what 20 bits can represent. The remaining error is at
+/// contacts, and the comparisons of narrow kernels, our addition, remove most of it.
 #[test]
 fn the_consistent_exponent_of_essm_holds() {
     let Some(lab) = lab() else { return };
@@ -85,10 +85,10 @@ fn each_switch_of_essm_is_what_it_says() {
         error
     };
     let ours = error(&[]);
-    // Behind a lattice a full window counts what hides no point of the light, and so errs more.
+    // Behind a lattice, a full window counts blockers that hide no part of the light, so its error is larger.
     let window = error(&[("search", "window")]);
     assert!(window > ours + 0.005 && window <= 0.0835, "{window}, ours {ours}");
-    // Squares are as good as columns, and not the same.
+    // Squares are as accurate as columns, but not equal.
     let ellipse = error(&[("kernel", "ellipse")]);
     for level in ["0", "2"] {
         let squares = error(&[("kernel", "ellipse"), ("cuts", "squares"), ("level", level)]);
@@ -100,7 +100,7 @@ fn each_switch_of_essm_is_what_it_says() {
     }
 }
 
-/// Selgrad et al.: figure 10, figure 15 and figure 14, then each of our departures taken back by itself.
+/// Selgrad et al.: figures 10, 15 and 14, then each of our departures alone.
 #[test]
 fn each_switch_of_multi_layer_is_what_it_says() {
     let Some(lab) = lab() else { return };
@@ -108,18 +108,18 @@ fn each_switch_of_multi_layer_is_what_it_says() {
     let error =
         |judged: &Judged, then: &[(&str, &str)]| rmse(&as_printed(lab, judged, TechniqueKind::MultiLayer, then));
     let paper = [error(&plank, &[]), error(&overlap, &[])];
-    // Figure 10: without interpolation between levels, levels show.
+    // Figure 10: without interpolation between levels, steps between them are visible.
     let bilinear = [("level_weights", "none")];
     assert!(error(&plank, &bilinear) > 1.8 * paper[0] && error(&overlap, &bilinear) > 1.3 * paper[1]);
-    // Figure 6: a MIP-map's texels show in wide penumbrae.
+    // Figure 6: texels of a MIP map are visible in wide penumbrae.
     assert!(error(&overlap, &[("hierarchy", "mip_map")]) > 3.0 * paper[1]);
-    // Figure 14: multiplication breaks an occluder that spans levels, by up to 1/16 of the light for each two fragments.
+    // Figure 14: multiplication splits an occluder that spans levels, an error of up to 1/16 of the light per two fragments.
     let multiply = [("level_accumulation", "multiply"), ("list_accumulation", "multiply")];
     assert!(error(&plank, &multiply) > 3.5 * paper[0]);
-    // Figure 15: addition darkens what stands one behind the other.
+    // Figure 15: addition makes stacked occluders too dark.
     let stacked = judged("builtin:stacked-panels");
     assert!(error(&stacked, &[]) > error(&stacked, &multiply));
-    // Ours, one by one. The receiver's plane tells on tilted receivers; what merged lists gain, here nothing.
+    // Our departures one by one. The receiver's plane matters on tilted receivers; merged lists gain nothing here.
     let tilted = judged("builtin:tilted-planes");
     for (ours, judged, bound) in [
         (("level_weights", "variance"), &overlap, 0.0265),
@@ -139,7 +139,7 @@ fn judged_mask(lab: &LabDevice, judged: &Judged, settings: &[(&str, &str)]) -> a
     judged.run(lab, TechniqueKind::MultiLayer, settings)
 }
 
-/// Figures 5 and 6: each level by itself, a blur of one width that grows from level to level, whatever the distance.
+/// Figures 5 and 6: each fixed level blurs by a width that grows with the level and does not depend on distance.
 #[test]
 fn a_fixed_level_blurs_by_its_width() {
     let Some(lab) = lab() else { return };
@@ -150,7 +150,7 @@ fn a_fixed_level_blurs_by_its_width() {
             let settings =
                 [("fixed_level", level), ("hierarchy", hierarchy), ("light_parts", "1"), ("map_size", "512")];
             let mask = judged_mask(lab, &judged, &settings);
-            // How much of the picture is in between.
+            // The fraction of the image that is in penumbrae.
             let values = (0..mask.size_px.element_product() as usize).map(|i| mask.at(i, 0));
             let (between, all) = values
                 .fold((0.0, 0.0), |(between, all), v| (between + f64::from(u8::from(v > 0.02 && v < 0.98)), all + 1.0));
@@ -163,7 +163,7 @@ fn a_fixed_level_blurs_by_its_width() {
     }
 }
 
-/// Lauritzen and McCool 2008: what each switch of ours takes away, where the kernel is the judge.
+/// Lauritzen and McCool 2008: leakage that each of our switches removes, judged against the filter kernel.
 #[test]
 fn lvsm_as_printed_bleeds_more_than_ours_and_less_than_one_layer() {
     let Some(lab) = lab() else { return };
@@ -179,7 +179,7 @@ fn lvsm_as_printed_bleeds_more_than_ours_and_less_than_one_layer() {
     let vsm = leak(TechniqueKind::Vsm, &[by_distance]);
     let ours = leak(TechniqueKind::Lvsm, &[by_distance]);
     assert!(ours < as_printed && as_printed < 0.5 * vsm, "ours {ours}, printed {as_printed}, one layer {vsm}");
-    // Where each has something to say: many layers that overlap much; the few of the map's own.
+    // Settings in which a switch has an effect: many layers with much overlap, or the few layers of the map alone.
     let wide = [("depth_axis", "light"), ("relax_over", "map"), ("layers", "8"), ("overlap", "4"), ("map_size", "512")];
     let few = [("relax_over", "map")];
     for (usual, switch) in [

@@ -1,4 +1,4 @@
-//! `backprojection` against the ray tracer: scenes, every kind of light, and its two papers.
+//! `backprojection` against the ray tracer: test scenes, every kind of light, and the claims of its two papers.
 
 use antumbra::TechniqueKind;
 
@@ -25,7 +25,7 @@ fn every_kind_of_light_is_known() {
     knows_every_light(KIND, [0.013, 0.012, 0.0216, 0.0115, 0.053, 0.0273, 0.039]);
 }
 
-/// Leaves at many depths: what each texel hides, added up, is more than they hide.
+/// Leaves at many depths: the sum of what each texel hides exceeds what they hide together.
 #[test]
 fn outlines_do_not_add_up_what_is_hidden_twice() {
     if lab().is_none() {

@@ -1,4 +1,4 @@
-//! The baselines against the ray tracer: `hard`, `pcf`, `pcss`, `multi_view`.
+//! The baseline techniques against the ray tracer: `hard`, `pcf`, `pcss`, `multi_view`.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::metrics::compare_visibility;
@@ -70,7 +70,7 @@ fn pcss_keeps_its_figures() {
     }
 }
 
-/// Each layer more has another panel of the stack; the sketch's one mean has the uppermost alone.
+/// Each additional layer resolves another panel of the stack; the one mean of the original sketch of PCSS resolves only the uppermost.
 #[test]
 fn pcss_knows_as_many_stacked_panels_as_it_has_layers() {
     let Some(lab) = lab() else { return };
@@ -85,8 +85,8 @@ fn pcss_knows_as_many_stacked_panels_as_it_has_layers() {
     assert!((one_mean - errors[0]).abs() < 0.001, "{one_mean} against {}", errors[0]);
 }
 
-// Degrees of elevation, and pixels at contacts, at least. Below 40 degrees spheres hide theirs from above: a test below looks from
-// elsewhere.
+// Elevation in degrees, and the minimum number of contact pixels. Below 40 degrees spheres hide their contacts from above;
+// the test below uses another view.
 #[test]
 fn nothing_needs_a_bias_tuned_down_to_grazing_light() {
     nothing_needs_a_bias(&[(5, 100), (20, 115), (90, 120)], &[(5, 0), (90, 70)]);
@@ -122,8 +122,8 @@ fn nothing_needs_a_bias(on_tilted_planes: &[(u32, usize)], on_spheres: &[(u32, u
     }
 }
 
-/// From above, spheres hide where they touch the ground; low and from the shadow's side it is seen. (What is lit in such a
-/// picture are rims of penumbrae: acne is looked for from above.)
+/// From above, spheres hide their contacts with the ground; a low view from the shadow's side shows them. (The lit pixels
+/// of such an image are rims of penumbrae, so the tests from above look for acne.)
 #[test]
 fn spheres_are_attached_to_the_ground_at_grazing_light() {
     let Some(lab) = lab() else { return };
@@ -149,7 +149,7 @@ fn spheres_are_attached_to_the_ground_at_grazing_light() {
     }
 }
 
-/// The most lit_loss, and the most umbra_leak within five texels of a contact: below .005 and .03.
+/// Maximum `lit_loss`, and maximum `umbra_leak` within five texels of a contact: below .005 and .03.
 fn grazing_bounds(kind: TechniqueKind, elevation_deg: u32) -> (f64, f64) {
     match (kind, elevation_deg) {
         (TechniqueKind::Hard, _) => (0.0005, 0.022),
@@ -160,14 +160,14 @@ fn grazing_bounds(kind: TechniqueKind, elevation_deg: u32) -> (f64, f64) {
     }
 }
 
-/// Umbra pixels within five texels of a contact: what blocks the way to the light's centre is nearer than that.
+/// Umbra pixels within five texels of a contact: the blocker towards the light's centre is nearer than that.
 fn contact_umbra(judged: &Judged) -> Vec<usize> {
     const TEXELS: f32 = 5.0;
     let tracer = Tracer::new(&judged.scene).expect("built-in scenes can be traced");
     let receivers = tracer.primary(&judged.setup.camera, SIZE);
     let light = &judged.setup.lights[0];
     let frame = light.frame();
-    // The map's window in tangents, as a square about the scene's box.
+    // The map's window in tangents: a square around the scene's bounding box.
     let corners = judged.scene.bounds().corners();
     let tangents = corners.map(|c| {
         let p = c - frame.center;
@@ -206,10 +206,10 @@ fn a_flat_compare_shades_tilted_receivers() {
 #[test]
 fn a_zero_size_light_gives_the_traced_hard_shadow() {
     let Some(lab) = lab() else { return };
-    // At edges each pixel is right or wrong: it takes many for the mean to say more than how texels and pixels fall.
+    // Edge pixels are right or wrong, so only many of them average out the alignment of texels and pixels.
     let size_px = UVec2::new(640, 360);
     let judged = Judged::of_size(size_px, "builtin:columns", |light| *light = light.scaled(0.0));
-    // A graphics card moves corners by half of a 256th of a texel: .0074 on an NVIDIA H200, .0058 on llvmpipe.
+    // GPUs move vertices by half of 1/256 texel: the error is .0074 on an NVIDIA H200, .0058 on llvmpipe.
     let of_views = if lab.adapter.is_software() { 0.0067 } else { 0.008 };
     for (kind, bound) in
         [(TechniqueKind::Hard, 0.06), (TechniqueKind::Pcss, 0.05), (TechniqueKind::MultiView, of_views)]
@@ -223,9 +223,9 @@ fn a_zero_size_light_gives_the_traced_hard_shadow() {
 #[test]
 fn real_scenes_stay_in_range() {
     let Some(lab) = lab() else { return };
-    // Bounds on rmse for each kind. Pictures are small, four views are few, and `hard` and `pcf` know no penumbrae: a mask all
-    // dark or all lit is off by .39 to .91. Of `cesium-man.glb` sixteen pixels have a penumbra: chance there moves `pcss`
-    // by half, where it moves less than one in twenty in pictures of four and sixteen times the pixels.
+    // Bounds on RMSE by technique. The images are small, four views are few, and `hard` and `pcf` have no correct penumbrae; a black or
+    // white mask has an error of .39 to .91. Only sixteen pixels of `cesium-man.glb` are in a penumbra: sampling noise changes the error
+    // of `pcss` there by half, but by less than a twentieth in images of four and sixteen times the pixels.
     let kinds = [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::MultiView];
     for (name, bounds) in [
         ("sponza.glb", [0.253, 0.218, 0.0543, 0.17]),

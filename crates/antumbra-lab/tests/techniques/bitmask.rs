@@ -1,4 +1,4 @@
-//! `bitmask` against the ray tracer: scenes, and every kind of light.
+//! `bitmask` against the ray tracer: test scenes, and every kind of light.
 
 use antumbra::TechniqueKind;
 

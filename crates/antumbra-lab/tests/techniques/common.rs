@@ -1,6 +1,6 @@
-//! What every test of this binary uses: the one device, and a scene with its truth.
+//! Shared helpers of this binary: the one device, and scenes with their ground truth.
 //!
-//! Where there is no adapter every test says *skipped*, or fails where one is required.
+//! Without an adapter every test is skipped, or fails if one is required.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -36,12 +36,12 @@ pub(crate) fn lab() -> Option<&'static LabDevice> {
     lab.as_ref()
 }
 
-/// By what part of a texel the rasteriser draws surfaces elsewhere than they lie, as the library has measured it.
+/// Maximum displacement of rasterised surfaces by vertex snapping, texels, as measured by the library.
 pub(crate) fn snapped_texels(lab: &LabDevice) -> f32 {
     read_buffer(lab, lab.snapped_texels(), 1).expect("a device that works")[0]
 }
 
-/// A scene with its truth.
+/// A scene with its ground truth.
 pub(crate) struct Judged {
     pub(crate) spec: String,
     pub(crate) scene: Scene,
@@ -55,7 +55,7 @@ impl Judged {
         Self::of_size(SIZE, spec, change)
     }
 
-    /// With a rougher truth, of `samples` light points, for tests that judge by something else.
+    /// Uses a coarser ground truth of `samples` light samples, for tests that judge by something else.
     pub(crate) fn with_truth_of(spec: &str, samples: u32, change: impl FnOnce(&mut Light)) -> Self {
         Self::traced(SIZE, spec, &VisibilityOptions { samples, ..VisibilityOptions::default() }, change)
     }
@@ -64,12 +64,12 @@ impl Judged {
         Self::traced(size_px, spec, &VisibilityOptions::default(), change)
     }
 
-    /// From elsewhere.
+    /// Uses another camera.
     pub(crate) fn seen_closely(spec: &str, change: impl FnOnce(&mut Camera)) -> Self {
         Self::set_up(SIZE, spec, &VisibilityOptions::default(), |setup| change(&mut setup.camera))
     }
 
-    /// From elsewhere, with a rough truth.
+    /// Uses another camera and a coarse ground truth.
     pub(crate) fn seen_from(spec: &str, change: impl FnOnce(&mut Camera)) -> Self {
         let options = VisibilityOptions { samples: 1, ..VisibilityOptions::default() };
         Self::set_up(SIZE, spec, &options, |setup| change(&mut setup.camera))
@@ -79,7 +79,7 @@ impl Judged {
         Self::set_up(size_px, spec, options, |setup| change(&mut setup.lights[0]))
     }
 
-    /// Whatever the setup becomes; a truth of `samples` light points.
+    /// Uses a modified setup and a ground truth of `samples` light samples.
     pub(crate) fn arranged(size_px: UVec2, spec: &str, samples: u32, change: impl FnOnce(&mut Setup)) -> Self {
         Self::set_up(size_px, spec, &VisibilityOptions { samples, ..VisibilityOptions::default() }, change)
     }
@@ -98,7 +98,7 @@ impl Judged {
         Self { spec: spec.into(), scene, setup, truth, size_px }
     }
 
-    /// The mask of a technique.
+    /// Draws the mask of a technique.
     pub(crate) fn run(&self, lab: &LabDevice, kind: TechniqueKind, settings: &[(&str, &str)]) -> Visibility {
         let settings = settings.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
         let mut technique = create(&lab.gpu(), &TechniqueChoice::with_settings(kind, settings)).expect("good settings");
@@ -111,8 +111,8 @@ impl Judged {
     }
 }
 
-/// A scene that is not part of the repository: in the folder that `ANTUMBRA_SCENES` names, else beside the checkout. `None`, and a
-/// word, where it is not there.
+/// Path of a scene that is not part of the repository, in the folder that `ANTUMBRA_SCENES` names, or else beside the
+/// checkout. `None` and a message if it is missing.
 pub(crate) fn scene_file(name: &str) -> Option<String> {
     file_in(&antumbra_testing::scenes_folder()?, name)
 }
@@ -126,8 +126,8 @@ fn file_in(folder: &Path, name: &str) -> Option<String> {
     Some(path.display().to_string())
 }
 
-/// File of a small scene that once failed, with the setup of the same name or the one that cards share: in the folder of
-/// cases. `None`, and a word, where it is not there.
+/// Path of a small scene that once failed, in the folder of cases, with the setup of the same name or else the shared
+/// `card.toml`. `None` and a message if it is missing.
 pub(crate) fn case_file(name: &str) -> Option<(String, Setup)> {
     let scene = file_in(&antumbra_testing::cases_folder()?, &format!("{name}.glb"))?;
     let own = PathBuf::from(&scene).with_extension("toml");
@@ -135,14 +135,14 @@ pub(crate) fn case_file(name: &str) -> Option<(String, Setup)> {
     Some((scene, Setup::from_file(&setup).expect("a good setup")))
 }
 
-/// The same with its truth.
+/// A case with its ground truth.
 pub(crate) fn case(name: &str, size_px: UVec2) -> Option<Judged> {
     let (scene, setup) = case_file(name)?;
     Some(Judged::set_up(size_px, &scene, &VisibilityOptions::default(), |own| *own = setup))
 }
 
-/// A setup for a file that has no camera or no lights: its own, so that figures do not depend on which view is the default. A
-/// three-quarter view of the sphere about the scene, and a square light above it.
+/// Setup for a file without camera or lights, independent of the default view: a three-quarter view of the scene's bounding
+/// sphere, and a square light above it.
 pub(crate) fn seen_from_outside(scene: &Scene) -> Setup {
     let bounds = scene.bounds();
     let (center, radius) = (bounds.center(), 0.5 * bounds.diagonal());
@@ -165,7 +165,7 @@ pub(crate) fn seen_from_outside(scene: &Scene) -> Setup {
     }
 }
 
-/// The mean over some pixels, of which there must be one at least: a mean of none would pass any bound.
+/// Mean over some pixels; panics if there are none, because such a mean would pass any bound.
 pub(crate) fn mean_at(visibility: &Visibility, pixels: &[usize]) -> f64 {
     assert!(!pixels.is_empty(), "a mean of no pixels");
     let sum: f64 = pixels.iter().map(|i| f64::from(visibility.at(*i, 0))).sum();

@@ -1,4 +1,4 @@
-//! Every technique where scenes, lights and pictures are odd: a mask in [0, 1], or one line that says what is wrong.
+//! Unusual scenes, lights and images: every technique draws a mask in [0, 1], or fails with one line.
 
 use antumbra::TechniqueKind;
 use antumbra::contract::ParamSpec;
@@ -13,10 +13,10 @@ use glam::{Mat4, UVec2, Vec2, Vec3};
 
 use crate::common::lab;
 
-/// A picture that is not a multiple of any workgroup.
+/// Image size that is not a multiple of any workgroup size.
 const SIZE: UVec2 = UVec2::new(31, 17);
 
-/// Little work for each technique: these tests are about whether, not how well.
+/// Settings that reduce the work: these tests check validity rather than quality.
 const QUICK: [(&str, &str); 6] = [
     ("map_size", "128"),
     ("view_size", "128"),
@@ -38,7 +38,7 @@ fn quick(kind: TechniqueKind) -> TechniqueChoice {
     TechniqueChoice::with_settings(kind, settings)
 }
 
-/// Runs every technique over some cases, each made once, and gives its masks; `None` where it has said why not.
+/// Draws every technique's masks of some cases; `None` for a case that the technique refuses.
 fn masks_of(cases: &[(&str, Scene, Setup, UVec2)]) -> Vec<(TechniqueKind, Vec<Option<Vec<f32>>>)> {
     let Some(lab) = lab() else { return Vec::new() };
     let views: Vec<_> = cases
@@ -50,7 +50,7 @@ fn masks_of(cases: &[(&str, Scene, Setup, UVec2)]) -> Vec<(TechniqueKind, Vec<Op
         })
         .collect();
     let masks_of_technique = |kind: TechniqueKind| {
-        // One technique goes through all cases: what it keeps from one must not harm the next.
+        // One state draws all cases, so data of one case would show in the next.
         let mut technique = create(&lab.gpu(), &quick(kind)).expect("good settings");
         let masks = cases.iter().zip(&views).map(|((name, _, _, size_px), view)| {
             let run = match view.draw(&mut technique, 0, 1) {
@@ -65,7 +65,7 @@ fn masks_of(cases: &[(&str, Scene, Setup, UVec2)]) -> Vec<(TechniqueKind, Vec<Op
             lab.check().unwrap_or_else(|error| panic!("{kind}, {name}: {error}"));
             let pixels = size_px.element_product() as usize;
             let mask: Vec<f32> = (0..pixels).map(|i| run.visibility.at(i, 0)).collect();
-            // No number lies in no range.
+            // NaN is in no range, so it fails, too.
             let odd = mask.iter().position(|v| !(0.0..=1.0).contains(v));
             assert!(odd.is_none(), "{kind}, {name}: {:?} at pixel {odd:?}", odd.map(|i| mask[i]));
             Some(mask)
@@ -80,7 +80,7 @@ fn rms(a: &[f32], b: &[f32]) -> f32 {
     (square / a.len() as f32).sqrt()
 }
 
-/// The plank under another light.
+/// The plank scene with another light.
 fn lit_by(name: &str, light: Light) -> (&str, Scene, Setup, UVec2) {
     let (scene, mut setup) = plank();
     setup.lights[0] = light;
@@ -132,19 +132,20 @@ fn every_light_is_taken() {
     }
 }
 
-/// A blocker ends beyond a cube face's map, whose edge goes on there as it does under covers (`edge_goes_on`): four terms take it for
-/// nearer to the lamp than it is. At 160 × 90 and 1024² that is .200 for .184; without it `cssm` has .99 under a cover.
+/// Bound for a blocker that ends beyond a cube face's map, where its edge is extended as under covers (`edge_goes_on`):
+/// four terms place it too near the lamp. At 160 × 90 and 1024² the error is .200 instead of .184; without the extension
+/// the error of `cssm` is .99 under a cover.
 const CSSM_AT_AN_EDGE: ((TechniqueKind, &str), f32) = ((TechniqueKind::Cssm, "sphere in the casters' bounds"), 0.26);
 
-/// Lights that no judged pixel of the picture faces.
+/// Lights that no judged pixel of the image faces.
 const NOT_JUDGED: [&str; 3] = ["in the ground's plane", "sun along the ground", "away from the scene"];
 
-/// Lights under which what a technique takes for granted does not hold: bounds on rmse for all techniques.
+/// Lights that violate the techniques' assumptions, with bounds on RMSE for all techniques.
 const ODD_LIGHTS: [(&str, f32); 3] =
     [("a light as large as the scene", 0.365), ("sphere in the casters' bounds", 0.24), ("below the ground", 0.202)];
 
-/// The bound on a technique's rmse under any other light, from a map of 128² and 8 samples. A mask all lit is off by .37
-/// and more under most of them, one all dark by .9.
+/// Bound on a technique's RMSE under any other light, with a map of 128² and 8 samples. Under most of these lights the
+/// error of a white mask is at least .37, that of a black mask .9.
 pub(crate) fn usual_bound(kind: TechniqueKind) -> f32 {
     match kind {
         TechniqueKind::Hard => 0.101,
@@ -174,7 +175,7 @@ pub(crate) fn usual_bound(kind: TechniqueKind) -> f32 {
     }
 }
 
-/// Root mean square of the errors over the judged pixels; `None` where there are none.
+/// Root-mean-square error over the judged pixels; `None` if there are none.
 fn rmse_at(mask: &[f32], truth: &LightTruth) -> Option<f32> {
     let judged = (0..mask.len()).filter(|i| truth.judged[*i]);
     let squares: Vec<f32> = judged.map(|i| (mask[i] - truth.visibility.at(i, 0)).powi(2)).collect();
@@ -216,7 +217,7 @@ fn every_scene_and_picture_is_taken() {
         };
         assert!(mask("no scene").iter().all(|v| *v == 1.0), "{kind}: no scene casts a shadow");
         assert!(mask("sky alone").iter().all(|v| *v == 1.0), "{kind}: the sky is in shadow");
-        // The layers of `lvsm` go on gliding from one frame to the next, whatever is in them.
+        // The layers of `lvsm` move from frame to frame, even in a static scene.
         let allowed = if kind == TechniqueKind::Lvsm { 0.02 } else { 0.0 };
         for other in ["degenerate triangles", "as it is, again"] {
             let rms = rms(mask("as it is"), mask(other));

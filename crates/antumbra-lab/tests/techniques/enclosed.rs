@@ -1,5 +1,5 @@
-//! Lights and receivers that geometry encloses or touches: cameras inside closed meshes, lamps behind covers and in housings,
-//! rooms without a gap, light that grazes.
+//! Enclosing or touching geometry: cameras inside closed meshes, lamps behind covers and in housings, rooms without gaps,
+//! light at grazing angles.
 
 use antumbra::TechniqueKind;
 use glam::UVec2;
@@ -8,7 +8,7 @@ use crate::common::{Judged, case, lab};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// The rmse of a technique with small maps and few samples.
+/// RMSE of a technique with small maps and few samples.
 fn rmse(judged: &Judged, name: &str) -> f64 {
     let lab = lab().expect("asked for before");
     let kind = TechniqueKind::from_name(name).expect("a technique");
@@ -20,7 +20,7 @@ fn rmse(judged: &Judged, name: &str) -> f64 {
     rmse
 }
 
-/// Holds techniques to bounds on their rmse.
+/// Checks techniques against bounds on RMSE.
 fn hold(name: &str, bounds: &[(&str, f64)]) {
     if lab().is_none() {
         return;
@@ -43,7 +43,7 @@ fn a_near_plane_may_cut_into_a_closed_mesh() {
     hold("nearcut", &[("sample_based", 0.005)]);
 }
 
-/// Of a panel of 60 cm, whatever the distance of the sheet before it.
+/// A sheet in front of a panel of 60 cm hides it at any distance.
 #[test]
 fn a_cover_before_a_panel_hides_all_of_it() {
     for name in ["cover_0.01", "cover_0.05", "cover_0.2"] {
@@ -69,7 +69,7 @@ fn a_cover_before_a_panel_hides_all_of_it() {
     }
 }
 
-/// As published nothing lies beyond the map.
+/// As published, geometry does not extend beyond the map.
 #[test]
 fn what_the_map_shows_at_its_edge_goes_on_by_choice() {
     let Some(lab) = lab() else { return };
@@ -109,7 +109,7 @@ fn a_closed_room_keeps_a_sun_out() {
     }
 }
 
-/// A bulb two centimetres before a wall lights it at less than a degree beyond a metre.
+/// A bulb two centimetres in front of a wall lights it at less than one degree beyond a metre.
 #[test]
 fn grazing_light_is_not_taken_for_shadow() {
     hold(
@@ -126,7 +126,7 @@ fn grazing_light_is_not_taken_for_shadow() {
     );
 }
 
-/// A bulb that touches a wall: none of it is hidden from the ground before the wall, or from the wall itself.
+/// A bulb that touches a wall is hidden neither from the ground in front of the wall nor from the wall.
 #[test]
 fn a_wall_beside_a_lamp_is_no_blocker() {
     hold("sconce_touch", &[("pcf", 0.11), ("pcss", 0.06), ("multi_layer", 0.11), ("essm", 0.09), ("multi_view", 0.02)]);

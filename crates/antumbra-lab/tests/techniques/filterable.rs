@@ -20,12 +20,12 @@ use crate::common::{SIZE, lab};
 
 type Settings<'a> = &'a [(&'a str, &'a str)];
 
-/// What all of these share: one map with one kernel, as wide as the penumbrae of `vsm`'s hard cases. A box, beyond whose
-/// edge umbra is umbra; of texels so coarse that light through a single one of 9 × 9 is no umbra (which ends at .01), so that
-/// what the exact kernel lets through the leaves is not counted as leak.
+/// Shared settings: one map and one kernel, as wide as the penumbrae of cases in which `vsm` bleeds. A box kernel has sharp
+/// limits, so umbra beyond its edge stays umbra. Texels are so coarse that light through one of 9 × 9 is above the umbra's
+/// limit of .01, so light that the exact kernel passes through leaves does not count as leak.
 const WIDE: Settings<'_> = &[("map_size", "384"), ("kernel_size", "9.1"), ("filter", "box"), ("mips", "false")];
 
-/// A scene, seen by its camera, with the pixels that are judged.
+/// A scene and its camera, with the judged pixels.
 struct Scene {
     spec: String,
     scene: antumbra_scene::Scene,
@@ -67,12 +67,12 @@ fn mask(view: &View<'_>, choice: &TechniqueChoice, frames: u32) -> Visibility {
     view.draw(&mut technique, 0, frames).expect("built-in scenes can be run").visibility
 }
 
-/// The exact truth of the shared kernel.
+/// Exact result of the shared kernel.
 fn exact(view: &View<'_>) -> Visibility {
     mask(view, &choice(TechniqueKind::Vsm, &[]).filtered_truth().expect("vsm has a kernel of fixed width"), 1)
 }
 
-/// `umbra_leak` against the exact truth.
+/// `umbra_leak` against the exact result.
 fn leak(scene: &Scene, view: &View<'_>, truth: &Visibility, kind: TechniqueKind, settings: Settings<'_>) -> f64 {
     let metrics = scene.metrics(truth, &mask(view, &choice(kind, settings), 1));
     let (leak, rmse) = (metrics.umbra_leak.expect("umbra"), metrics.rmse.expect("judged pixels"));
@@ -80,12 +80,12 @@ fn leak(scene: &Scene, view: &View<'_>, truth: &Visibility, kind: TechniqueKind,
     leak
 }
 
-/// In one configuration: `vsm` bleeds, layers, warps and moments do not.
+/// With the same kernel `vsm` bleeds, while layers, warps and moments do not.
 #[test]
 fn layers_take_the_bleeding_away() {
     let Some(lab) = lab() else { return };
-    // (scene, least umbra_leak of vsm, most of two layers, of four, of eight, of four relaxed over the map): of the exact
-    // truth's own, .0007 and .0017.
+    // Each entry: scene, minimum umbra_leak of vsm, maxima of two, four and eight layers, and of four relaxed over the map.
+    // The exact result has .0007 and .0017.
     for (spec, least_vsm, most_lvsm, most_by_map) in [
         ("builtin:overlap", 0.05, [0.0009, 0.0008, 0.0008], 0.0008),
         ("builtin:bench-under-tree", 0.008, [0.0021, 0.0018, 0.0018], 0.002),
@@ -103,7 +103,7 @@ fn layers_take_the_bleeding_away() {
             assert!(lloyd <= vsm && uniform <= vsm, "{spec}, {layers} layers bleed more than none");
             assert!(lloyd <= most, "{spec}, {layers} layers: {lloyd}");
             if layers == "4" {
-                // The paper's own relaxation, which knows no camera.
+                // The paper's own relaxation, which ignores the camera.
                 let by_map = leak(TechniqueKind::Lvsm, &[("layers", layers), ("relax_over", "map")]);
                 assert!(by_map <= most_by_map, "{spec}, relaxed over the map: {by_map}");
             }
@@ -120,7 +120,7 @@ fn layers_take_the_bleeding_away() {
     }
 }
 
-/// A floor under a slanted light has one depth along the world's axis: less bleeds, and less is lost at edges.
+/// A floor under a slanted light has one depth along the world's axis, which reduces leaks and errors at edges.
 #[test]
 fn depth_along_the_worlds_axis_bleeds_less() {
     let Some(lab) = lab() else { return };
@@ -140,8 +140,8 @@ fn depth_along_the_worlds_axis_bleeds_less() {
     }
 }
 
-/// The table of `evsm`'s exponents in its documentation, over all scenes: `cargo test … exponents -- --ignored --nocapture`.
-/// The default kernel and map, without mips, which take most of the exact truth's time.
+/// Prints the documentation's table of `evsm`'s exponents over all scenes: `cargo test … exponents -- --ignored
+/// --nocapture`. Uses the default kernel and map without mips. The exact results take most of the time.
 #[test]
 #[ignore = "a table over all scenes: minutes"]
 fn exponents() {
@@ -177,7 +177,7 @@ fn exponents() {
     }
     let means = sums.map(|sum| sum / f64::from(count));
     println!("| mean of {count} | {} |", means.map(|mean| format!("{mean:.4}")).join(" | "));
-    // The default is the best.
+    // The default is the best pair.
     let (default, best) = (means[2], means.into_iter().fold(f64::INFINITY, f64::min));
     assert_eq!(PAIRS[2], ("5", "10"));
     assert!(default <= best, "{PAIRS:?}: {means:?}");
@@ -198,7 +198,7 @@ fn one_layer_is_vsm_and_sixteen_bits_are_enough_for_four() {
     let fixed = rmse(&float, &of(TechniqueKind::Lvsm, &[("storage", "unorm16"), ("placement", "uniform")]));
     println!("four layers, 16-bit fixed against 32-bit float: rmse {fixed:.5}");
     assert!(fixed <= 0.002, "{fixed}");
-    // The first frame has converged: thirty more change nothing to see.
+    // The first frame has converged: thirty more cause no visible change.
     let first = of(TechniqueKind::Lvsm, &[]);
     let later = mask(&view, &choice(TechniqueKind::Lvsm, &[]), 31);
     let moved = rmse(&first, &later);
@@ -219,7 +219,7 @@ fn layers_follow_a_moving_light_without_popping() {
     let choices = [exact, choice(TechniqueKind::Lvsm, &uniform), choice(TechniqueKind::Lvsm, coarse)];
     let mut techniques = choices.each_ref().map(|choice| create(&lab.gpu(), choice).expect("good settings"));
     let mut before: Option<[Visibility; 3]> = None;
-    // What 2 cm of the light's way change beyond the true change: (mean, 99.9th percentile).
+    // Mask change per 2 cm of light motion, minus the exact change: mean and 99.9th percentile.
     let change = |before: &[Visibility; 3], now: &[Visibility; 3], which: usize| {
         let step = |which: usize, i: usize| now[which].at(i, 0) - before[which].at(i, 0);
         let mut beyond: Vec<f32> =
@@ -236,7 +236,7 @@ fn layers_follow_a_moving_light_without_popping() {
         if let Some(before) = &before {
             let (fixed, lloyd) = (change(before, &now, 1), change(before, &now, 2));
             println!("frame {frame}: fixed splits {fixed:.4?}, Lloyd's {lloyd:.4?}");
-            // Splits that move show no more than splits that stand.
+            // Moving splits cause no more flicker than fixed ones.
             assert!(lloyd.0 <= 1.1 * fixed.0 && lloyd.1 <= fixed.1 + 0.03, "frame {frame}: {fixed:?}, {lloyd:?}");
         }
         before = Some(now);
@@ -255,8 +255,7 @@ fn memory_is_what_is_said() {
     let vsm = bytes(TechniqueKind::Vsm, &[]);
     let two_layers = bytes(TechniqueKind::Lvsm, &[("layers", "2"), ("placement", "uniform")]);
     assert_eq!(vsm, two_layers);
-    // Depth and two words of the light's own, and two that rows of the blur are written to, which all lights share; then uniforms and
-    // what they are uploaded by.
+    // Depth and two words of the light's own, two words of blurred rows that all lights share, then uniforms and their staging buffers.
     let textures = 384 * 384 * 4 * (3 + 2);
     assert!((textures..textures + (32 << 10)).contains(&vsm), "{vsm} bytes, {textures} of textures");
 }

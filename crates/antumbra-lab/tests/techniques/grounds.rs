@@ -1,4 +1,4 @@
-//! The ground that a scene is put on receives its shadow and changes nothing of the scene's own.
+//! An added ground receives the scene's shadow and does not change the scene's own shadows.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::metrics::compare_visibility;
@@ -44,7 +44,8 @@ fn a_ground_changes_no_shadow_of_what_stands_on_it() {
         let apart = compare_visibility(&alone, &standing, &judged).expect("one size").mae.expect("judged pixels");
         let (without, with) = (rmse(&alone), rmse(&standing));
         println!("lantern: {kind}: rmse {without:.4} without a ground, {with:.4} on it, {apart:.4} apart");
-        // As a caster the ground took the map's texels: .038, .023, .038 and .022 became .078, .079, .075 and .063, .013 and more apart.
+        // A ground that casts would use up the map's texels: errors of .038, .023, .038 and .022 become .078, .079, .075
+        // and .063, and masks differ by .013 and more.
         assert!(with <= without + 0.01, "{kind}: rmse {with} on a ground, {without} without");
         assert!(apart <= 0.01, "{kind}: {apart} apart");
     }

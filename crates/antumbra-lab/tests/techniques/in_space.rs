@@ -1,4 +1,4 @@
-//! Random points in the air against the ray tracer: what techniques err there is no more than what they err on surfaces.
+//! Random points in space against the ray tracer: errors of techniques do not exceed those on surfaces.
 
 use std::sync::atomic::AtomicBool;
 
@@ -14,7 +14,7 @@ use crate::common::{Judged, lab};
 
 const POINTS: u32 = 4096;
 
-/// Points anywhere in a scene's box, not nearer to the light than it is large: from there parts of it are behind the point.
+/// Random points in a scene's bounding box, at a distance from the light: from nearby, parts of the light are behind the point.
 fn random_points(bounds: Aabb, light: &Light) -> Vec<Vec3> {
     let point = |i: u32| {
         let u = [0, 1, 2].map(|k| unit_f32(hash_u32(3 * i + k)));
@@ -22,13 +22,13 @@ fn random_points(bounds: Aabb, light: &Light) -> Vec<Vec3> {
     };
     let far = |x: &Vec3| light.is_distant() || x.distance(light.center) > 2.0 * light.bounding_radius();
     let mut points: Vec<Vec3> = (0..).map(point).filter(far).take(POINTS as usize).collect();
-    // Those of a workgroup lie together.
+    // Sorting puts the points of a workgroup near each other.
     let cell = |x: &Vec3| ((*x - bounds.min) / (bounds.max - bounds.min) * 8.0).as_uvec3().to_array();
     points.sort_by_key(cell);
     points
 }
 
-/// Each faces the light's centre.
+/// Ground truth at points that face the light's centre.
 fn truth_at(judged: &Judged, tracer: &Tracer, points: &[Vec3]) -> Vec<f32> {
     let light = &judged.setup.lights[0];
     let facing = |x: &Vec3| {
@@ -40,8 +40,8 @@ fn truth_at(judged: &Judged, tracer: &Tracer, points: &[Vec3]) -> Vec<f32> {
     tracer.visibility_at(&points, light, &options, &|_| {}, &never).expect("a good light").mean_channel()
 }
 
-/// Whether a point lies within a closed caster: it has an odd number of surfaces above it, along most of three rays. (Open casters below it,
-/// such as a ground, count for none.)
+/// Whether a point is inside a closed caster: an odd number of surfaces above it along most of three rays. (Open casters
+/// below it, such as a ground, do not count.)
 fn is_within(tracer: &Tracer, x: Vec3) -> bool {
     let crossings = |direction: Vec3| {
         let (mut from_m, mut count) = (0.0, 0);
@@ -80,17 +80,17 @@ fn visibility_at(lab: &LabDevice, judged: &Judged, shadow: &mut AnyShadow, point
     read_buffer(lab, &visibilities, points.len()).expect("a device that works")
 }
 
-/// Root mean square of the differences where `is_kept`.
+/// Root-mean-square difference over the indices for which `is_kept` holds.
 fn rms(got: &[f32], truth: &[f32], is_kept: impl Fn(usize) -> bool) -> f64 {
     let squares: Vec<f64> =
         (0..got.len()).filter(|i| is_kept(*i)).map(|i| f64::from(got[i] - truth[i]).powi(2)).collect();
     (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
-/// Techniques that test triangles, to which a closed caster is solid. To others it is as thick as they assume a surface to be.
+/// Techniques that test triangles and treat closed casters as solid. Others use an assumed thickness of surfaces.
 const EXACT: [TechniqueKind; 3] = [TechniqueKind::MultiView, TechniqueKind::RayTraced, TechniqueKind::SampleBased];
 
-/// Beside closed casters errors are no larger than on surfaces; within them exact techniques are as near to the truth as beside them.
+/// Outside closed casters errors are no larger than on surfaces; inside, exact techniques are as accurate as outside.
 #[test]
 fn errors_at_random_points_are_those_on_surfaces() {
     let Some(lab) = lab() else { return };
@@ -118,7 +118,7 @@ fn errors_at_random_points_are_those_on_surfaces() {
             TechniqueKind::RayTraced,
             TechniqueKind::SampleBased,
         ] {
-            // Points have no neighbours that means could be taken over.
+            // Points have no neighbouring pixels to smooth over.
             let settings: &[(&str, &str)] = if kind == TechniqueKind::Smrt { &[("smooth", "false")] } else { &[] };
             let on_surfaces = judged.metrics(&judged.run(lab, kind, settings)).rmse.expect("judged pixels");
             let got = visibility_at(lab, &judged, &mut kind.create(&lab.gpu()).expect("any device"), &points);
@@ -127,10 +127,10 @@ fn errors_at_random_points_are_those_on_surfaces() {
                 "{spec}: {kind}: rms {beside:.4} beside casters, {inside:.4} within, {on_surfaces:.4} on surfaces"
             );
             let most = match kind {
-                // The points of a workgroup share the depths that they search for blockers, which in the air are many.
+                // Points of a workgroup share the depth range of their blocker search, which is large in space.
                 TechniqueKind::Smrt => 1.3 * on_surfaces,
-                // What slanted surfaces hide from their own feet is found to be one surface: on surfaces that brings more than in the
-                // air (`overlap`: .0088 to .0075, and .0088 to .0084).
+                // Occlusion of a slanted surface's own foot is recognised as that of one surface, which gains more on
+                // surfaces than in space (`overlap`: .0088 to .0075, and .0088 to .0084).
                 TechniqueKind::MultiLayer => 1.2 * on_surfaces,
                 _ => on_surfaces,
             };

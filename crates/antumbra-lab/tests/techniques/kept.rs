@@ -1,10 +1,10 @@
-//! Pictures that are kept. Every technique's masks, with small maps on several stages and on one of them with each of its parameters
-//! at another value, equal those in `tests/kept/`, so that no change of a shader passes unseen.
+//! Golden masks in `tests/kept/`. Every technique is drawn with small maps on several test scenes, and on one of them with
+//! each of its parameters at another value, so that no change of a shader passes unnoticed.
 //!
-//! What a mask should be is what the other modules hold against rays; a kept picture says that it is what it was. One that was
-//! meant to change is kept anew by `ANTUMBRA_KEEP=1 cargo test -p antumbra-lab --test techniques kept`, and looked at.
+//! Other modules compare masks with traced rays; golden masks show that nothing has changed. After an intended change
+//! update them by `ANTUMBRA_KEEP=1 cargo test -p antumbra-lab --test techniques kept`, and inspect them.
 //!
-//! A technique's picture has a mask for each stage, parameter or both; a line of its text says what it is of, and its mean.
+//! A technique's image contains a mask for each test scene, parameter or combination; each line of its text names a mask and its mean.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,47 +26,47 @@ use image::{GenericImage, GenericImageView, Rgb, RgbImage};
 use crate::common::lab;
 use crate::view_samples;
 
-/// Masks are small: what tells is that they are many.
+/// Mask size: small, because there are many masks.
 const MASK_PX: UVec2 = UVec2::new(48, 32);
-/// Masks side by side.
+/// Number of masks side by side.
 const ACROSS: u32 = 8;
 
-/// Counts are of more receivers, so that groups of them are some.
+/// Image size for counting work: larger, so that receivers form several groups.
 const WORK_PX: UVec2 = UVec2::new(96, 54);
 
-/// By as much 8-bit levels may differ where the adapter is the one that they were kept on, and so many pixels of a mask may by more.
+/// Tolerance of 8-bit levels on the adapter of the golden masks, and number of pixels per mask that may exceed it.
 const SAME_LEVELS: u8 = 2;
 const SAME_PIXELS: usize = 3;
-/// And so much the mean: masks are the same bits from run to run, on however many threads. It tells of what is less than a level
-/// everywhere, or more at a pixel or two.
+/// Tolerance of the mean on the same adapter, where masks are reproducible to the bit with any number of threads. It
+/// detects changes of less than a level everywhere, or of more in one or two pixels.
 const SAME_MEAN: f64 = 2e-5;
-/// More for masks that depend on last bits: a technique, a label, how many pixels, how much of the mean, and why. They are what versions of
-/// software Mesa differ by, which share a name and compile sums in other orders and with other roundings.
+/// Larger tolerances for masks that depend on last bits: technique, label, number of pixels, change of the mean, and reason. Versions of
+/// software Mesa that share a name differ by these, because they compile sums in other orders and with other rounding.
 const ROUGH: [(TechniqueKind, &str, usize, f64, &str); 2] = [
     (TechniqueKind::Vssm, "a ball at the stairs' horizon", 16, 5e-4, NEAR_NONE),
     (TechniqueKind::Evssm, "a ball at the stairs' horizon", 20, 1.2e-3, NEAR_NONE),
 ];
 const NEAR_NONE: &str = "along the horizon a step has one depth: its variance is the last bits of a difference of sums, taken for one or none";
-/// Another adapter rounds otherwise, and covers other pixels along edges: the mean over a mask, of the whole range.
+/// Tolerance of the mean difference on other adapters, which round differently and cover other pixels along edges. Full range is 1.
 const OTHER_MEAN: f64 = 0.01;
 
-/// In place of the defaults, so that all of it takes a minute: maps that suffice for so few pixels, and fewer views.
+/// Settings in place of the defaults, so that the tests take a minute: maps sufficient for so few pixels, and fewer views.
 const SMALL: [(&str, &str); 2] = [("map_size", "256"), ("view_size", "128")];
 const FEW_VIEWS: (&str, &str) = ("samples", "16");
 const OF_VIEWS: [TechniqueKind; 3] =
     [TechniqueKind::MultiView, TechniqueKind::Reprojection, TechniqueKind::ReprojectionLayered];
 
-/// Not changed: what is on each run another mask by its nature.
+/// Parameters that are not varied, because their masks differ between runs by design.
 const UNSTEADY: [&str; 1] = ["synchronized"];
 
-/// A scene with a light of some kind.
+/// A test scene with a kind of light.
 struct Stage {
     name: &'static str,
     scene: Scene,
     setup: Setup,
 }
 
-/// Lights of all kinds, tinted and masked casters, receivers all around a light and along its horizon, a mesh that encloses it.
+/// Lights of all kinds, tinted and alpha-tested casters, receivers all around a light and along its horizon, and a mesh around a light.
 fn stages() -> &'static [Stage] {
     static STAGES: OnceLock<Vec<Stage>> = OnceLock::new();
     let stage = |name, scene: &str, change: &dyn Fn(&mut Setup)| {
@@ -75,7 +75,7 @@ fn stages() -> &'static [Stage] {
         change(&mut setup);
         Stage { name, scene, setup }
     };
-    // What is masked elsewhere, as foil that tints by its texture.
+    // Turns alpha-tested casters into foil that its texture tints.
     let as_foil = |mut stage: Stage| {
         for material in stage.scene.materials.iter_mut().filter(|material| material.alpha != AlphaMode::Opaque) {
             material.alpha = AlphaMode::Blend;
@@ -118,12 +118,12 @@ fn stages() -> &'static [Stage] {
     })
 }
 
-/// Frames after one another where a mask is made of several.
+/// Number of successive frames for masks that depend on several.
 const FRAMES: u32 = 4;
-/// By these parameters it is.
+/// Parameters whose masks depend on several frames.
 const OVER_TIME: [&str; 2] = ["jitter", "accumulate"];
 
-/// A stage's number and settings, with the words by which they are kept.
+/// Test scene and settings of a golden mask, with its label.
 struct Kept {
     label: String,
     stage: usize,
@@ -137,11 +137,11 @@ impl Kept {
     }
 }
 
-/// What tells only together: a technique, a stage, settings, and whether it is denoised.
+/// A combination: technique, test scene, settings, and whether it is denoised.
 type Together = (TechniqueKind, &'static str, &'static [(&'static str, &'static str)], bool);
 
-/// Paths of their own that masked casters or suns take; kernels that reach beyond the map's ends; lookups of light points in space;
-/// turns that go on from frame to frame.
+/// Combinations with code paths of their own: alpha-tested casters or suns, kernels that extend beyond the map, lookups of
+/// light samples in space, rotations over frames.
 const TOGETHER: [Together; 18] = [
     (
         TechniqueKind::Lvsm,
@@ -203,8 +203,8 @@ const TOGETHER: [Together; 18] = [
     (TechniqueKind::MultiView, "a masked fence", &[("compare", "sharp")], false),
 ];
 
-/// By itself on every stage, as its paper has it on the first, and there with each parameter at another value; the denoiser behind
-/// one, and what tells together.
+/// Returns a technique's golden masks: on every test scene; on the first one also with the paper's parameters, with each
+/// parameter at another value, and denoised for one technique; and the combinations.
 fn all_of(kind: TechniqueKind) -> Vec<Kept> {
     let on_stages = stages().iter().enumerate().map(|(stage, Stage { name, .. })| Kept {
         label: (*name).to_owned(),
@@ -216,7 +216,7 @@ fn all_of(kind: TechniqueKind) -> Vec<Kept> {
     let paper: Vec<_> =
         kind.quality_settings(Quality::Paper).into_iter().map(|(key, value)| (key, value.to_string())).collect();
     let paper = (!paper.is_empty()).then(|| of_the_first("quality=paper".to_owned(), paper));
-    // Of few taps, which are spread anew in each frame.
+    // Few samples, which are spread differently in each frame.
     let denoised = (kind == TechniqueKind::Pcss).then(|| Kept {
         is_denoised: true,
         ..of_the_first("denoised".to_owned(), vec![("samples", "8".to_owned()), ("search_samples", "8".to_owned())])
@@ -243,15 +243,15 @@ fn all_of(kind: TechniqueKind) -> Vec<Kept> {
     on_stages.chain(paper).chain(denoised).chain(others).chain(together).collect()
 }
 
-/// What a technique has in place of its defaults.
+/// Settings of a technique in place of its defaults.
 fn small(kind: TechniqueKind) -> Vec<(&'static str, String)> {
     let small = SMALL.into_iter().chain(OF_VIEWS.contains(&kind).then_some(FEW_VIEWS));
     let small = small.filter(|(key, _)| kind.param_specs().iter().any(|spec| spec.key == *key));
     small.map(|(key, value)| (key, value.to_owned())).collect()
 }
 
-/// Values of a parameter other than the one that it has: all of a choice, of a number one. It is less, which takes less time,
-/// where there is less. Names in a number's place stand for numbers.
+/// Returns other values of a parameter: all choices, or one number, which is smaller and therefore faster if possible.
+/// Names that replace numbers are ignored.
 fn others(spec: &ParamSpec, value: String) -> Vec<String> {
     if let ParamValue::List(_) = spec.default {
         return Vec::new();
@@ -274,10 +274,10 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/kept")
 }
 
-/// In place of a mask where the technique refuses, which is kept as well: no mask has such a colour.
+/// Colour in place of a mask that the technique refuses; no mask has it.
 const REFUSED: Rgb<u8> = Rgb([160, 0, 160]);
 
-/// A mask in 8 bits, and its mean over pixels and channels, which tells of finer changes; a refused one's is 0.
+/// A mask in 8 bits, and its mean over pixels and channels, which detects finer changes; 0 for a refused mask.
 struct Mask {
     picture: RgbImage,
     mean: f64,
@@ -304,7 +304,7 @@ fn mean_of(visibility: &Visibility) -> f64 {
     sum / (pixels * channels) as f64
 }
 
-/// How many pixels of a mask may differ, and how much its mean, on an adapter of the same name.
+/// Number of pixels that may differ, and change of the mean, on an adapter of the same name.
 type Tolerance = (usize, f64);
 
 fn tolerance(kind: TechniqueKind, label: &str) -> Tolerance {
@@ -312,7 +312,7 @@ fn tolerance(kind: TechniqueKind, label: &str) -> Tolerance {
     rough.map_or((SAME_PIXELS, SAME_MEAN), |(_, _, pixels, mean, _)| (*pixels, *mean))
 }
 
-/// How far two masks are apart, where that is more than they may be: the tolerance is of the same adapter, `None` of any other.
+/// Describes the difference of two masks if it exceeds the tolerance; `None` as tolerance means another adapter.
 fn difference(was: &Mask, is: &Mask, of_same_adapter: Option<Tolerance>) -> Option<String> {
     let (old, new) = (&was.picture, &is.picture);
     let levels = || old.as_raw().iter().zip(new.as_raw()).map(|(a, b)| a.abs_diff(*b));
@@ -340,19 +340,19 @@ fn mask_in(sheet: &RgbImage, i: u32) -> RgbImage {
     sheet.view(i % ACROSS * MASK_PX.x, i / ACROSS * MASK_PX.y, MASK_PX.x, MASK_PX.y).to_image()
 }
 
-/// Whether all is to be kept anew.
+/// Whether the golden masks are to be updated.
 fn keeps_anew() -> bool {
     std::env::var_os("ANTUMBRA_KEEP").is_some()
 }
 
 const AGAIN: &str = "ANTUMBRA_KEEP=1 keeps them anew";
 
-/// The first line of a text: on which adapter its pictures or numbers were kept.
+/// First line of a text file: the adapter of its masks or numbers.
 fn heading(lab: &LabDevice) -> String {
     format!("kept on {}", lab.adapter.name)
 }
 
-/// The lines of a kept text, and whether they are of this adapter.
+/// Returns the lines of a text file, and whether they are from this adapter.
 fn kept_text(lab: &LabDevice, path: &Path) -> (Vec<String>, bool) {
     let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}; {AGAIN}", path.display()));
     let mut lines = text.lines().map(str::to_owned);
@@ -365,7 +365,7 @@ fn keep_text(lab: &LabDevice, path: &Path, lines: &[String]) {
     fs::write(path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
 }
 
-/// The first `most` masks of a technique are those that were kept.
+/// Compares the first `most` masks of a technique with the golden masks.
 fn pictures_are_kept(kind: TechniqueKind, most: usize) {
     let Some(lab) = lab() else { return };
     let (picture, words) = (folder().join(format!("{kind}.png")), folder().join(format!("{kind}.txt")));
@@ -387,7 +387,7 @@ fn pictures_are_kept(kind: TechniqueKind, most: usize) {
         image::open(&picture).unwrap_or_else(|error| panic!("{}: {error}; {AGAIN}", picture.display())).to_rgb8();
     for ((i, kept), (_, mean)) in (0..).zip(&all).zip(lines).take(most) {
         let was = Mask { picture: mask_in(&sheet, i), mean: mean.parse().expect("a number of ours") };
-        // What one adapter refuses another may have.
+        // Another adapter may support what this one refused.
         if !is_same_adapter && *was.picture.get_pixel(0, 0) == REFUSED {
             continue;
         }
@@ -398,7 +398,7 @@ fn pictures_are_kept(kind: TechniqueKind, most: usize) {
     }
 }
 
-/// A test for each technique: a change of one is asked of its own.
+/// Declares a test for each technique, so that a technique can be tested alone.
 macro_rules! kept {
     ($($name:ident: $kind:ident),* $(,)?) => {
         $(#[test]
@@ -442,7 +442,7 @@ kept! {
     sample_based: SampleBased,
 }
 
-/// For a first look: by each technique's first settings, on one scene.
+/// Quick test: only the first mask of each technique, on one test scene.
 #[test]
 fn one_mask_of_each_technique() {
     if !keeps_anew() {
@@ -450,23 +450,24 @@ fn one_mask_of_each_technique() {
     }
 }
 
-/// So much more or less may be tested than was, on the adapter of before and on others, whose depths are others by a rounding. (Which
-/// triangles of a cell lie in one box may be random.)
+/// Tolerance of work on the same adapter and on others, whose depths differ by rounding, and minimum tolerance. (The
+/// assignment of a cell's triangles to boxes may be random.)
 const SAME_WORK: f64 = 0.001;
 const OTHER_WORK: f64 = 0.03;
 const LEAST_WORK: f64 = 4.0;
-/// Which receivers of a cell make a group is random, and with it a fiftieth of what is tested; walked or drawn is another half of it.
+/// Tolerance for cells: the grouping of a cell's receivers is random and changes the work by a fiftieth; drawing instead of
+/// walking would change it by half.
 const CELLS: &str = "columns, cells";
 const CHANCE: f64 = 0.1;
 
-/// What culling spares changes no mask: what `sample_based` tests is kept as well, in `work.txt`. A line for each scene and traversal has
-/// the boxes, triangles, pairs, near pairs, words and points that were tested.
+/// Culling changes no mask, so the work of `sample_based` is recorded, too, in `work.txt`. Each line is a scene and
+/// traversal with the numbers of tested boxes, triangles, pairs, near pairs, words and points.
 #[test]
 fn work() {
     let Some(lab) = lab() else { return };
     let path = folder().join("work.txt");
     let (mut lines, mut all) = (Vec::new(), Vec::new());
-    // Of a map of so few texels that lists are longer than groups, and of one that has them short.
+    // With few texels lists are longer than groups; with many they are short.
     let (boxes, hexagons) = (RegionOfInfluence::Boxes, RegionOfInfluence::Hexagons);
     let traversals = [
         ("groups", Traversal::Groups, boxes, 512),
@@ -477,7 +478,7 @@ fn work() {
     ];
     for scene in ["overlap", "columns", "knot?triangles=6000", "fence-alpha"] {
         for (name, traversal, region, map_size) in traversals {
-            // Which of its receivers make a group is random, and with it a fifteenth of what is tested.
+            // The grouping of receivers is random here and changes the work by a fifteenth.
             if scene == "fence-alpha" && map_size == 16 {
                 continue;
             }
@@ -487,7 +488,7 @@ fn work() {
             all.push(counts);
         }
     }
-    // So many receivers that lists are longer than groups even so, and cells are made of them; and hexagons of directions.
+    // So many receivers that lists are longer than groups and cells are formed; then hexagons for directions.
     let cells = SampleBasedParams { traversal: Traversal::Chosen, map_size: 16, ..SampleBasedParams::default() };
     let drawn = SampleBasedParams { traversal: Traversal::Raster, region: hexagons, ..SampleBasedParams::default() };
     let sun = LightShape::Sun { angular_diameter_rad: 0.1 };
@@ -506,7 +507,7 @@ fn work() {
         return;
     }
     let (kept, is_same_adapter) = kept_text(lab, &path);
-    // A graphics card draws receivers elsewhere by a part of a pixel, which moves them between cells.
+    // Other GPUs rasterise receivers a fraction of a pixel away, which moves some to other cells.
     let part = if is_same_adapter { SAME_WORK } else { OTHER_WORK };
     assert_eq!(kept.len(), all.len(), "{}: other scenes", path.display());
     for (line, counts) in kept.iter().zip(all) {
@@ -539,7 +540,7 @@ fn one_level_or_a_few_pixels_are_no_difference() {
     assert!(difference(&was, &brighter, same).is_some() && difference(&was, &brighter, None).is_none());
 }
 
-/// One that no technique has would loosen nothing, and be believed to.
+/// An entry of `ROUGH` that matches no mask would have no effect, unnoticed.
 #[test]
 fn rough_masks_are_masks_of_their_techniques() {
     for (kind, label, pixels, mean, why) in ROUGH {

@@ -1,12 +1,12 @@
-//! Lights of every kind, by which a scene's own is replaced.
+//! Replacements of a scene's light, of every kind.
 
 use antumbra_light::{EmissionTexture, Light, LightShape};
 use glam::{Vec2, Vec3};
 
-/// A light's name, and what makes a scene's into it.
+/// A light's name, and the function that changes a scene's light.
 pub(crate) type Change = (&'static str, fn(&mut Light));
 
-/// A disk, a sphere, an ellipsoid, a sun, points and a picture.
+/// A disk, a sphere, an ellipsoid, a sun, points and an emission texture.
 pub(crate) const LIGHTS: [Change; 6] = [
     ("disk", |light| light.shape = LightShape::Disk { radius_m: 0.4 }),
     ("sphere", |light| all_around(light, LightShape::Sphere { radius_m: 0.3 })),

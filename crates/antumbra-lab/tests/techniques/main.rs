@@ -1,5 +1,5 @@
-//! The techniques against the ray tracer, on the built-in scenes, a module for each family. Bounds are what was measured
-//! on a software adapter, with a little room; they may be tightened, never loosened. `kept` holds masks against what they were.
+//! The techniques against the ray tracer on the built-in scenes, by family. Bounds are values measured on a software
+//! adapter, with a small margin; they may be tightened, never loosened. `kept` compares with golden masks.
 
 mod as_printed;
 mod backprojection;

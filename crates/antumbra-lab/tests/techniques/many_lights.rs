@@ -1,5 +1,5 @@
-//! `examples/many_lights`, a renderer that knows nothing of this project but the library: its masks against the ray tracer,
-//! and against the laboratory's of the same scene.
+//! `examples/many_lights`, a renderer that uses nothing of this project but the library: its masks against the ray tracer,
+//! and against the laboratory's masks of the same scene.
 
 use antumbra::Casters;
 use antumbra_lab::device::LabDevice;
@@ -37,10 +37,10 @@ use renderer::Renderer;
 
 const VIEW_SIZE: UVec2 = UVec2::new(96, 72);
 const FRAMES: usize = 6;
-/// Frames after which nothing is made any more.
+/// Number of frames after which no resource is created.
 const SETTLED: usize = 2;
-/// What rmse may gain from other rounding: of depth that runs from 0 to 1, of positions in 16 bits, of normals in half
-/// precision. One pixel of three thousand, where a thing touches the ground, may by that be lit rather than dark.
+/// Allowance on RMSE for different rounding: depth from 0 to 1, 16-bit positions, half-precision normals. It may change one
+/// pixel of three thousand from dark to lit, at a contact with the ground.
 const ROUNDING: f64 = 0.004;
 
 #[test]
@@ -83,11 +83,11 @@ fn masks_of_a_foreign_renderer_are_as_good_as_the_laboratory_s() {
     }
 }
 
-/// Draws frames in which everything moves, and gives the masks of the first by view.
+/// Draws frames in which everything moves. Returns the masks of the first frame by view.
 fn draw_frames(lab: &LabDevice, renderer: &mut Renderer) -> [Vec<Visibility>; 2] {
     let mut made = vec![renderer.shadows.gpu().objects_made()];
     let mut first_masks = [Vec::new(), Vec::new()];
-    // The same way twice: a part of what a light reaches makes its maps when the camera first sees it.
+    // The path is repeated, because a light's parts create maps when the camera first sees their receivers.
     for frame in (0..FRAMES).chain(0..FRAMES) {
         renderer.draw(0.2 * frame as f32).expect("a good frame");
         lab.check().expect("no error");
@@ -98,7 +98,7 @@ fn draw_frames(lab: &LabDevice, renderer: &mut Renderer) -> [Vec<Visibility>; 2]
         }
     }
     assert_eq!(made[0].programs, made[FRAMES].programs, "warm-ups compile what frames need");
-    // The lists of `multi_layer` take the shape of what is seen of a part, and are made anew where it becomes another.
+    // The size of lists of `multi_layer` follows the visible receivers, so lists may be recreated.
     let maps = |frame: usize| (made[frame].programs, made[frame].textures);
     assert_eq!(maps(FRAMES + SETTLED), maps(2 * FRAMES), "frames that only move make no maps");
     first_masks
@@ -110,8 +110,8 @@ fn read_mask(lab: &LabDevice, renderer: &Renderer, view: usize, light: usize) ->
     Visibility::one(VIEW_SIZE, values)
 }
 
-/// The laboratory's mask of a light by the same technique and parameters, from casters and receivers in its own formats. Of
-/// what is seen it knows as little as the example tells, and of casters the same boxes, to which light maps are fitted.
+/// Draws the laboratory's mask of a light with the same technique and parameters, from casters and receivers in its own formats.
+/// Receivers' optional inputs are omitted as in the example, and casters have the example's bounds, to which light maps are fitted.
 fn lab_mask(
     lab: &LabDevice,
     renderer: &Renderer,
@@ -121,7 +121,7 @@ fn lab_mask(
 ) -> Visibility {
     let shadow = renderer.shadows.of_light(view, light);
     let settings = shadow.params().map(|(spec, value)| (spec.key.to_owned(), value.to_string())).collect();
-    // On the renderer's handle, which has compiled it all.
+    // The renderer's handle has compiled the pipelines.
     let choice = TechniqueChoice::with_settings(shadow.kind(), settings);
     let mut technique = create(renderer.shadows.gpu(), &choice).expect("good settings");
     let receivers = images.receivers().with_bounds(None).with_hull(&[]).with_seen(&[]);
@@ -141,8 +141,7 @@ fn rmse(truth: &LightTruth, mask: &Visibility) -> f64 {
     metrics.rmse.expect("judged pixels")
 }
 
-/// Judges no longer the pixels at the edge of what a light's frustum holds, on the one side or the other by rounding, and
-/// says how many these were.
+/// Excludes the pixels at the edge of a light's frustum, which rounding puts on either side, and returns their number.
 fn judge_no_edge_of_reach(truth: &mut LightTruth, light: &Light) -> usize {
     let Some(fov) = light.fov_rad else { return 0 };
     let frame = light.frame();
@@ -158,7 +157,7 @@ fn judge_no_edge_of_reach(truth: &mut LightTruth, light: &Light) -> usize {
     at_edge
 }
 
-/// What a view shows by pixel: positions from the example's own depth, with the normals of the laboratory's picture.
+/// Surfaces of a view by pixel: positions from the example's depth, with normals from the laboratory's image.
 fn drawn_surfaces(
     lab: &LabDevice,
     renderer: &Renderer,
@@ -179,7 +178,7 @@ fn drawn_surfaces(
     };
     let of_lab = images.read_surface_points(lab).expect("a device that works");
     let surface = |(i, of_lab): (usize, Option<SurfacePoint>)| {
-        // Of another surface where only one of the two shows any.
+        // The normal is zero if only the example shows a surface.
         let normal = of_lab.map_or(Vec3::ZERO, |point| point.normal);
         position(i).map(|position| SurfacePoint { position, normal })
     };
@@ -192,8 +191,7 @@ fn lab_camera(camera: &scene::Camera) -> Camera {
     Camera { eye, target, up: Vec3::Y, fov_y_rad, near_m, far_m, shadow_distance: None }
 }
 
-/// The example's scene as it stands, as the laboratory has scenes: what the GPU unpacks and skins is unpacked and skinned
-/// here.
+/// The example's current scene in the laboratory's format: unpacking and skinning, which the GPU does, are done here.
 fn lab_scene(example: &scene::Scene) -> Scene {
     let rgba8 = leaf_texels();
     let leaf = Image { width: LEAF_SIZE, height: LEAF_SIZE, rgba8, wrap: [Wrap::Clamp; 2] };

@@ -38,7 +38,7 @@ fn a_near_and_a_far_occluder_each_get_their_own_penumbra() {
     let Some(lab) = lab() else { return };
     let judged = Judged::new("builtin:lantern-wall", |_| {});
     let error = rmse(lab, &judged, &[]);
-    // One mean depth for both is off by .03.
+    // One mean depth for both would have an error of .03.
     assert!(error <= 0.011, "{error}");
 }
 
@@ -47,9 +47,9 @@ fn more_layers_miss_less() {
     let Some(lab) = lab() else { return };
     for spec in ["builtin:lantern-wall", "builtin:tree"] {
         let judged = Judged::new(spec, |_| {});
-        // Back faces alone, so that a solid is one layer.
+        // Only back faces count, so a solid is one layer.
         let errors = ["1", "2", "16", "0"].map(|layers| rmse(lab, &judged, &[("layers", layers), ("faces", "back")]));
-        // Two whole layers of back faces are all that the lantern's wall has.
+        // The scene of the lantern has only two complete layers of back faces.
         assert!(errors[0] > errors[1] && errors[1] > errors[2] - 0.0002, "{spec}: {errors:?}");
         assert!((errors[2] - errors[3]).abs() < 0.002, "{spec}: 16 layers are nearly all: {errors:?}");
     }
@@ -58,7 +58,7 @@ fn more_layers_miss_less() {
 #[test]
 fn a_y_map_errs_less_than_a_mip_map() {
     let Some(lab) = lab() else { return };
-    // Quarters of the light make a MIP-map's texels half as wide, too.
+    // Quarters of the light halve a MIP map's texels, too.
     for (spec, light_parts, bound) in [
         ("builtin:overlap", "1", 0.0163),
         ("builtin:overlap", "4", 0.0093),
@@ -94,12 +94,12 @@ fn a_zero_size_light_gives_the_traced_hard_shadow() {
     assert!(error < 0.0465, "{error}");
 }
 
-/// Of this size, slivers of `overlap` that the light sees from the side meet the middles of texels: depths behind the light
-/// once made ε negative, and lookups that took nothing went round for ever.
+/// At this size, slivers of `overlap` seen edge-on from the light cover texel centres. Depths behind the light must not
+/// make ε negative, because a lookup that takes nothing never ends.
 #[test]
 fn what_is_seen_from_the_side_ends_no_lookup() {
     let Some(lab) = lab() else { return };
-    // Judged by itself, of opacities that add: a tiny ε is as good as none.
+    // The technique is compared with itself, with additive opacities: a tiny ε must equal none.
     let size = UVec2::new(320, 180);
     let judged = Judged::of_size(size, "builtin:overlap", |_| {});
     for hierarchy in ["mip_map", "y_map"] {

@@ -1,4 +1,4 @@
-//! `ray_traced` against the ray tracer by the same light points: on every built-in scene, and under lights of every kind.
+//! `ray_traced` against the ray tracer with the same light samples: on every built-in scene, and under lights of every kind.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;
@@ -11,23 +11,23 @@ use crate::common::{Judged, lab};
 use crate::lights::{Change, LIGHTS};
 use crate::sample_based::Same;
 
-/// What is asked of it: as far from the ray tracer as this by 256 points.
+/// Required RMSE against the ray tracer with 256 samples.
 const BOUND: f64 = 0.003;
 
-/// Blades that stand within the offset at which segments start of one another: the tracer has an offset of its own. By the technique's
-/// `sample_based` has the very masks of `ray_traced` (`rays_find_what_bits_find`).
+/// Bound for blades nearer to each other than the ray offset, because the tracer's offset differs. With the technique's
+/// offset `sample_based` gives the same masks as `ray_traced` (`rays_find_what_bits_find`).
 const WITHIN_OFFSETS: (&str, f64) = ("builtin:ring-in-grass", 0.006);
 
-/// Of 256 rays each pixel costs much on a software device, and a scene shows all that it has in few.
+/// Image size: small, because 256 rays per pixel are slow on a software device.
 const SIZE: UVec2 = UVec2::new(80, 45);
 
-/// The same points at every pixel of both.
+/// The same samples at every pixel of both.
 const OPTIONS: VisibilityOptions =
     VisibilityOptions { samples: 256, set: SampleSet::Sobol, seed: 1, same_set_for_all_pixels: true };
 const SETTINGS: [(&str, &str); 2] = [("samples", "256"), ("rotate", "false")];
 
-/// Without a thousandth of the pixels, at most: where casters cut one another (`ten-knots`), rounding of a receiver's position decides on
-/// which side of a closed one it lies.
+/// RMSE without the worst thousandth of the pixels: where casters intersect (`ten-knots`), rounding of a receiver's
+/// position decides on which side of a closed caster it is.
 fn rmse(lab: &LabDevice, spec: &str, change: impl FnOnce(&mut Light)) -> f64 {
     let same = Same::of_size(lab, SIZE, spec, change);
     let errors = same.errors_to_either(&OPTIONS, &same.mask(lab, TechniqueKind::RayTraced, &SETTINGS));
@@ -41,7 +41,7 @@ fn root_mean_square(errors: &[f64]) -> f64 {
     (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
-/// Bits of `sample_based` and rays are two ways to the same answer: whatever a receiver's position is worth, they agree on it.
+/// Sample bits of `sample_based` and rays are equivalent: they agree for any receiver position.
 #[test]
 fn rays_find_what_bits_find() {
     let Some(lab) = lab() else { return };
@@ -57,7 +57,7 @@ fn rays_find_what_bits_find() {
     }
 }
 
-/// Of all colours, each receiver as the tracer's own camera ray finds it.
+/// Coloured masks; receivers come from the tracer's own camera rays.
 #[test]
 fn colours_are_as_the_ray_tracer_has_them() {
     let Some(lab) = lab() else { return };
@@ -69,7 +69,7 @@ fn colours_are_as_the_ray_tracer_has_them() {
     assert!(rmse < BOUND, "{rmse}");
 }
 
-/// Scenes of more than a hundred thousand triangles.
+/// Scenes with more than a hundred thousand triangles.
 const LARGE: [&str; 5] = ["ten-knots", "ring-in-grass", "grove", "town", "street"];
 
 #[test]

@@ -1,5 +1,4 @@
-//! Reprojected views, plain and from layers, against rasterised views of the same light points and against the ray
-//! tracer.
+//! Reprojected views, plain and layered, against rasterised views of the same light samples and against the ray tracer.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;
@@ -10,12 +9,12 @@ use glam::Vec3;
 
 use crate::common::{Judged, lab};
 
-/// The paper's measure: errors against the views that rasterisation gives for the same points.
+/// The paper's measure: errors against rasterised views of the same samples.
 fn against(judged: &Judged, rasterised: &Visibility, visibility: &Visibility) -> Metrics {
     compare_visibility(rasterised, visibility, &judged.truth.judged).expect("images of one size")
 }
 
-/// The mean of the views' own filtered comparisons, as the papers have it.
+/// Mean of the rasterised views with filtered comparisons, as in the papers.
 fn rasterised_views(judged: &Judged, lab: &LabDevice, views: &[(&str, &str)]) -> Visibility {
     judged.run(lab, TechniqueKind::MultiView, &[views, &[("compare", "gather")]].concat())
 }
@@ -55,7 +54,7 @@ fn reprojection_is_closer_to_rasterised_views_than_a_flat_pcss() {
         let error = |kind, settings: &[(&str, &str)]| {
             against(&judged, &rasterised, &judged.run(lab, kind, settings)).rmse.expect("judged pixels")
         };
-        // A flat compare needs its bias tuned to the scene: the best of these.
+        // A flat compare needs a bias tuned to the scene: the best of these.
         let biased = |bias| error(TechniqueKind::Pcss, &[("compare", "flat"), ("bias_scale", bias)]);
         let flat = ["1", "4", "8"].map(biased).into_iter().fold(f64::INFINITY, f64::min);
         let plain = error(TechniqueKind::Reprojection, &views);
@@ -113,7 +112,7 @@ fn bias_after_reprojection_leaves_no_acne() {
     let layered = lit_loss(TechniqueKind::ReprojectionLayered, &[]);
     let before = lit_loss(TechniqueKind::Reprojection, &[("bias", "before")]);
     println!("lit_loss: multi_view {rasterised:.4}, after {after:.4}, layered {layered:.4}, before {before:.4}");
-    // The views' own are .0008.
+    // The rasterised views have .0008.
     assert!(after <= 0.0026, "{after} against {rasterised}");
     assert!(layered <= 0.0017, "{layered} against {rasterised}");
     // The paper's figure 2: surfaces shadow themselves.
@@ -126,14 +125,14 @@ fn a_light_inside_a_room_has_no_seams() {
     let light = |shape| Light::new(shape, Vec3::new(0.0, 1.2, 0.0), Vec3::new(0.3, 0.4, 1.0));
     for (shape, bound) in [
         (LightShape::Sphere { radius_m: 0.2 }, 0.055),
-        // Not of the same kind: a list of points has no back, and looks all around.
+        // A point list has no back and covers all directions, so it is another kind of light.
         (LightShape::Points { positions_m: vec![Vec3::new(0.0, 1.2, 0.0)] }, 0.06),
     ] {
         let judged = Judged::new("builtin:columns", |l| *l = light(shape.clone()));
         let frame = judged.setup.lights[0].frame();
         let tracer = antumbra_reference::Tracer::new(&judged.scene).expect("built-in scenes can be traced");
         let receivers = tracer.primary(&judged.setup.camera, crate::common::SIZE);
-        // Judged pixels within 2 degrees of a plane between two faces of the cube.
+        // Judged pixels within 2 degrees of a plane between two cube faces.
         let is_at_edge = |i: &usize| {
             let Some(point) = &receivers.points[*i] else { return false };
             let p = point.origin() - frame.center;
@@ -157,7 +156,7 @@ fn a_light_inside_a_room_has_no_seams() {
     }
 }
 
-/// How many of three settings a technique has; only the layered one has layers.
+/// Number of the three settings that apply: only the layered technique has layers.
 fn layers(kind: TechniqueKind) -> usize {
     if kind == TechniqueKind::ReprojectionLayered { 3 } else { 2 }
 }

@@ -1,4 +1,4 @@
-//! Visible artefacts of techniques at their defaults: high-frequency error where the truth is smooth, as an eye sees it.
+//! Visible artefacts at default parameters: high-frequency error where the ground truth is smooth, weighted as the eye sees it.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;
@@ -6,14 +6,14 @@ use glam::UVec2;
 
 use crate::common::{Judged, lab, scene_file};
 
-/// Larger than elsewhere: in smaller pictures penumbrae are so narrow that the truth is hardly smooth anywhere but outside them.
+/// Image size, larger than in other tests: in small images penumbrae are so narrow that the ground truth is hardly smooth inside them.
 const SIZE: UVec2 = UVec2::new(640, 360);
 
 #[test]
 fn defaults_keep_their_roughness() {
     let Some(lab) = lab() else { return };
     let kinds = [TechniqueKind::Pcss, TechniqueKind::Smrt, TechniqueKind::MultiLayer, TechniqueKind::SampleBased];
-    // Bounds on roughness and on that of the worst tile for each kind.
+    // Bounds by technique: roughness, and roughness of the worst tile.
     for (spec, bounds) in [
         ("builtin:overlap", [[0.018, 0.0479], [0.0105, 0.0194], [0.0023, 0.0084], [0.0023, 0.0042]]),
         ("builtin:window", [[0.0114, 0.0506], [0.0102, 0.0255], [0.0084, 0.0287], [0.0037, 0.0246]]),
@@ -25,8 +25,8 @@ fn defaults_keep_their_roughness() {
     }
 }
 
-/// Spheres on both sides of the edge between the middle of what a light reaches and a ring about it: light leaked there along a
-/// bright wedge where a map ended at the edge (worst tiles .049, .050, .032).
+/// Spheres on both sides of the edge between a light's central part and the ring around it. A map that ends at the edge
+/// would leak along a bright wedge (worst tiles .049, .050, .032).
 #[test]
 fn no_light_leaks_where_parts_meet() {
     let Some(lab) = lab() else { return };
@@ -39,8 +39,8 @@ fn no_light_leaks_where_parts_meet() {
     hold(lab, &Judged::of_size(SIZE, &spec, |_| {}), &bounds);
 }
 
-/// Stairs with the lamp in the wall beside them: risers are edge-on in its map, and rays below the stairs cross them between two reads
-/// (with a test of the surfaces' thickness at each read alone .043 of what is dark was lit).
+/// Stairs with a lamp in the wall beside them: risers are edge-on in its map, and rays below the stairs cross them between
+/// two map reads. (A thickness test at each read alone would light .043 of the umbra.)
 #[test]
 fn no_light_comes_through_stairs() {
     let Some(lab) = lab() else { return };
@@ -51,7 +51,7 @@ fn no_light_comes_through_stairs() {
     assert!(leak <= 0.012, "stairs: {leak} of what is dark is lit");
 }
 
-/// Bounds on the roughness and that of the worst tile.
+/// Checks bounds on roughness and on the worst tile's.
 fn hold(lab: &LabDevice, judged: &Judged, bounds: &[(TechniqueKind, [f64; 2])]) {
     let spec = &judged.spec;
     for (kind, [bound, tile_bound]) in bounds {

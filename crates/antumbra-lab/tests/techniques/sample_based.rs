@@ -1,5 +1,5 @@
-//! `alias_free` and `sample_based` against the ray tracer, from the same receivers and with the same light points: bit
-//! for bit, and against the truth.
+//! `alias_free` and `sample_based` against the ray tracer, with the same receivers and light samples: bit by bit, and
+//! against the ground truth.
 
 use std::sync::atomic::AtomicBool;
 
@@ -19,15 +19,15 @@ use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
 
 use crate::common::{lab, seen_from_outside, snapped_texels};
 
-/// As `receiver_lists/light_bits/ray_offset.wesl` has it, and as `receivers/inputs.wesl` has the times that count of what the rasteriser moves surfaces by.
+/// Ray offset as in `receiver_lists/light_bits/ray_offset.wesl`, and factor of the vertex-snapping distance as in `receivers/inputs.wesl`.
 const HAIR: f32 = 1.0 / (1 << 18) as f32;
 const HAIR_SNAPS: f32 = 1.5;
 
 const SIZE: UVec2 = UVec2::new(128, 72);
-/// One pixel in ten thousand is five.
+/// Size at which one pixel in ten thousand is five pixels.
 const FINE_SIZE: UVec2 = UVec2::new(320, 180);
 
-/// A scene as the camera sees it on the GPU, and the ray tracer's receivers at the very same places.
+/// A scene's receivers from the GPU, and the ray tracer's receivers at exactly the same positions.
 pub(crate) struct Same {
     size_px: UVec2,
     scene: Scene,
@@ -35,10 +35,10 @@ pub(crate) struct Same {
     gpu_scene: GpuScene,
     images: ReceiverImages,
     tracer: Tracer,
-    /// `None` for background.
+    /// Receivers for closed casters by pixel; `None` for background.
     points: Vec<Option<ReceiverPoint>>,
-    /// Closed casters alone, and the others alone, whose segments the techniques start from other points: `points` and
-    /// `open_points`.
+    /// Tracers of closed casters alone and of open casters alone. The techniques use different ray origins for them:
+    /// `points` and `open_points`.
     closed: Tracer,
     open: Tracer,
     open_points: Vec<Option<ReceiverPoint>>,
@@ -54,14 +54,14 @@ fn is_closed(scene: &Scene, instance: &Instance) -> bool {
         && material.transmission == 0.0
 }
 
-/// A scene with some of its casters.
+/// A scene with only its closed, or only its open casters.
 fn only(scene: &Scene, keep: impl Fn(bool) -> bool) -> Scene {
     let mut part = scene.clone();
     part.instances.retain(|i| keep(is_closed(scene, i)));
     part
 }
 
-/// Whether a triangle lies across a segment; of a closed mesh, so that the segment enters it.
+/// Whether a triangle intersects a segment; of a closed mesh only if the segment enters it.
 fn is_in_the_way(corners: &[DVec3; 3], is_closed: bool, from: DVec3, to: DVec3) -> bool {
     let [a, b, c] = corners.map(|corner| corner - from);
     let d = to - from;
@@ -79,7 +79,7 @@ impl Same {
         Self::of_size(lab, SIZE, spec, change)
     }
 
-    /// As [`seen_from_outside`].
+    /// Uses the setup of [`seen_from_outside`].
     pub(crate) fn from_outside(lab: &LabDevice, spec: &str) -> Self {
         let scene = load(spec, &LoadOptions::default()).expect("a scene that is there");
         let setup = seen_from_outside(&scene);
@@ -110,7 +110,7 @@ impl Same {
         };
         let tracer = Tracer::new(scene).expect("a scene that can be traced");
         let primary = tracer.primary(&setup.camera, size_px).points;
-        // Where the techniques start segments to the light past open casters: their own hair off the very same position.
+        // The techniques' ray origins for open casters: their own offset from exactly the same position.
         let open_points = positions
             .iter()
             .zip(&normals)
@@ -128,8 +128,8 @@ impl Same {
             .map(|((position, n), traced)| {
                 position.map(|position| {
                     let point = ReceiverPoint::new(position, Vec3::new(n[0], n[1], n[2]));
-                    // A position from a depth buffer is uncertain: its distance from the surface that the tracer finds
-                    // there, twice; and where that sees another surface, at an edge, what the technique allows for.
+                    // A position from a depth buffer is inexact. The offset is twice its distance from the surface that the tracer finds
+                    // there; if the tracer finds another surface, at an edge, it is the technique's own offset.
                     let allowed = hair_at(position);
                     let off_surface = traced
                         .filter(|traced| traced.position.distance(position) < 1e-3)
@@ -169,7 +169,7 @@ impl Same {
         (0..self.points.len()).map(|i| visibility.at(i, 0)).collect()
     }
 
-    /// The light's hard shadow from the same receivers.
+    /// Traces the light's hard shadow from the same receivers.
     fn traced_hard(&self) -> Vec<f32> {
         let light = self.light();
         let (frame, center) = (light.frame(), light.center);
@@ -185,7 +185,7 @@ impl Same {
         (0..self.points.len()).map(traced).collect()
     }
 
-    /// Whether a point of the light is hidden from a receiver that is moved a little.
+    /// Whether a point of the light is hidden from a displaced receiver.
     fn is_hidden(&self, i: usize, moved: Vec3, target: Vec3) -> bool {
         let past = |tracer: &Tracer, point: &ReceiverPoint| {
             let origin = point.origin() + moved;
@@ -199,20 +199,19 @@ impl Same {
         past(&self.closed, point) || past(&self.open, open_point)
     }
 
-    /// How far a receiver must be moved until exact arithmetic has a light point both seen and hidden: in units of the
-    /// last place, 2⁻²⁴ of the receiver's distances to the origin and to the camera, as the depth buffer gives them.
-    /// `None` beyond 64 of these.
+    /// Minimum displacement of a receiver for which exact arithmetic finds a light sample both visible and hidden, in units in the last
+    /// place: 2⁻²⁴ of the receiver's distances to the origin and to the camera, the precision of the depth buffer. `None` beyond 64 units.
     ///
-    /// Exact is double precision, triangle by triangle, from a hair above the surface; where closed casters are
-    /// concerned either way of asking counts: as the technique does it, by the triangles that the segment enters from
-    /// the very surface, or as the tracer does it, by all of them from its own hair above.
+    /// Exact arithmetic means double precision, triangle by triangle, from the ray offset above the surface. For closed
+    /// casters either test counts: the technique's, by triangles that the segment enters from the surface itself, or the
+    /// tracer's, by all triangles from its own offset.
     fn ulps_to_either_answer(&self, i: usize, target: Vec3) -> Option<f64> {
         let (point, open_point) = (self.points[i]?, self.open_points[i]?);
         let start = point.position.as_dvec3();
         let reach = f64::from(open_point.hair_m);
         let end = if self.light().is_distant() { start + 1e4 * target.as_dvec3() } else { target.as_dvec3() };
         let normal = point.normal.as_dvec3();
-        // The receiver's own plane hides too.
+        // The receiver's own plane hides samples, too.
         if normal.dot(end - start).abs() <= reach {
             return Some(64.0 * normal.dot(end - start).abs() / reach);
         }
@@ -242,7 +241,7 @@ impl Same {
             .map(|moved| 64.0 * moved / reach)
     }
 
-    /// The casters' triangles that come within some distance of a segment, and whether theirs is a closed mesh.
+    /// Triangles within a distance of a segment, and whether each belongs to a closed mesh.
     fn triangles_near(&self, start: DVec3, end: DVec3, distance: f64) -> Vec<([DVec3; 3], bool)> {
         let mut near = Vec::new();
         let along = (end - start) / (end - start).length_squared();
@@ -264,12 +263,12 @@ impl Same {
         near
     }
 
-    /// Against the truth from these receivers, over pixels that face the light.
+    /// RMSE against the ground truth from these receivers, over pixels that face the light.
     fn rmse(&self, ours: &[f32]) -> f64 {
         self.truth(&VisibilityOptions::default()).rmse(ours)
     }
 
-    /// Visibility from these receivers by other light points at each.
+    /// Visibility from these receivers with different light samples at each.
     pub(crate) fn truth(&self, options: &VisibilityOptions) -> Truth {
         let seen: Vec<usize> = (0..self.points.len()).filter(|i| self.points[*i].is_some()).collect();
         let points: Vec<ReceiverPoint> = seen.iter().filter_map(|i| self.points[*i]).collect();
@@ -281,8 +280,8 @@ impl Same {
         Truth { judged: judged.filter_map(|((i, v), faces)| faces.then_some((i, v[0]))).collect() }
     }
 
-    /// How far judged pixels are from what the tracer has from these receivers or from those that its own camera's rays find, each from
-    /// the nearer answer, the least first: at edges these are two surfaces.
+    /// Sorted errors of judged pixels. Each error is the smaller one against the tracer from these receivers or from the
+    /// receivers of its own camera rays: at edges these are two surfaces.
     pub(crate) fn errors_to_either(&self, options: &VisibilityOptions, ours: &[f32]) -> Vec<f64> {
         let receivers = self.tracer.primary(&self.setup.camera, self.size_px);
         let image = self.tracer.visibility(&receivers, self.light(), options, &|_| {}, &AtomicBool::new(false));
@@ -293,7 +292,7 @@ impl Same {
         errors
     }
 
-    /// Every pixel's bits, by the order of the sample set: words of 64, as [`Tracer::visible_mask`] has them.
+    /// Bits of every pixel in the order of the sample set, in words of 64, as [`Tracer::visible_mask`] returns them.
     fn bits(&self, lab: &LabDevice, params: &SampleBasedParams) -> Vec<Vec<u64>> {
         let gpu = lab.gpu();
         let params = SampleBasedParams { keep_bits: true, ..*params };
@@ -320,7 +319,7 @@ impl Same {
             .map(|(pixel, visibility)| {
                 let mut bits = vec![0u64; order.len().div_ceil(64)];
                 for (slot, &i) in order.iter().enumerate() {
-                    // A mask of 0 was written for pixels that are in no list.
+                    // The mask is 0 for pixels in no list.
                     let bit = u64::from(pixel[slot / 32] >> (slot % 32) & 1) * u64::from(visibility > 0.0);
                     bits[i as usize / 64] |= bit << (i % 64);
                 }
@@ -329,7 +328,8 @@ impl Same {
             .collect()
     }
 
-    /// Bits that differ from the ray tracer's, those of them that are at no edge, and all bits, over pixels with geometry.
+    /// Number of bits that differ from the ray tracer's, number of those not at an edge, and number of all bits, over
+    /// pixels with geometry.
     fn differing_bits(&self, lab: &LabDevice, params: &SampleBasedParams) -> (u64, u64, u64) {
         let options = VisibilityOptions {
             samples: params.samples,
@@ -342,15 +342,14 @@ impl Same {
         let (mut differing, mut unexplained, mut all) = (0, 0, 0);
         for (i, (point, open_point)) in self.points.iter().zip(&self.open_points).enumerate() {
             let (Some(point), Some(open_point)) = (point, open_point) else { continue };
-            // A dark pixel under a light with a hole may have bits in the hole: `bits` cannot tell it from one that is
-            // in no list.
+            // A dark pixel under a light with a hole may have bits in the hole, so `bits` cannot distinguish it from one in no list.
             if self.light().emission.is_some() && ours[i].iter().all(|word| *word == 0) {
                 continue;
             }
             let past_closed = self.closed.visible_mask(&light, i, point);
             let past_open = self.open.visible_mask(&light, i, open_point);
             for (k, to) in light.points_for(i, point.position).iter().enumerate() {
-                // What is behind the receiver's own surface is hidden, whatever else there is.
+                // Samples behind the receiver's own surface are hidden in any case.
                 let is_before = point.normal.dot(to.xyz - to.w * point.position) > 0.0;
                 let traced = past_closed[k / 64] & past_open[k / 64] & u64::from(is_before) << (k % 64);
                 if (traced ^ ours[i][k / 64]) >> (k % 64) & 1 == 1 {
@@ -364,7 +363,7 @@ impl Same {
     }
 }
 
-/// Pixels that face the light, with what they see of it.
+/// Pixels that face the light, with their visibility.
 pub(crate) struct Truth {
     judged: Vec<(usize, f32)>,
 }
@@ -375,23 +374,23 @@ impl Truth {
         (self.judged.iter().map(square).sum::<f64>() / self.judged.len() as f64).sqrt()
     }
 
-    /// Of the same receivers by other light points.
+    /// RMSE of another ground truth from the same receivers.
     pub(crate) fn rmse_of(&self, other: &Truth) -> f64 {
         let square = |((_, a), (_, b)): (&(usize, f32), &(usize, f32))| f64::from(a - b).powi(2);
         (self.judged.iter().zip(&other.judged).map(square).sum::<f64>() / self.judged.len() as f64).sqrt()
     }
 }
 
-/// What to do to a scene's light.
+/// Change of a scene's light.
 pub(crate) type Change<'a> = &'a dyn Fn(&mut Light);
 
-/// At most one pixel in ten thousand differs from the ray tracer, and for every one that does exact arithmetic gives the
-/// one answer and the other within the rounding of its own position.
+/// At most one pixel in ten thousand differs from the ray tracer. For each of them exact arithmetic gives both results
+/// within the rounding of its position.
 fn alias_free_is_traced(lab: &LabDevice, size_px: UVec2, specs: &[String]) {
     alias_free_is_traced_with(lab, size_px, specs, &[], 10_000);
 }
 
-/// With settings, and one pixel in so many.
+/// Checks with settings that at most one of `pixels_for_one` pixels differs.
 fn alias_free_is_traced_with(
     lab: &LabDevice,
     size_px: UVec2,
@@ -446,8 +445,8 @@ fn alias_free_is_the_traced_hard_shadow_of_thin_things() {
     alias_free_is_traced(lab, SIZE, &builtin(&thin));
 }
 
-/// What the paper does in place of ours, where triangles are drawn: positions in the lists and a stencil for empty ones,
-/// six vertices a triangle, planes once a triangle.
+/// The paper's choices for drawn triangles: positions in the lists and a stencil for empty ones, six vertices per triangle,
+/// planes per triangle.
 const AS_PRINTED: [(&str, &str); 5] = [
     ("traversal", "raster"),
     ("region", "six_vertices"),
@@ -456,8 +455,7 @@ const AS_PRINTED: [(&str, &str); 5] = [
     ("stencil", "true"),
 ];
 
-/// Planes of the triangle and the light round otherwise than planes through the receiver, and by no more than the
-/// receiver's own position is rounded.
+/// Planes through triangle and light round differently than planes through the receiver, but by no more than the receiver's own position.
 #[test]
 fn alias_free_as_printed_is_the_traced_hard_shadow() {
     let Some(lab) = lab() else { return };
@@ -466,7 +464,7 @@ fn alias_free_as_printed_is_the_traced_hard_shadow() {
     alias_free_is_traced_with(lab, SIZE, &builtin(&scenes), &AS_PRINTED, 9_000);
 }
 
-/// Of one light point, six vertices a triangle, stored positions and the stencil change no bit.
+/// With one light sample, six vertices per triangle, stored positions and the stencil change no bit.
 #[test]
 fn no_switch_changes_a_drawn_hard_shadow() {
     let Some(lab) = lab() else { return };
@@ -564,7 +562,7 @@ fn every_shape_of_light_has_the_tracer_s_bits() {
         };
         EmissionTexture::gray(16, 16, (0..256).map(luminance).collect())
     };
-    // Each with its bound on rmse.
+    // Each light has its bound on RMSE.
     let lights: [(&str, f64, Change<'_>); 6] = [
         ("disk", 0.0028, &|light| light.shape = LightShape::Disk { radius_m: 0.4 }),
         ("sphere", 0.003, &|light| light.shape = LightShape::Sphere { radius_m: 0.4 }),
@@ -581,10 +579,10 @@ fn every_shape_of_light_has_the_tracer_s_bits() {
         let params = SampleBasedParams { samples: 200, sample_set: SampleSet::Sobol, ..SampleBasedParams::default() };
         let (differing, unexplained, all) = same.differing_bits(lab, &params);
         println!("{name}: {differing} of {all} bits differ; {unexplained} not at an edge");
-        // One of a million, or the one bit that rounding may turn in a small set.
+        // One in a million, or one bit of a small set, may differ by rounding.
         let allowed = 1.max(all / 1_000_000);
         assert!(differing <= allowed && unexplained == 0, "{name}: {differing} of {all} bits differ, {unexplained}");
-        // What the bits add up to, weights included, against the truth's own points.
+        // The weighted sum of the bits, against the ground truth with its own samples.
         let ours = same.mask(lab, TechniqueKind::SampleBased, &[("samples", "1024"), ("sample_set", "sobol")]);
         let rmse = same.rmse(&ours);
         println!("{name}, 1024: rmse {rmse:.4}");
@@ -620,7 +618,7 @@ fn the_table_is_close_to_the_tests() {
         let mean = exact.iter().zip(&table).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / exact.len() as f64;
         println!("{scene}: mean |ΔV| {mean:.5}");
         assert!(mean <= bound, "{scene}: mean |ΔV| {mean}");
-        // A mask without penumbrae would be as close to itself.
+        // This excludes masks without penumbrae, for which the comparison would be trivial.
         let in_penumbra = exact.iter().filter(|v| (0.1..0.9).contains(*v)).count();
         assert!(in_penumbra > 200, "{scene}: only {in_penumbra} pixels in penumbrae");
     }
@@ -665,8 +663,8 @@ fn differing_count(a: &[Vec<u64>], b: &[Vec<u64>]) -> u32 {
     a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a ^ b).count_ones()).sum()
 }
 
-/// Wherever the light is and whatever its shape, rasterised regions of influence hold every receiver that a triangle can
-/// shade: the bits are those of the groups.
+/// For any position and shape of the light, rasterised regions of influence contain every receiver that a triangle can
+/// shade: the bits equal those of the groups.
 #[test]
 fn rasterised_regions_miss_no_bit() {
     let Some(lab) = lab() else { return };
@@ -681,8 +679,7 @@ fn rasterised_regions_miss_no_bit() {
     let none = |_: &mut Light| {};
     let sun = |light: &mut Light| light.shape = LightShape::Sun { angular_diameter_rad: 0.1 };
     let ellipsoid = |light: &mut Light| light.shape = LightShape::Ellipsoid { radii_m: Vec3::new(0.5, 0.2, 0.3) };
-    // Among the casters: the six windows of a cube, triangles beside the light and behind it, and receivers far off its
-    // axis.
+    // A light among the casters: six cube faces, triangles beside and behind the light, and receivers far off its axis.
     let inside = |light: &mut Light| {
         light.center = Vec3::new(0.1, 0.6, 0.2);
         light.shape = LightShape::Sphere { radius_m: 0.15 };
@@ -702,7 +699,7 @@ fn rasterised_regions_miss_no_bit() {
             let differing = differing_count(&groups, &same.bits(lab, &params));
             let open: u32 = groups.iter().flatten().map(|word| word.count_ones()).sum();
             println!("{scene}, {:?}, {:?}: {differing} bits differ, {open} open", params.evaluation, params.region);
-            // The table may say that a triangle hides a point that it is not near; the groups do not ask it then.
+            // The table may hide a sample that the triangle is not near; the groups skip such triangles.
             let allowed = if params.evaluation == SampleEvaluation::Exact { 0 } else { open / 1000 };
             assert!(differing <= allowed, "{scene}, {:?}: {differing} bits differ", params.evaluation);
         };
@@ -715,7 +712,7 @@ fn rasterised_regions_miss_no_bit() {
     }
 }
 
-/// Triangles that cast as one open mesh.
+/// Adds triangles as one open mesh.
 fn sheet(scene: &mut Scene, triangles: &[[[f32; 3]; 3]]) {
     let positions: Vec<Vec3> = triangles.iter().flatten().map(|corner| Vec3::from_array(*corner)).collect();
     scene.meshes.push(Mesh {
@@ -737,13 +734,13 @@ fn rectangle(low: [f32; 2], high: [f32; 2], height: f32) -> [[[f32; 3]; 3]; 2] {
     [[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]]
 }
 
-/// A floor with an edge above it, a pit beside it, and odd triangles over it, under a rectangle light at a height of 2 m.
+/// A floor with an edge above it, a pit beside it, and more triangles above, under a rectangle light at a height of 2 m.
 fn under_a_sheet(light_m: f32, camera: impl FnOnce(&mut Camera), more: &[[[f32; 3]; 3]]) -> (Scene, Setup) {
     let mut scene = load("builtin:overlap", &LoadOptions::default()).expect("a scene that is there");
     scene.meshes.clear();
     scene.instances.clear();
     sheet(&mut scene, &rectangle([-3.0, -3.0], [0.02, 3.0], 0.0));
-    // To one side alone, so that no halving of the box of all that is seen falls between the receivers on the floor.
+    // The pit is on one side only, so that no bisection of the visible bounds separates the receivers on the floor.
     sheet(&mut scene, &rectangle([-1.0, -1.0], [40.0, 40.0], -60.0));
     sheet(&mut scene, &rectangle([-3.0, -3.0], [0.0, 3.0], 1.0));
     if !more.is_empty() {
@@ -757,8 +754,8 @@ fn under_a_sheet(light_m: f32, camera: impl FnOnce(&mut Camera), more: &[[[f32; 
     (scene, setup)
 }
 
-/// From five centimetres above the floor, with the pit in the corner of the eye: 60 m below, so that the receivers on the
-/// floor fall into one of the 256 lists.
+/// The camera is five centimetres above the floor, with a pit in the image's corner: 60 m below, so that all receivers on
+/// the floor are in one of the 256 lists.
 #[test]
 fn a_hundred_thousand_receivers_in_one_list_have_the_tracer_s_bits() {
     let Some(lab) = lab() else { return };
@@ -776,7 +773,7 @@ fn a_hundred_thousand_receivers_in_one_list_have_the_tracer_s_bits() {
         println!(
             "{on_floor} receivers, map {map_size}: {differing} of {all} bits differ, {unexplained} not at an edge"
         );
-        // None was seen to; rounding may turn one of a million.
+        // Measured: none differs. Rounding may change one in a million.
         assert!(differing <= 1.max(all / 1_000_000) && unexplained == 0, "{differing} of {all}, {unexplained}");
     }
     let groups = same.bits(lab, &params);
@@ -790,18 +787,18 @@ fn a_hundred_thousand_receivers_in_one_list_have_the_tracer_s_bits() {
     }
 }
 
-/// Needles, triangles without area and through the light's plane, and receivers in that plane.
+/// Needles, triangles without area, triangles through the light's plane, and receivers in that plane.
 #[test]
 fn odd_triangles_and_places_have_the_tracer_s_bits() {
     let Some(lab) = lab() else { return };
     let mut odd = vec![
-        // Without area: a point, a line.
+        // Triangles without area: a point, a line.
         [[-0.3, 0.5, 0.0]; 3],
         [[-0.5, 0.4, 0.1], [0.0, 0.4, 0.1], [0.5, 0.4, 0.1]],
-        // Through the light's plane, and in it, beside the light.
+        // A triangle through the light's plane, and one in it beside the light.
         [[0.6, 1.0, -0.4], [0.7, 3.0, 0.0], [0.6, 1.5, 0.4]],
         [[0.8, 2.0, -0.3], [0.8, 2.0, 0.3], [1.4, 2.0, 0.0]],
-        // Through the light itself.
+        // A triangle through the light itself.
         [[-0.1, 1.9, -0.1], [0.1, 2.1, -0.1], [0.0, 2.0, 0.2]],
     ];
     // A fan of needles, two metres long and down to a hundredth of a millimetre wide.
@@ -828,7 +825,7 @@ fn odd_triangles_and_places_have_the_tracer_s_bits() {
             assert!(differing == 0, "{samples}, {:?}: {differing} rasterised bits differ", drawn.region);
         }
         println!("odd, {samples}: {differing} of {all} bits differ, {unexplained} not at an edge; {in_plane} in plane");
-        // None was seen to; rounding may turn one of a million.
+        // Measured: none differs. Rounding may change one in a million.
         assert!(differing <= 1.max(all / 1_000_000) && unexplained == 0, "{differing} of {all}, {unexplained}");
     }
 }

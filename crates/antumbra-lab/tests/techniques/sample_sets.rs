@@ -1,4 +1,4 @@
-//! `sample_based` against the truth: every set of light points, and frames that add up.
+//! `sample_based` against the ground truth: every sample set, and accumulation over frames.
 
 use std::path::PathBuf;
 
@@ -10,20 +10,20 @@ use antumbra_reference::VisibilityOptions;
 use crate::common::{Judged, lab, scene_file};
 use crate::sample_based::Same;
 
-/// Four times the usual light points, whose own noise is half of what is allowed at 1024.
+/// Four times the usual number of light samples. Its noise is half of the bounds at 1024 samples.
 const FINE: VisibilityOptions =
     VisibilityOptions { samples: 4096, set: SampleSet::Stratified, seed: 0, same_set_for_all_pixels: false };
 
 #[test]
 fn every_set_comes_as_close_as_exact_visibility_can() {
     let Some(lab) = lab() else { return };
-    // By number of light points.
+    // Bounds by number of light samples.
     let bounds = |few, some, many| [("64", few), ("256", some), ("1024", many)];
     let cases = [
         ("overlap", &["stratified", "r2"][..], bounds(0.0123, 0.0083, 0.0026)),
         ("checker-far", &["sobol"], bounds(0.0146, 0.0038, 0.002)),
         ("leaning-plank", &["poisson"], bounds(0.0089, 0.0052, 0.0021)),
-        // Hairs as fine as light points lie apart.
+        // Hairs as thin as the distance of light samples.
         ("hairball", &["relaxed", "stratified"], bounds(0.0271, 0.010, 0.0041)),
     ];
     for (scene, sets, bounds) in cases {
@@ -40,8 +40,8 @@ fn every_set_comes_as_close_as_exact_visibility_can() {
     }
 }
 
-/// Exact visibility is limited by the light points alone, which are the same for the tracer: so the tracer tells how well
-/// every set does on every scene.
+/// The error of exact visibility depends on the light samples alone, and these are the same in the tracer. So the tracer
+/// measures every set on every scene.
 #[test]
 #[ignore = "takes minutes: the table of every set and scene"]
 fn every_set_on_every_scene() {
@@ -86,7 +86,7 @@ fn every_set_on_every_scene() {
             });
             let bounds = match set {
                 SampleSet::PoissonDisc => [0.03, 0.012, 0.007],
-                // Just above 0.010 on the two scenes of hairs and leaves.
+                // Slightly above 0.010 on the two scenes of hairs and leaves.
                 SampleSet::R2 | SampleSet::Sobol => [0.03, 0.0115, 0.006],
                 _ => [0.03, 0.010, 0.006],
             };
@@ -103,7 +103,7 @@ fn every_set_on_every_scene() {
 #[test]
 fn frames_add_up_to_the_truth() {
     let Some(lab) = lab() else { return };
-    // A disk, which may be turned to any angle, and figure 7's number of light points over eight.
+    // A disk, whose samples may be rotated by any angle, with figure 7's number of light samples over eight.
     let same = Same::new(lab, "builtin:columns", |light| light.shape = LightShape::Disk { radius_m: 0.4 });
     let truth = same.truth(&FINE);
     let casters = same.casters();
@@ -120,7 +120,7 @@ fn frames_add_up_to_the_truth() {
             truth.rmse(&visibility)
         });
         println!("{settings:?}: rmse after 1, 4 and 16 frames {errors:.4?}");
-        // The table's points are turned, never replaced: their distances from the middle stay as they are.
+        // Samples of the table are rotated, not replaced: their distances from the centre stay.
         let is_table = settings.iter().any(|(_, value)| value == "lookup");
         let bounds = if is_table { [0.0283, 0.0179, 0.0152] } else { [0.0283, 0.0138, 0.0045] };
         assert!(errors.iter().zip(bounds).all(|(error, bound)| *error <= bound), "{settings:?}: {errors:?}");
@@ -128,7 +128,7 @@ fn frames_add_up_to_the_truth() {
     }
 }
 
-/// Section 6: coverage stands for which light points a pane covers.
+/// Section 6: coverage represents the light samples that a pane covers.
 #[test]
 fn panes_tint_by_what_they_cover() {
     let Some(lab) = lab() else { return };
@@ -139,7 +139,7 @@ fn panes_tint_by_what_they_cover() {
     assert!(rmse <= 0.025, "rmse {rmse}");
 }
 
-/// Scenes that are not part of the repository; skipped where they are missing.
+/// Scenes that are not part of the repository; skipped if they are missing.
 #[test]
 fn scenes_from_files_come_as_close() {
     let Some(lab) = lab() else { return };

@@ -1,4 +1,4 @@
-//! What a renderer shows: analytic irradiance times a mask, against traced irradiance.
+//! Shaded images: analytic irradiance times a mask, against traced irradiance.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::irradiance::IrradianceTruth;
@@ -12,13 +12,13 @@ use crate::common::lab;
 const SIZE: UVec2 = UVec2::new(80, 45);
 const RAYS: u32 = 1024;
 
-/// Exact visibility errs where casters or the horizon hide part of a light close by, and the ratio does not. Techniques whose own errors are
-/// small are more accurate with it.
+/// If casters or the horizon hide a part of a nearby light, exact visibility has an error and the ratio almost none.
+/// Techniques with small errors are more accurate with the ratio.
 #[test]
 fn the_ratio_shades_no_worse_than_visibility_and_better_close_to_lights() {
     let Some(lab) = lab() else { return };
-    // Scenes, the least error of the product with exact visibility, and the largest error of `smrt` by the ratio over that by visibility. On
-    // `staircase` most of it are leaks of its map onto the treads beside the panel, which the product happens to darken.
+    // Each entry: scene, minimum error of the product with exact visibility, and maximum error of `smrt` by the ratio relative to that by
+    // visibility. On `staircase` most of it is leakage of its map onto the treads beside the panel, which the product happens to darken.
     let cases = [("builtin:columns", 0.004, 1.0), ("builtin:hall", 0.006, 1.0), ("builtin:staircase", 0.05, 1.2)];
     for (spec, exact_errs_by, smrt_share) in cases {
         let scene = load(spec, &LoadOptions::default()).expect("a scene that is there");

@@ -1,4 +1,4 @@
-//! The pre-filtered soft family against the ray tracer, and `essm` against its brute-force reference, `pcss` with many taps.
+//! The pre-filtered soft family against the ray tracer, and `essm` against its brute-force reference, `pcss` with many samples.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::picture::Visibility;
@@ -9,13 +9,13 @@ use glam::{UVec2, Vec3};
 
 use crate::common::{Judged, SIZE, lab, mean_at};
 
-/// The brute-force reference: enough taps that more change nothing, and one mean depth for all blockers, as the tables know it.
+/// Settings of the brute-force reference: enough samples to converge, and one mean depth for all blockers, as in the tables.
 const MANY: [(&str, &str); 3] = [("samples", "1024"), ("search_samples", "1024"), ("attach_contacts", "false")];
 
 #[test]
 fn essm_stays_with_its_brute_force_twin() {
     let Some(lab) = lab() else { return };
-    // How far from the reference, and from the truth.
+    // Bounds on the distance from the reference, and from the ground truth.
     for (spec, from_twin, bound) in [
         ("builtin:leaning-plank", 0.0044, 0.0094),
         ("builtin:tree", 0.0278, 0.0812),
@@ -25,7 +25,7 @@ fn essm_stays_with_its_brute_force_twin() {
     ] {
         let judged = Judged::new(spec, |_| {});
         let twin = judged.run(lab, TechniqueKind::Pcss, &MANY);
-        // The reference knows no footprint and looks once; and what parts stand for shows where there are more of them.
+        // The reference has no footprint and searches once; more subdivisions show what they represent.
         let settings = [("kernel", "isotropic"), ("second_look", "false"), ("subdivisions", "8")];
         let essm = judged.run(lab, TechniqueKind::Essm, &settings);
         let apart = rmse_between(&judged, &twin, &essm);
@@ -42,7 +42,7 @@ fn essm_stays_with_its_brute_force_twin() {
     }
 }
 
-/// With its default kernel, which has the footprint that the reference does not know.
+/// The default kernel includes the footprint, which the reference lacks.
 #[test]
 fn essm_with_its_footprint_stays_with_its_twin() {
     let Some(lab) = lab() else { return };
@@ -71,7 +71,7 @@ fn rmse_between(judged: &Judged, a: &Visibility, b: &Visibility) -> f64 {
 #[test]
 fn the_family_keeps_its_figures() {
     let Some(lab) = lab() else { return };
-    // Bounds on rmse for leaning-plank, overlap, lantern-wall.
+    // Bounds on RMSE for leaning-plank, overlap, lantern-wall.
     for (kind, bounds) in [
         (TechniqueKind::PcssAnisotropic, [0.0177, 0.0588, 0.0508]),
         (TechniqueKind::Essm, [0.0153, 0.0573, 0.0513]),
@@ -94,8 +94,7 @@ fn the_family_keeps_its_figures() {
 #[test]
 fn mips_stand_in_for_tables() {
     let Some(lab) = lab() else { return };
-    // Bounds on rmse, with the exponents that only floats bear. What a mip takes in from beside a part costs most where the
-    // kernel is wide.
+    // Bounds on RMSE, with exponents that require floats. Mip texels that extend beyond a part cost most for wide kernels.
     for (spec, bound) in [("builtin:leaning-plank", 0.031), ("builtin:overlap", 0.078)] {
         let judged = Judged::new(spec, |_| {});
         let of = |settings: &[(&str, &str)]| judged.metrics(&judged.run(lab, TechniqueKind::Evssm, settings));
@@ -111,8 +110,8 @@ fn mips_stand_in_for_tables() {
     }
 }
 
-/// What constant time buys: with the taps that a small light needs, `pcss` loses quality as the light grows, and the taps
-/// that would keep it grow with the light; `essm` at one setting keeps its distance from the brute-force reference.
+/// Advantage of constant time: with the samples that a small light needs, `pcss` loses quality as the light grows, and the required number
+/// of samples grows with the light. `essm` keeps its distance from the brute-force reference at one setting.
 #[test]
 fn equal_error_costs_pcss_more_taps_as_the_light_grows() {
     let Some(lab) = lab() else { return };
@@ -132,7 +131,7 @@ fn equal_error_costs_pcss_more_taps_as_the_light_grows() {
         (essm, by_taps)
     };
     let (small, large) = (needed(0.25), needed(2.0));
-    // At equal error: what 64 taps keep under the small light, twice as many do not under the large one.
+    // At equal error: twice the samples under the large light do not reach the quality of 64 under the small one.
     assert!(large.1[2] > 1.2 * small.1[1], "128 taps {}, 64 under the small light {}", large.1[2], small.1[1]);
     assert!(large.0 <= large.1[1], "essm {} is off by more than 64 taps, {}", large.0, large.1[1]);
 }
@@ -140,7 +139,7 @@ fn equal_error_costs_pcss_more_taps_as_the_light_grows() {
 #[test]
 fn essm_keeps_contacts() {
     let Some(lab) = lab() else { return };
-    // Large enough for the last five centimetres to have pixels.
+    // The image is large enough to resolve the last five centimetres.
     const FINE: UVec2 = UVec2::new(640, 360);
     let judged = Judged::of_size(FINE, "builtin:leaning-plank", |_| {});
     let tracer = Tracer::new(&judged.scene).expect("built-in scenes can be traced");
@@ -191,12 +190,12 @@ fn essm_is_continuous_in_the_light_s_size() {
     assert!(apart < 0.0195, "zero size: {apart}");
 }
 
-/// Rays along each side of a pixel that a truth over its area takes.
+/// Rays along each side of a pixel for a ground truth over its area.
 const RAYS: u32 = 4;
 
-/// By pixel: the mean visibility of what a pixel shows of the surface at its centre; none where that is less than `least` of
-/// its rays, or where the centre is not one of `keep`. A filter over the pixel's footprint is to be held against this, not
-/// against a single ray, beside which all that it takes away is error.
+/// Mean visibility over a pixel's part of the surface at its centre; `None` if fewer than `least` rays hit that surface, or
+/// if `keep` rejects the centre. A filter over the pixel's footprint must be compared with this: against a single ray, the
+/// removed aliasing would count as error.
 fn area_truth(
     judged: &Judged,
     size_px: UVec2,
@@ -223,7 +222,7 @@ fn area_truth(
     (0..size_px.x * size_px.y).map(truth).collect()
 }
 
-/// By pixel: what a mask is off by.
+/// Errors of a mask by pixel.
 fn errors(truth: &[Option<f64>], visibility: &Visibility) -> Vec<Option<f64>> {
     let error = |(i, truth): (usize, &Option<f64>)| truth.map(|v| f64::from(visibility.at(i, 0)) - v);
     truth.iter().enumerate().map(error).collect()
@@ -233,8 +232,8 @@ fn errors(truth: &[Option<f64>], visibility: &Visibility) -> Vec<Option<f64>> {
 fn over_the_pixel_s_area_essm_is_as_true_as_its_twin() {
     let Some(lab) = lab() else { return };
     const SMALL: UVec2 = UVec2::new(128, 72);
-    // What `essm` is off by. The fence's bars and the planes' edges are as fine as a pixel, and pcss with 1024 taps is off
-    // by more than twice as much; under the tree, of 17 scenes, `essm` is the farthest behind it.
+    // RMSE of `essm`. The fence's bars and the planes' edges are as fine as a pixel, and the error of pcss with 1024
+    // samples is more than twice as large; of 17 scenes, `essm` is farthest behind pcss under the tree.
     for (spec, bound) in
         [("builtin:fence-geometry", 0.028), ("builtin:tilted-planes", 0.035), ("builtin:bench-under-tree", 0.0845)]
     {
@@ -249,15 +248,15 @@ fn over_the_pixel_s_area_essm_is_as_true_as_its_twin() {
     }
 }
 
-/// `checker-far` with its supersampled truth, where a pixel sees nothing but the ground: what it sees besides is no
-/// filter's affair.
+/// `checker-far` with its supersampled ground truth, over pixels that see only the ground, because filters are not
+/// responsible for other surfaces.
 struct Checker {
     judged: Judged,
     truth: Vec<Option<f64>>,
 }
 
 impl Checker {
-    /// The camera moved by `step`.
+    /// Moves the camera by `step`.
     fn new(step: Vec3) -> Self {
         let judged = Judged::seen_from("builtin:checker-far", |camera| {
             camera.eye += step;
@@ -268,7 +267,7 @@ impl Checker {
     }
 }
 
-/// The root of the mean square of what there is.
+/// Root mean square of the values that exist.
 fn root_mean_square(errors: impl Iterator<Item = Option<f64>>) -> f64 {
     let errors: Vec<f64> = errors.flatten().collect();
     (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
@@ -277,15 +276,15 @@ fn root_mean_square(errors: impl Iterator<Item = Option<f64>>) -> f64 {
 #[test]
 fn footprints_take_away_what_aliases() {
     let Some(lab) = lab() else { return };
-    // A walk of a tenth of a second.
+    // The camera's walk in a tenth of a second.
     let frames = [Vec3::ZERO, Vec3::new(0.02, 0.0, -0.15)].map(Checker::new);
-    // Error in space, and of the change from frame to frame.
+    // Error in space, and error of the change between frames.
     let error = |kind, settings: &[(&str, &str)]| {
         let [a, b] = frames.each_ref().map(|frame| errors(&frame.truth, &frame.judged.run(lab, kind, settings)));
         let change = a.iter().zip(&b).map(|(a, b)| Some(b.as_ref()? - a.as_ref()?));
         [root_mean_square(a.iter().copied()), root_mean_square(change)]
     };
-    // Bounds on essm's errors in space and time, and on pcss_anisotropic's in space.
+    // Bounds on errors of essm in space and time, and of pcss_anisotropic in space.
     for (size, essm_bounds, anisotropic_bound) in [("1024", [0.0505, 0.0652], 0.1), ("2048", [0.0431, 0.0551], 0.0561)]
     {
         let map = ("map_size", size);

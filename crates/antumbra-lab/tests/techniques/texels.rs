@@ -1,4 +1,4 @@
-//! What the techniques that project a map's texels onto the light share: scenes and kinds of light, with a bound on each.
+//! Shared tests of techniques that project a map's texels onto the light: scenes and kinds of light, with a bound for each.
 
 use antumbra::TechniqueKind;
 use antumbra_light::LightShape;
@@ -12,7 +12,7 @@ pub(crate) fn rmse_of(judged: &Judged, kind: TechniqueKind, settings: &[(&str, &
     judged.metrics(&mask).rmse.expect("judged pixels")
 }
 
-/// Holds a technique to bounds on rmse and on the light in umbrae, by scene.
+/// Checks a technique against bounds on RMSE and umbra leak, by scene.
 pub(crate) fn keeps_its_figures(kind: TechniqueKind, bounds: &[(&str, f64, f64)]) {
     let Some(lab) = lab() else { return };
     for (spec, bound, leak_bound) in bounds {
@@ -25,7 +25,7 @@ pub(crate) fn keeps_its_figures(kind: TechniqueKind, bounds: &[(&str, f64, f64)]
     }
 }
 
-/// Holds a technique to bounds on rmse under every kind of light: a disk, a sphere, an ellipsoid, a sun, points, a picture, a tube.
+/// Checks bounds on RMSE under every kind of light: a disk, a sphere, an ellipsoid, a sun, points, an emission texture, a tube.
 pub(crate) fn knows_every_light(kind: TechniqueKind, bounds: [f64; 7]) {
     if lab().is_none() {
         return;

@@ -1,4 +1,4 @@
-//! Every technique under casters that let some light through: alpha covers, transmission tints.
+//! Every technique with translucent casters: alpha is coverage, transmission tints.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::device::LabDevice;
@@ -17,7 +17,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3, Vec4};
 
 use crate::common::{case_file, lab};
 
-/// Those that know more than opaque casters.
+/// Techniques that support more than opaque casters.
 const KNOWING: [TechniqueKind; 5] = [
     TechniqueKind::MultiLayer,
     TechniqueKind::MultiView,
@@ -26,7 +26,7 @@ const KNOWING: [TechniqueKind; 5] = [
     TechniqueKind::AliasFree,
 ];
 
-/// One of each family of those that take a caster for opaque or for nothing: which of these is none of theirs to know.
+/// One technique of each other family, which treats a caster as opaque or absent.
 const OF_EACH_OTHER_FAMILY: [TechniqueKind; 4] =
     [TechniqueKind::Hard, TechniqueKind::Vsm, TechniqueKind::Essm, TechniqueKind::Reprojection];
 
@@ -45,8 +45,7 @@ fn sheet(half: f32, height: f32, material: usize) -> Mesh {
     }
 }
 
-/// Cards of a material over a floor, one above the other; the camera looks at the middle of their shadow, which they do
-/// not hide.
+/// Cards of a material above a floor, one above the other. The camera looks at the centre of their shadow, past the cards.
 fn cards(heights: &[f32], material: Material, images: Vec<Image>) -> (Scene, Setup) {
     let mut meshes = vec![sheet(4.0, 0.0, 0)];
     meshes.extend(heights.iter().map(|height| sheet(0.5, *height, 1)));
@@ -89,20 +88,20 @@ fn truth(scene: &Scene, setup: &Setup, size_px: UVec2) -> LightTruth {
     trace(scene, setup, size_px, &options, &Silent).expect("a good scene").swap_remove(0)
 }
 
-/// In the middle of the picture, of red, green and blue.
+/// Red, green and blue at the image's centre.
 fn in_the_middle(visibility: &Visibility) -> Vec3 {
     let middle = (SIZE.y / 2 * SIZE.x + SIZE.x / 2) as usize;
     Vec3::from_array([0, 1, 2].map(|channel| visibility.at(middle, channel.min(visibility.channel_count() - 1))))
 }
 
-/// What techniques have in the middle of the cards' shadow: `passes` for those that know more than opaque casters, to
-/// within `slack`, and 0 or 1 for one of each family of the others.
+/// Checks the centre of the cards' shadow: `passes` within `slack` for techniques that support translucency, and 0 or 1 for
+/// one of each other family.
 fn check(lab: &LabDevice, name: &str, cards: &(Scene, Setup), passes: Vec3, slack: f32, channels: usize) {
     let kinds = [&KNOWING[..], &OF_EACH_OTHER_FAMILY].concat();
     check_by(lab, &kinds, name, cards, passes, slack, channels);
 }
 
-/// The same of these techniques.
+/// Checks these techniques.
 fn check_by(
     lab: &LabDevice,
     kinds: &[TechniqueKind],
@@ -123,13 +122,13 @@ fn check_by(
     let as_opaque = Vec3::splat(if stops >= 0.5 { 0.0 } else { 1.0 });
     for &kind in kinds {
         let knows = KNOWING.contains(&kind);
-        // Of the others nothing fine is asked: the middle of the shadow is fifteen texels from its edge in small maps.
+        // The others need no fine maps: the shadow's centre is fifteen texels from its edge in small maps.
         let is_small = |key: &&str| !knows && kind.param_specs().iter().any(|spec| spec.key == *key);
         let small = ["map_size", "view_size"].into_iter().filter(is_small);
         let settings = small.map(|key| (key.to_owned(), "256".to_owned())).collect();
         let visibility = run_with(lab, scene, setup, &TechniqueChoice::with_settings(kind, settings), SIZE);
         let v = in_the_middle(&visibility);
-        // Filtered maps leak a little.
+        // Filtered maps leak slightly.
         let (want, slack) = if knows { (in_the_middle(&traced.visibility), slack) } else { (as_opaque, 0.03) };
         assert!(v.abs_diff_eq(want, slack), "{name}: {kind} has {v} where {want} is right");
         assert_eq!(visibility.channel_count(), channels, "{name}: {kind}");
@@ -161,7 +160,7 @@ fn alpha_of_vertices_and_textures_covers() {
     let textured = Material { base_color_image: Some(0), ..blended(Vec4::new(1.0, 1.0, 1.0, 0.75)) };
     check(lab, "textured", &cards(&[1.0], textured, vec![image]), Vec3::splat(0.7), 0.016, 1);
     let mut faded = cards(&[1.0], blended(Vec4::ONE), Vec::new());
-    // From 1 to a half along the card.
+    // Alpha falls from 1 to .5 along the card.
     faded.0.meshes[1].colors = [1.0, 0.5, 0.5, 1.0].map(|alpha| Vec3::ONE.extend(alpha)).to_vec();
     check(lab, "vertices", &faded, Vec3::splat(0.25), 0.03, 1);
 }
@@ -191,7 +190,7 @@ fn transmission_tints_by_metalness_and_volume() {
 #[test]
 fn transmission_is_of_texels() {
     let Some(lab) = lab() else { return };
-    // Half of the card is glass; the middle of the shadow is not asked.
+    // Half of the card is glass. The shadow's centre is at the border and is not tested.
     let texels = (0..16).map(|x| [if x < 8 { 0 } else { 255 }, 7, 7, 7]).collect();
     let image = Image { width: 16, height: 1, rgba8: texels, wrap: [Wrap::Clamp; 2] };
     let glass = Material { transmission: 1.0, transmission_image: Some(0), ..Material::default() };
@@ -200,7 +199,7 @@ fn transmission_is_of_texels() {
     for kind in [&KNOWING[..], &OF_EACH_OTHER_FAMILY].concat() {
         let visibility = run(lab, &scene, &setup, kind, SIZE);
         let metrics = compare_visibility(&traced.visibility, &visibility, &traced.judged).expect("images of one size");
-        // Without the glass, or all of glass, it is .12 and more; a hard edge has .045.
+        // Without glass, or with glass alone, the error is at least .12; a hard edge has .045.
         let rmse = metrics.rmse.expect("judged pixels");
         println!("half of glass: {kind}: rmse {rmse:.4}");
         assert!(rmse < if KNOWING.contains(&kind) { 0.02 } else { 0.07 }, "{kind}: rmse {rmse}");
@@ -210,7 +209,7 @@ fn transmission_is_of_texels() {
 #[test]
 fn surfaces_in_a_row_multiply() {
     let Some(lab) = lab() else { return };
-    // A closed box's two faces are such too.
+    // The two faces of a closed box are surfaces in a row, too.
     for heights in [&[1.0, 1.2][..], &[0.8, 1.0, 1.2]] {
         let passes = Vec3::splat(0.5f32.powi(heights.len() as i32));
         check(

@@ -1,4 +1,4 @@
-//! How much `alias_free` and `sample_based` test, and how that grows.
+//! Work of `alias_free` and `sample_based`, and its growth.
 
 use antumbra::techniques::receiver_lists::sample_based::{
     RegionOfInfluence, SampleBased, SampleBasedParams, Traversal,
@@ -15,7 +15,7 @@ use glam::UVec2;
 use crate::common::{Judged, lab};
 use crate::sample_based::Change;
 
-/// What a frame tested.
+/// Numbers of tests in a frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Counts {
     boxes: u32,
@@ -66,14 +66,14 @@ pub(crate) fn counts(
     Counts { boxes: c[2], triangles: c[3], pairs: c[4], pairs_near: c[5], words: c[6], points: c[7] }
 }
 
-/// Multiplications of all tests: eighteen planes for a box and for each corner of a triangle, of which a pair carries its corners
-/// on to the light, a near one makes four planes, and these ask the box of a word of light points, or one of them.
+/// Multiplications of all tests: eighteen planes per box and per vertex of a triangle; a pair projects its vertices to the light; a near
+/// pair computes four planes, which are tested against the box of a word of light samples, or against a sample.
 fn tests(c: Counts) -> f64 {
     let of_each = [18 * 3, 18 * 9, 9 * 3 + 12, 9 * 9 + 4 * 12, 4 * 6, 4 * 3];
     c.all().into_iter().zip(of_each).map(|(count, each)| f64::from(count) * f64::from(each)).sum()
 }
 
-/// Without what is held against boxes and groups.
+/// Counts without tests against boxes and groups.
 fn of_receivers(c: Counts) -> Counts {
     Counts { boxes: 0, triangles: 0, ..c }
 }
@@ -105,7 +105,7 @@ fn tests_grow_at_most_as_the_light_s_radius_does() {
     }
 }
 
-/// More light points than are tested together where casters have holes or tint, and more than one batch of triangles.
+/// More light samples than are tested together with alpha-tested or tinted casters, and more than one batch of triangles.
 #[test]
 fn holes_and_tint_take_any_number_of_points() {
     let Some(lab) = lab() else { return };
@@ -124,7 +124,7 @@ fn holes_and_tint_take_any_number_of_points() {
     }
 }
 
-/// Triangles are drawn where few receivers share a texel and walked where many do; walking alone asks boxes.
+/// Triangles are drawn if few receivers share a texel and walked if many do; only walking tests boxes.
 #[test]
 fn the_device_chooses_by_how_crowded_lists_are() {
     let Some(lab) = lab() else { return };
@@ -139,7 +139,7 @@ fn the_device_chooses_by_how_crowded_lists_are() {
     assert!(crowded.boxes > 0 && crowded.pairs > 0, "{crowded:?}");
 }
 
-/// What section 4.3 saves; that it changes no bit is another test's.
+/// Savings of section 4.3; another test checks that no bit changes.
 #[test]
 fn every_switch_saves_tests() {
     let Some(lab) = lab() else { return };
@@ -156,13 +156,13 @@ fn every_switch_saves_tests() {
         ] {
             let without = of(&off);
             println!("{scene} without {name}: {:.2} times the tests, {without:?}", tests(without) / all);
-            // A search for silhouettes may find one every time, and is no test of receivers.
+            // Each search for silhouettes may succeed, and is no test of receivers.
             let (without, all) =
                 if name == "penumbra_only" { (of_receivers(without), of_receivers(with)) } else { (without, with) };
             assert!(tests(without) >= 0.99 * tests(all), "{scene}: {name} costs tests");
         }
         let drawn = SampleBasedParams { traversal: Traversal::Raster, ..on };
-        // How much a fragment finds closed already depends on the order of fragments: all others are compared without.
+        // Early termination depends on the order of fragments, so the other switches are compared without it.
         let unstopped = SampleBasedParams { stop_when_occluded: false, ..drawn };
         for (name, on, off) in [
             ("stop_when_occluded", drawn, unstopped),
@@ -177,7 +177,7 @@ fn every_switch_saves_tests() {
     }
 }
 
-/// Of a small light, most texels in shadow are far from every silhouette.
+/// Under a small light, most texels in shadow are far from all silhouettes.
 #[test]
 fn silhouettes_save_tests_where_umbrae_are_wide() {
     let Some(lab) = lab() else { return };
@@ -191,7 +191,7 @@ fn silhouettes_save_tests_where_umbrae_are_wide() {
     }
 }
 
-/// Hexagons about a sphere are a tighter fit than boxes are; an ellipsoid about a rectangle is √2 times as wide.
+/// Hexagons around a sphere fit more tightly than boxes; an ellipsoid around a rectangle is √2 times as wide.
 #[test]
 fn hexagons_hold_about_as_many_receivers_as_boxes() {
     let Some(lab) = lab() else { return };
@@ -224,7 +224,7 @@ fn the_stencil_drops_fragments_over_empty_lists() {
     }
 }
 
-/// What the paper's way would test: every receiver in a texel of a triangle's region.
+/// Tests that the paper's method would need: every receiver in a texel of a triangle's region.
 #[test]
 #[ignore = "prints a table for the documentation"]
 fn tests_of_rasterised_regions() {

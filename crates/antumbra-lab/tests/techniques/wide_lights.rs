@@ -1,4 +1,4 @@
-//! Lights whose receivers lie all around them, or up to their horizon: nothing dark or lit that the truth has not.
+//! Lights with receivers all around them, or up to their horizon: no leaks and no false shadows.
 
 use antumbra::TechniqueKind;
 use antumbra_lab::metrics::Metrics;
@@ -9,7 +9,7 @@ use crate::common::{Judged, lab, scene_file};
 
 const SIZE: UVec2 = UVec2::new(160, 90);
 
-/// What is a technique's own, and enough for so small a picture.
+/// Small settings, of those that the technique has.
 fn settings_of(kind: TechniqueKind) -> Vec<(&'static str, &'static str)> {
     let wanted = [("map_size", "512"), ("view_size", "256"), ("samples", "32"), ("search_samples", "32")];
     let has = |key: &str| kind.param_specs().iter().any(|spec| spec.key == key);
@@ -21,7 +21,7 @@ fn metrics_of(judged: &Judged, name: &str) -> Metrics {
     judged.metrics(&judged.run(lab().expect("asked for before"), kind, &settings_of(kind)))
 }
 
-/// Technique, and bounds on its rmse and on what of lit pixels is dark and of dark ones lit.
+/// Technique, bound on RMSE, and bound on both umbra leak and lit loss.
 type Bound = (&'static str, f64, f64);
 
 fn hold(judged: &Judged, bounds: &[Bound]) {
@@ -71,14 +71,14 @@ fn a_rectangle_lights_a_hall_up_to_its_horizon() {
     }
     let judged = Judged::of_size(SIZE, "builtin:hall", |_| {});
     hold(&judged, HALL);
-    // At the feet of walls texels show the floor, in front of a wall's plane; where they lie is random.
+    // At the feet of walls texels show the floor, in front of a wall's plane; their positions are arbitrary.
     for map_size in ["400", "440", "480", "560", "600", "700"] {
         let mask = judged.run(lab().expect("asked for before"), TechniqueKind::Hard, &[("map_size", map_size)]);
         let loss = judged.metrics(&mask).lit_loss.expect("lit pixels");
         println!("hard, a map of {map_size}²: loss {loss:.4}");
         assert!(loss <= 0.0005, "hard, a map of {map_size}²: loss {loss}");
     }
-    // A frustum that is asked for is as wide as asked, and a cone.
+    // An explicit frustum or cone is as wide as requested.
     let wide = Judged::of_size(SIZE, "builtin:hall", |light| light.fov_rad = Some(165f32.to_radians()));
     hold(&wide, &HALL[..2]);
     let spot = Judged::of_size(SIZE, "builtin:hall", |light| {
@@ -114,8 +114,8 @@ const TOWN: &[Bound] = &[
     ("alias_free", 0.078, 0.001),
 ];
 
-/// A light as large as a door with casters an arm's length before it: kernels and search windows are as wide as half the map,
-/// and hold as much behind the receiver as before it.
+/// A light as large as a door with casters an arm's length in front of it: kernels and search windows are half as wide as
+/// the map, and contain as much behind the receiver as in front of it.
 #[test]
 fn essm_bears_casters_right_before_a_large_light() {
     let Some(lab) = lab() else { return };
@@ -134,7 +134,7 @@ fn essm_bears_casters_right_before_a_large_light() {
         setup.camera.fov_y_rad = 75f32.to_radians();
         setup.lights[0] = light(Vec3::new(6.5, 5.5, 0.0), Vec3::new(-4.0, 0.0, 0.0));
     });
-    // .081 where a tile's sums were believed whatever lay behind the receiver.
+    // Without a check of depths behind the receiver, a tile's sums give .081.
     assert!(error(&hall, "1000") <= 0.066);
 
     let Some(spec) = scene_file("arena.glb") else { return };
@@ -143,17 +143,17 @@ fn essm_bears_casters_right_before_a_large_light() {
         setup.camera.fov_y_rad = 75f32.to_radians();
         setup.lights = vec![light(Vec3::new(0.0, 13.0, 18.0), Vec3::new(-2.0, -2.0, 4.0))];
     });
-    // .19 to .34 at most sizes so; and .28 at 573, 878 and 1549, where a texel or two of a triangle that the light's middle lies
-    // in are the nearest caster.
+    // Without that check most sizes give .19 to .34. Sizes 573, 878 and 1549 give .28, where one or two texels of the
+    // triangle that contains the light's centre are the nearest caster.
     for (map_size, most) in [("573", 0.112), ("878", 0.112), ("1000", 0.09), ("1023", 0.09), ("1549", 0.09)] {
         assert!(error(&arena, map_size) <= most, "a map of {map_size}²");
     }
 }
 
-/// How far from a seam is beside it.
+/// Maximum distance of pixels beside a seam.
 const NEAR_PX: usize = 8;
 
-/// Where two parts meet, masks differ from the truth no more than beside it.
+/// At the seam of two parts the mask's error is no larger than beside it.
 #[test]
 fn parts_have_no_seams() {
     let Some(lab) = lab() else { return };
@@ -172,20 +172,19 @@ fn parts_have_no_seams() {
         let (Some(here), Some(next)) = (&points[i], &points[i + 1]) else { return false };
         here.normal.dot(next.normal) > 0.999 && judged.truth.judged[i] && judged.truth.judged[i + 1]
     };
-    // What a technique makes of its map's texels is another thing in each part; a kernel over a table's texels most of all.
+    // Errors due to texels differ between parts, most of all those of a kernel over a table.
     for (name, most) in [("hard", 1.2), ("pcss", 1.2), ("multi_view", 1.2), ("essm", 2.2)] {
         let kind = TechniqueKind::from_name(name).expect("a technique");
         let mut shadow = view
             .create(&antumbra_lab::technique_run::TechniqueChoice::default_of(kind))
             .expect("a technique as it comes");
-        // Chance is no seam.
+        // Sampling noise is no seam.
         if kind.param_specs().iter().any(|spec| spec.key == "rotate") {
             shadow.set("rotate", "false").expect("a parameter");
         }
         let mask = view.draw(&mut shadow, 0, 1).expect("a built-in scene").visibility;
         let error = |i: usize| mask.at(i, 0) - judged.truth.visibility.at(i, 0);
-        // Pairs of neighbours on one surface: sum of the differences of their errors, and count; across a seam, and
-        // within some pixels of one.
+        // Pairs of neighbouring pixels on one surface, across a seam and near one: sum of differences of their errors, and count.
         let mut sums = [(0.0f64, 0usize); 2];
         for i in 0..points.len() {
             let x = i % SIZE.x as usize;

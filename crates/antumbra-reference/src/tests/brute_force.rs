@@ -1,4 +1,4 @@
-//! Every triangle against every light point, without a tree, a shaft, tiles or vectors: the same bits.
+//! Testing every triangle against every light point, without a tree, shaft, tiles or vectors, gives the same bits.
 
 use antumbra_light::{Light, LightShape, SampleSet};
 use antumbra_scene::Scene;
@@ -12,7 +12,7 @@ use crate::sampled_light::{BUNDLE, TILE};
 use crate::surface::Surface;
 use crate::walk::normalized;
 
-/// Whether any triangle hides a light point. (A kernel only so that fused multiply-adds are instructions, not calls.)
+/// Kernel that tests whether any triangle hides a light point. (A kernel only to compile fused multiply-adds to instructions.)
 struct AnyOf<'a> {
     tracer: &'a Tracer,
     triangles: &'a [(Planes, Surface)],
@@ -53,7 +53,7 @@ impl Kernel for AnyOf<'_> {
     }
 }
 
-/// The visible bits by brute force, with the tracer's own arithmetic.
+/// Bit mask of the visible light points by brute force, with the tracer's own arithmetic.
 fn mask(tracer: &Tracer, light: &SampledLight, index: usize, point: &ReceiverPoint) -> Vec<u64> {
     let mut words = vec![0u64; (light.points as usize).div_ceil(64)];
     if !light.light.reaches(&light.frame, point.position) {
@@ -78,8 +78,8 @@ fn mask(tracer: &Tracer, light: &SampledLight, index: usize, point: &ReceiverPoi
     words
 }
 
-/// Whether a segment is blocked, by Möller and Trumbore's test in double precision; `None` where it comes within 10⁻⁵
-/// of an edge or end and single precision may differ.
+/// Whether a segment is blocked, by Möller and Trumbore's test in double precision; `None` if it passes within 10⁻⁵ of an
+/// edge or end, where single precision may differ.
 fn blocked_in_doubles(tracer: &Tracer, origin: Vec3, vector: Vec3, t_max: f64) -> Option<bool> {
     let (o, d) = (origin.as_dvec3(), vector.as_dvec3());
     let mut blocked = Some(false);
@@ -184,7 +184,7 @@ fn slivers_and_shared_corners() {
     check_bits_only(&scene_of(&triangles), &receivers, &all_lights(), 300);
 }
 
-/// [`check`] without the test in double precision, for triangles so thin that it is never sure.
+/// [`check`] without the test in double precision, for triangles so thin that this test is never certain.
 pub(super) fn check_bits_only(scene: &Scene, receivers: &[ReceiverPoint], lights: &[Light], samples: u32) {
     let tracer = Tracer::new(scene).unwrap();
     for light in lights {

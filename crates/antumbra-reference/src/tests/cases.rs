@@ -1,11 +1,11 @@
-//! Small inputs that public reports led to, each with what is right: a card 1 m up and a light above it.
+//! Small inputs derived from public reports, each with the right result: a card 1 m up and a light above it.
 
 use antumbra_scene::{AlphaMode, LoadOptions, Setup, load};
 use glam::Vec3;
 
 use super::*;
 
-/// The visibility at a point of the floor.
+/// Visibility at a point of the floor.
 fn at(folder: &std::path::Path, case: &str, setup: &str, point: Vec3) -> Vec3 {
     let scene = load(&folder.join(format!("{case}.glb")).display().to_string(), &LoadOptions::default()).unwrap();
     assert!(scene.warnings.is_empty(), "{case}: {:?}", scene.warnings);
@@ -28,7 +28,7 @@ fn cards_let_through_what_they_should() {
         ("transmission_metal_1.0", Vec3::ZERO, 0.0),
         ("transmissionTexture_at_0", Vec3::ZERO, 0.0),
         ("volume_red_10cm", Vec3::new(1.0, 0.1, 0.1), 1e-4),
-        // The card lies within the hole of its picture.
+        // The card lies within the hole of its image.
         ("webp_used_no_fallback", Vec3::ONE, 0.0),
         ("webp_required", Vec3::ONE, 0.0),
     ] {

@@ -1,5 +1,5 @@
-//! Shadows that algebra knows. 4096 stratified points have an rms error below 0.002 on a straight edge; most bounds
-//! here are three times that or the noise derived at the test.
+//! Shadows with closed forms. 4096 stratified points have an rms error below 0.002 on a straight edge; most bounds here
+//! are three times that, or the noise derived at the test.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 use super::*;
 
-/// An opaque half-plane `x ≥ edge` at height `height`, large.
+/// A large opaque half-plane `x ≥ edge` at height `height`.
 fn half_plane(edge: f32, height: f32) -> Tracer {
     Tracer::new(&scene_of(&parallelogram(Vec3::new(edge, height, -500.0), Vec3::X * 1000.0, Vec3::Z * 1000.0))).unwrap()
 }
@@ -17,7 +17,7 @@ fn down(shape: LightShape, height: f32) -> Light {
     Light::new(shape, Vec3::Y * height, Vec3::ZERO)
 }
 
-/// The part of a disc of radius `r` on the near side of a line at signed distance `d` from its centre (`d = r`: all).
+/// Fraction of a disc of radius `r` on the near side of a line at signed distance `d` from its centre (`d = r`: all).
 fn disc_part(d: f32, r: f32) -> f32 {
     let k = (d / r).clamp(-1.0, 1.0);
     1.0 - (k.acos() - k * (1.0 - k * k).sqrt()) / PI
@@ -25,7 +25,7 @@ fn disc_part(d: f32, r: f32) -> f32 {
 
 #[test]
 fn half_plane_under_a_rectangle() {
-    // From x the edge at (e, h) projects onto the light's plane at p = x + (e − x)·H/h; the light is seen left of it:
+    // From x, the edge at (e, h) projects onto the light's plane at p = x + (e − x)·H/h; the light is visible left of it:
     // V = (p + w/2) / w.
     let (height, edge_height, edge, width) = (4.0, 1.5, 0.2, 1.2);
     let tracer = half_plane(edge, edge_height);
@@ -60,12 +60,12 @@ fn half_plane_under_a_disk_and_a_sun() {
 
 #[test]
 fn half_plane_before_a_sphere() {
-    // In the plane z = 0 through the light's centre the edge's plane through x cuts the facing disc along a line at
+    // In the plane z = 0 through the light's centre, the plane through x and the edge cuts the facing disc along a line at
     // distance D·sin(angle between the edge's direction and the centre's), measured at the disc: D·tan.
     let (height, edge_height, edge, radius) = (4.0, 1.5, 0.2, 0.6);
     let tracer = half_plane(edge, edge_height);
     let points: Vec<Vec3> = offsets(41, -0.8, 1.2).map(|x| Vec3::new(x, 0.0, 0.0)).collect();
-    // It shines all around: the floor lies before it, beside it and behind it.
+    // The light shines in all directions: the floor lies before it, beside it and behind it.
     for axis in ALL_AROUND {
         let light = looking_along(axis, LightShape::Sphere { radius_m: radius }, height);
         for (v, p) in visibility_on_floor(&tracer, &light, &points).into_iter().zip(&points) {
@@ -81,7 +81,7 @@ fn half_plane_before_a_sphere() {
 /// Axes of lights above a floor.
 const ALL_AROUND: [Vec3; 5] = [Vec3::NEG_Y, Vec3::Y, Vec3::X, Vec3::new(-0.6, 0.0, 0.8), Vec3::new(0.48, 0.6, -0.64)];
 
-/// A light over the floor's middle whose axis is another than down.
+/// A light above the floor's centre with any axis.
 fn looking_along(axis: Vec3, shape: LightShape, height: f32) -> Light {
     let center = Vec3::Y * height;
     Light::new(shape, center, center + axis)
@@ -89,8 +89,8 @@ fn looking_along(axis: Vec3, shape: LightShape, height: f32) -> Light {
 
 #[test]
 fn disc_under_a_disk() {
-    // A disc occluder of radius r at height h projects from the floor point x onto the light's plane as a disc of
-    // radius r·H/h about x·(1 − H/h): what is hidden is a lens of two circles.
+    // A disc occluder of radius r at height h projects from the floor point x onto the light's plane as a disc of radius
+    // r·H/h about x·(1 − H/h): the hidden part is a lens of two circles.
     let (height, occluder_height, occluder, radius) = (4.0f32, 2.0f32, 0.3f32, 0.5f32);
     let corners = 512;
     let at = |i: u32| {
@@ -108,7 +108,7 @@ fn disc_under_a_disk() {
     }
 }
 
-/// The area common to two discs at distance `d`.
+/// Area common to two discs of radii `a` and `b` at distance `d`.
 fn lens(d: f32, a: f32, b: f32) -> f32 {
     if d >= a + b {
         return 0.0;
@@ -180,7 +180,7 @@ fn texture_weights_its_area() {
         let d = p.x + (0.1 - p.x) * height / edge_height;
         let want = (disc_part(d, outer) * outer * outer - disc_part(d, inner) * inner * inner)
             / (outer * outer - inner * inner);
-        // The texels' staircase is worth up to 1 % of the area, the silhouette of the picture the rest.
+        // The staircase of texels causes up to 1 % of the area, the silhouette of the texture the rest.
         assert!((v - want).abs() < 0.025, "{p}: {v} against {want}");
         v - want
     });

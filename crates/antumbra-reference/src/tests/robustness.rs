@@ -1,4 +1,4 @@
-//! No acne, no leaks, no surprises.
+//! The tracer has no acne and no leaks, and it handles degenerate input.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -36,7 +36,7 @@ fn a_lit_plane_has_no_acne_at_any_scale() {
                 let camera = Camera { near_m: 1e-4 * scale, up: normal, ..camera(eye, at) };
                 let receivers = tracer.primary(&camera, SMALL);
                 assert!(receivers.hits() > 200);
-                // Overhead and grazing.
+                // Overhead light and grazing light.
                 for (height, aside) in [(1.0, 0.0), (0.1, 2.0)] {
                     let center = at + scale * (height * normal + aside * v);
                     let light = Light::new(LightShape::Disk { radius_m: 0.05 * scale }, center, at);
@@ -46,7 +46,7 @@ fn a_lit_plane_has_no_acne_at_any_scale() {
                         assert_eq!(image.values[i][0], 1.0, "scale {scale}, {n}, normal {normal}: {point:?}");
                         assert!(image.faces_light_center[i]);
                     }
-                    // From behind, the plane shadows itself altogether.
+                    // A light behind the plane is fully shadowed by the plane.
                     let behind =
                         Light { center: at - scale * (height * normal + aside * v), axis: -light.axis, ..light };
                     let image = visibility(&tracer, &receivers, &behind, &options);
@@ -62,7 +62,7 @@ fn a_lit_plane_has_no_acne_at_any_scale() {
 
 #[test]
 fn no_light_leaks_into_a_closed_sphere() {
-    // Random segments from within to without, and from a light within, at four scales and off the origin.
+    // Random segments from inside to outside, and from a light inside, at four scales and off the origin.
     for scale in [0.01, 1.0, 100.0, 10_000.0] {
         let center = scale * Vec3::new(0.3, -2.0, 1.1);
         let tracer = Tracer::new(&scene_of(&sphere(center, scale, 96, 48))).unwrap();
@@ -101,7 +101,7 @@ fn rays_aimed_at_edges_and_corners_do_not_slip_through() {
 
 #[test]
 fn contact_shadows_touch() {
-    // A box on a floor: straight up from just inside its footprint all is dark, just outside half is seen.
+    // A box on a floor: directly above points just inside its footprint all is dark, just outside half is visible.
     let mut triangles = parallelogram(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0);
     for (corner, u, v) in [
         (Vec3::ZERO, Vec3::X, Vec3::Y),
@@ -181,8 +181,8 @@ fn seeds_change_noise_and_nothing_else() {
         let (a, b) = (image(1024, 1, same), image(1024, 2, same));
         assert_ne!(a.values, b.values);
         assert_eq!(a.values, image(1024, 1, same).values);
-        // 32 × 32 stratified points have an rms of .0036 at most over pictures (bench/measurements.md, sample
-        // sets), and of about 0.005 over their penumbrae.
+        // 32 × 32 stratified points have an rms error of .0036 at most over images (bench/measurements.md, sample sets), and of
+        // about 0.005 over their penumbrae.
         for image in [&a, &b] {
             let error = rms(image.values.iter().zip(&truth.values).map(|(a, b)| a[0] - b[0]));
             assert!(error < 0.005, "{error}");
@@ -200,7 +200,7 @@ fn one_set_for_all_is_the_set_itself() {
     for index in [0, 1, 99] {
         assert_eq!(sampled.points_for(index, x), want);
     }
-    // Each bit of the mask is its own point's.
+    // Each bit of the mask belongs to the light point of its index.
     let (tracer, receivers) = busy();
     for (index, point) in receivers.points.iter().enumerate().step_by(31) {
         let Some(point) = point else { continue };

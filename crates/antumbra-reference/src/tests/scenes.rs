@@ -1,4 +1,4 @@
-//! Brute force on scenes as they are: the built-in ones, and real ones where they are at hand.
+//! Brute force agrees on whole scenes: the built-in ones, and real ones if they are available.
 
 use antumbra_light::LightShape;
 use antumbra_scene::{LoadOptions, Scene, Setup, builtin, load};
@@ -7,7 +7,7 @@ use glam::UVec2;
 use super::*;
 use crate::SampledLight;
 
-/// A few receivers of the scene's own camera, under the scene's own lights and a sun.
+/// Checks a few receivers of the scene's own camera, under its own lights and a sun.
 fn check(scene: &Scene, pixels: usize) {
     let setup = Setup::for_scene(scene);
     let tracer = Tracer::new(scene).unwrap();
@@ -30,18 +30,18 @@ fn check(scene: &Scene, pixels: usize) {
     }
 }
 
-/// What brute force gets through in a second or two.
+/// Number of triangles that brute force handles in a second or two.
 const MOST_TRIANGLES: usize = 100_000;
 
 #[test]
 fn builtin_scenes_equal_brute_force() {
     for info in builtin::NAMES {
-        // A million hairs by brute force say no more than thirty thousand leaves, and take a minute.
+        // A million hairs by brute force take a minute and test no more than thirty thousand leaves.
         if info.triangles > MOST_TRIANGLES {
             continue;
         }
         let scene = load(&format!("builtin:{}", info.name), &LoadOptions::default()).unwrap();
-        // Brute force takes time in proportion: fewer receivers where there are more triangles.
+        // The time of brute force grows with the triangles, so there are fewer receivers for more triangles.
         check(&scene, (40_000 / info.triangles.max(1)).clamp(1, 8));
     }
 }
@@ -57,7 +57,7 @@ fn rows_are_those_of_the_whole() {
     let whole = visibility(&tracer, &receivers, &setup.lights[0], &options);
     let light = SampledLight::new(&setup.lights[0], &options).unwrap();
     let (mut points, mut values, mut faces) = (Vec::new(), Vec::new(), Vec::new());
-    // Not in sixteens, which the whole is traced in; the last asks for more than there is.
+    // Rows not in sixteens, in which the whole image is traced; the last range exceeds the image.
     for first in (0..size.y).step_by(7) {
         points.extend(tracer.primary_in_rows(&setup.camera, size, first..(first + 7).min(size.y)));
         let part = tracer.visibility_in_rows(&receivers, first..first + 7, &light, &never()).unwrap();

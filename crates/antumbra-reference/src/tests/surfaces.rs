@@ -1,4 +1,4 @@
-//! Masks and translucent surfaces.
+//! Alpha-tested and translucent surfaces.
 
 use antumbra_light::{Light, LightShape};
 use antumbra_scene::{AlphaMode, Image, Material, Wrap};
@@ -79,7 +79,7 @@ fn settled_masks_cost_nothing() {
     let hole = image_of(32, Wrap::Repeat, |_, _| [0, 0, 0, 127]);
     let tracer = Tracer::new(&sheet(masked(), Some(hole), 0.0, 3.0)).unwrap();
     assert_eq!(tracer.triangle_count(), 0);
-    // Half of the picture is solid: a triangle within that half is opaque.
+    // Half of the image is solid: a triangle within that half is opaque.
     let half = image_of(64, Wrap::Clamp, |x, _| [0, 0, 0, if x < 32 { 255 } else { 0 }]);
     let tracer = Tracer::new(&sheet(masked(), Some(half), 0.01, 0.2)).unwrap();
     assert!(tracer.geometry().surfaces.masked.is_empty() && tracer.triangle_count() == 2);
@@ -99,8 +99,8 @@ fn masked_soup_equals_brute_force() {
 
 #[test]
 fn translucent_surfaces_multiply_once_each() {
-    // Three panes: two of them over each other above the receiver, and both splits of each counted once. The material
-    // passes 1 − 0.8·(1 − tint).
+    // Three panes: two of them overlap above the receiver, and both splits of each count once. The material passes
+    // 1 − 0.8·(1 − tint).
     let color = Vec4::new(1.0, 0.5, 0.0, 0.8);
     let glass = Material { base_color: color, alpha: AlphaMode::Blend, transmission: 1.0, ..Material::default() };
     let pane = 1.0 - 0.8 * (1.0 - Vec3::new(1.0, 0.5, 0.0));
@@ -114,7 +114,7 @@ fn translucent_surfaces_multiply_once_each() {
     assert!(second.abs_diff_eq(pane, 1e-5), "{second}");
 }
 
-/// What passes to a point of the floor from a square light 3 m up.
+/// Light that reaches a point of the floor from a square light 3 m up.
 fn through(tracer: &Tracer, at: Vec3, light_size_m: f32) -> Vec3 {
     let light = Light::new(square(light_size_m), Vec3::Y * 3.0, Vec3::ZERO);
     let points = [ReceiverPoint::new(at, Vec3::Y)];
@@ -135,7 +135,7 @@ fn blended_surfaces_cover_whatever_their_colour() {
         let v = through(&tracer, Vec3::ZERO, 0.2);
         assert!(v.abs_diff_eq(Vec3::splat(1.0 - alpha), 1e-5), "{alpha}: {v}");
     }
-    // Alpha of a texture and of vertices multiply; where they come to 1 the triangle is as an opaque one.
+    // Alpha of a texture and of vertices multiply; a triangle with product 1 equals an opaque one.
     let image = image_of(64, Wrap::Clamp, |x, _| [0, 255, 0, if x < 32 { 255 } else { 51 }]);
     let tracer = Tracer::new(&sheet(red(0.5), Some(image.clone()), 0.0, 1.0)).unwrap();
     for (x, passes) in [(-0.5, 0.5), (0.5, 0.9)] {
@@ -176,7 +176,7 @@ fn a_solid_absorbs_over_its_thickness_once() {
         }),
         ..Material::default()
     };
-    // A slab's two faces, then one.
+    // Two faces of a slab, then one.
     let mut scene = sheet(red.clone(), None, 0.0, 1.0);
     scene.meshes[0].closed = true;
     let back = parallelogram(Vec3::new(-1.0, 0.9, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0);
@@ -192,7 +192,7 @@ fn a_solid_absorbs_over_its_thickness_once() {
 
 #[test]
 fn tint_over_half_of_the_light_averages() {
-    // A transmitting pane whose edge halves the light, textured: the mean of 1 and its transmittance.
+    // A textured, transmitting pane whose edge halves the light: the mean of 1 and its transmittance.
     let image = image_of(4, Wrap::Repeat, |_, _| [255, 0, 255, 255]);
     let glass = Material { transmission: 0.9, ..Material::default() };
     let mut scene = sheet(glass, Some(image), 0.0, 1.0);

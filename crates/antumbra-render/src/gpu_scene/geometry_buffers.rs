@@ -1,5 +1,5 @@
-//! Buffers of geometries' vertices and triangles, which as many geometries share as fit a binding: what reads casters' triangles takes
-//! all that lie in the same buffers at once.
+//! Buffers of vertices and triangles. As many geometries share them as fit a binding, because readers of casters' triangles process
+//! all geometries in the same buffers at once.
 
 use antumbra::Gpu;
 use glam::{Vec2, Vec3, Vec4};
@@ -8,18 +8,18 @@ use wgpu::util::DeviceExt;
 use super::GEOMETRY_USAGE;
 use super::split::MeshPart;
 
-/// Vertices and triangles of some geometries on the GPU.
+/// Vertices and triangles of several geometries on the GPU.
 #[derive(Debug)]
 pub(crate) struct GeometryBuffers {
     pub positions: wgpu::Buffer,
     pub normals: wgpu::Buffer,
     pub uvs: Option<wgpu::Buffer>,
     pub colors: Option<wgpu::Buffer>,
-    /// Numbers of vertices, counted from the buffers' first.
+    /// Vertex indices, counted from the buffers' first vertex.
     pub indices: wgpu::Buffer,
 }
 
-/// Where a geometry's vertices and triangles lie.
+/// Location of a geometry's vertices and triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     /// Index into [`GpuScene::buffers`](super::GpuScene::buffers).
@@ -28,7 +28,7 @@ pub(crate) struct Place {
     pub first_index: u32,
 }
 
-/// The vertices and triangles of some geometries.
+/// Vertices and triangles of several geometries.
 #[derive(Debug, Default)]
 struct Joined {
     positions: Vec<Vec3>,
@@ -36,11 +36,11 @@ struct Joined {
     uvs: Vec<Vec2>,
     colors: Vec<Vec4>,
     indices: Vec<u32>,
-    /// Takes no further geometry.
+    /// Whether no further geometry may be added.
     is_closed: bool,
 }
 
-/// The buffers of a scene, before they are uploaded.
+/// Buffers of a scene before their upload.
 #[derive(Debug)]
 pub(super) struct JoinedGeometries {
     joined: Vec<Joined>,
@@ -52,7 +52,7 @@ impl JoinedGeometries {
         Self { joined: Vec::new(), binding_bytes }
     }
 
-    /// Adds a geometry, to buffers of its own where it does not share them.
+    /// Adds a geometry, to new buffers unless it shares existing ones.
     pub(super) fn push(&mut self, part: &MeshPart<'_>, shares: bool) -> Place {
         let takes = |joined: &Joined| joined.takes(part, self.binding_bytes);
         let open = if shares { self.joined.iter().rposition(takes) } else { None };
@@ -71,7 +71,7 @@ impl JoinedGeometries {
         place
     }
 
-    /// Uploads all, and counts the bytes.
+    /// Uploads all buffers; also returns their bytes.
     pub(super) fn upload(self, gpu: &Gpu) -> (Vec<GeometryBuffers>, u64) {
         let mut bytes = 0;
         let mut buffer = |label: &str, contents: &[u8], usage| {
@@ -95,7 +95,7 @@ impl JoinedGeometries {
 }
 
 impl Joined {
-    /// Whether a geometry has the same attributes, and there is room for it.
+    /// Whether a geometry has the same attributes and fits.
     fn takes(&self, part: &MeshPart<'_>, binding_bytes: u64) -> bool {
         let attributes = (self.uvs.is_empty(), self.colors.is_empty());
         // Colours are the widest of the vertex buffers.

@@ -1,26 +1,26 @@
-//! The ground that a scene was put on, which stops light only where some of it comes from below.
+//! Ground that a scene was put on, which blocks light only if some light comes from below it.
 //!
-//! It is four of the scene's diagonals wide. As a caster it would be most of what a light map holds, and its texels those that the scene
-//! lacks. It receives in any case, and rays meet it as they meet all else: where nothing lies beneath it, and the light above, no
-//! segment from a receiver to the light crosses it, so that truth and masks agree.
+//! The ground is four of the scene's diagonals wide. As a caster it would fill most of a light map and take its texels from the scene. It
+//! is always a receiver, and rays hit it as they hit everything else. If nothing lies beneath it and the light is above, no segment from a
+//! receiver to the light crosses it, so that truth and masks agree.
 
 use antumbra::MeshCaster;
 use antumbra_light::{Light, LightShape};
 
 use super::{Draw, GpuScene};
 
-/// The box of a mesh and the ground beneath it were computed from the same corners, but anchored apart: a few roundings of an f32, over the
-/// scene's diagonal.
+/// Tolerance of heights over the scene's diagonal, a few roundings of an f32: the ground is computed from the same corners as the box of a
+/// mesh, but relative to another anchor.
 const ROUNDING: f32 = 1e-6;
 
 impl GpuScene {
-    /// The casters that can stop some of a light: all [`casters`](Self::casters), but for the ground that the scene was put on, where
-    /// nothing lies beneath it and the light above.
+    /// Casters that can block some of a light: all [`casters`](Self::casters), except for the ground that the scene was put on if nothing
+    /// lies beneath it and the light is above.
     pub fn casters_for(&self, light: &Light) -> Vec<MeshCaster<'_>> {
         self.casters_of_lights().of(light).to_vec()
     }
 
-    /// The casters of any number of lights, collected once.
+    /// Casters for any number of lights, collected once.
     pub fn casters_of_lights(&self) -> CastersOfLights<'_> {
         let draws = self.draws.iter().enumerate().filter(|(draw, _)| Some(*draw) != self.ground);
         let mut casters: Vec<_> = draws.filter_map(|(_, draw)| self.caster(draw)).collect();
@@ -36,22 +36,22 @@ impl GpuScene {
     }
 }
 
-/// The casters of a scene, for any of its lights.
+/// Casters of a scene, for any of its lights.
 #[derive(Debug)]
 pub struct CastersOfLights<'a> {
     scene: &'a GpuScene,
-    /// The ground that the scene was put on is the last.
+    /// Casters; the ground that the scene was put on is the last.
     casters: Vec<MeshCaster<'a>>,
     ends_with_ground: bool,
 }
 
 impl<'a> CastersOfLights<'a> {
-    /// All of them.
+    /// All casters.
     pub fn all(&self) -> &[MeshCaster<'a>] {
         &self.casters
     }
 
-    /// Those of one light: see [`GpuScene::casters_for`].
+    /// Casters of one light; see [`GpuScene::casters_for`].
     pub fn of(&self, light: &Light) -> &[MeshCaster<'a>] {
         let stops_nothing = |ground: usize| self.scene.stops_nothing(&self.scene.draws[ground], light);
         let is_idle = self.ends_with_ground && self.scene.ground.is_some_and(stops_nothing);
@@ -63,7 +63,7 @@ impl<'a> CastersOfLights<'a> {
 fn lies_above(light: &Light, height_m: f32) -> bool {
     let radius = light.bounding_radius();
     match light.shape {
-        // Towards the sun: the axis turned round, and the disc about its end.
+        // Directions to the sun: the reversed axis, and the disc about its end.
         LightShape::Sun { .. } => -light.axis.y > radius * light.axis.with_y(0.0).length(),
         _ => light.center.y - radius > height_m,
     }
@@ -102,19 +102,19 @@ mod tests {
         let counts = counts.map(|light| uploaded.casters_for(&light).len());
         assert_eq!(counts, [1, 2, 2, 1, 2, 2]);
         assert_eq!(uploaded.casters().len(), 2);
-        // What is moved beneath it is hidden by it.
+        // An object that is moved beneath the ground is shadowed by it.
         uploaded.offset_instances(gpu, &[0], Vec3::NEG_Y);
         assert_eq!(uploaded.casters_for(&at(2.0)).len(), 2);
         uploaded.offset_instances(gpu, &[0], Vec3::Y);
         assert_eq!(uploaded.casters_for(&at(2.0)).len(), 1);
-        // Far from the origin, and counted from there.
+        // A scene far from the origin, relative to an anchor there.
         let mut far = scene;
         far.count_from(Vec3::new(1.0e4, 3.0, -7.0e3));
         let far = GpuScene::upload(gpu, &far);
         assert_eq!(far.casters_for(&at(2.0).counted_from(Vec3::new(1.0e4, 3.0, -7.0e3))).len(), 1);
     }
 
-    /// A ground of the scene's own is a caster like all else.
+    /// A ground that belongs to the scene is an ordinary caster.
     #[test]
     fn grounds_of_scenes_are_left_as_they_are() {
         let Some(gpu) = gpu_or_skip() else { return };

@@ -1,23 +1,23 @@
-//! A scene's instances: whose they are, where they lie, and the lists that hold their matrices.
+//! Instances of a scene: their meshes, poses and bounds, and the lists of their matrices.
 
 use antumbra_scene::{Aabb, Instance, Scene};
 use glam::{Mat4, Vec3};
 
-/// An instance as it was uploaded.
+/// Instance as uploaded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placed {
     /// Index into [`Scene::instances`](antumbra_scene::Scene::instances).
     pub instance: usize,
     pub world_from_object: Mat4,
-    /// World-space box.
+    /// World-space bounding box.
     pub bounds: Aabb,
 }
 
-/// Up to this many vertex transforms a mesh, its world boxes are exact; past it, each instance's box is turned instead,
-/// which may be larger. A second's work on one core.
+/// Largest number of vertex transforms per mesh for which world-space boxes are exact: a second's work on one core. Beyond
+/// it, each instance's object-space box is transformed instead, which may be larger.
 const EXACT_BOUNDS_WORK: usize = 1 << 24;
 
-/// The instances of each mesh, with their indices in the scene.
+/// Instances of each mesh, with their indices in the scene.
 pub(super) fn instances_by_mesh(scene: &Scene) -> Vec<Vec<(usize, &Instance)>> {
     let mut by_mesh = vec![Vec::new(); scene.meshes.len()];
     for (index, instance) in scene.instances.iter().enumerate() {
@@ -26,7 +26,7 @@ pub(super) fn instances_by_mesh(scene: &Scene) -> Vec<Vec<(usize, &Instance)>> {
     by_mesh
 }
 
-/// Matrices in lists that each fit a binding.
+/// Lists of matrices that each fit a binding.
 pub(super) struct InstanceLists {
     pub lists: Vec<Vec<Mat4>>,
     capacity: usize,
@@ -37,7 +37,7 @@ impl InstanceLists {
         Self { lists: Vec::new(), capacity: binding_bytes as usize / size_of::<Mat4>() }
     }
 
-    /// Adds poses; gives each run of them with its list and its place there.
+    /// Adds poses; returns each contiguous run of them with its list and its position in the list.
     pub fn push_all<'p>(&mut self, mut poses: &'p [Mat4]) -> Vec<(&'p [Mat4], usize, u32)> {
         let mut runs = Vec::new();
         while !poses.is_empty() {
@@ -55,7 +55,7 @@ impl InstanceLists {
     }
 }
 
-/// Each instance with its world-space box.
+/// Returns each instance with its world-space bounding box.
 pub(super) fn placed_at(positions: &[Vec3], instances: &[(usize, &Instance)]) -> Vec<Placed> {
     let object_box = Aabb::of(positions.iter().copied());
     let exact = positions.len().saturating_mul(instances.len()) <= EXACT_BOUNDS_WORK;

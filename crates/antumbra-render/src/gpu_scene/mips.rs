@@ -1,11 +1,11 @@
-//! Mip chains, made on the CPU: linear light, weighted by alpha, so that what lies under a mask's holes does not bleed
+//! Mip chains, computed on the CPU in linear light and weighted by alpha, so that colours in a mask's holes do not bleed
 //! into its edges.
 
 use antumbra_scene::{Image, linear_from_srgb, srgb_from_linear};
 use glam::Vec4;
 
-/// The image and its halvings down to one texel. An image wider or higher than `max_side` starts at the first halving
-/// that is not.
+/// Returns the image and its halvings down to one texel. An image wider or higher than `max_side` starts at the first
+/// halving that fits.
 pub(crate) fn mip_chain(image: &Image, max_side: u32) -> Vec<Image> {
     let mut levels = vec![image.clone()];
     while let Some(last) = levels.last()
@@ -17,7 +17,7 @@ pub(crate) fn mip_chain(image: &Image, max_side: u32) -> Vec<Image> {
     levels
 }
 
-/// Each texel is the mean of the two to three source texels along each axis that it covers.
+/// Halves an image: each texel is the mean of the two to three source texels that it covers along each axis.
 fn halved(image: &Image) -> Image {
     let (width, height) = ((image.width / 2).max(1), (image.height / 2).max(1));
     let source_range = |i: u32, n: u32, source_n: u32| i * source_n / n..((i + 1) * source_n).div_ceil(n);

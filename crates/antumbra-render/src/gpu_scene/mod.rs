@@ -1,15 +1,15 @@
-//! A scene on the GPU: geometry, textures and instances, as casters for the techniques and as draws for the receivers.
+//! Scene on the GPU: geometry, textures and instances, as casters for the techniques and as draws for the receivers.
 //!
 //! Everything fits WebGPU's default limits: a mesh too large for one binding becomes several (`split`), a list of
-//! instances too long several draws. Meshes without triangles or instances take no part.
+//! instances too long becomes several draws. Meshes without triangles or instances are skipped.
 //!
-//! **What a caster loses.** The library's casters have one colour and one alpha factor a draw, the scene's meshes a
-//! colour a vertex. A mesh with varying vertex alpha and no texture keeps its alpha exactly, as a ramp texture looked
-//! up by alpha; everywhere else the mean over the mesh's vertices stands for vertex colours. The reference tracer and
-//! the receivers here use the colours themselves.
+//! **Loss in casters.** The library's casters have one colour and one alpha factor per draw, but meshes have a colour per
+//! vertex. A mesh with varying vertex alpha and no texture keeps its alpha exactly, by a ramp texture indexed by alpha;
+//! otherwise vertex colours are replaced by their mean over the mesh. The reference tracer and the receivers here use the
+//! vertex colours themselves.
 //!
-//! **What shading loses.** Images other than the base colour's are replaced by their means, and what a volume absorbs is
-//! taken into the base colour. Casters have them texel by texel.
+//! **Loss in shading.** Images other than the base colour's are replaced by their means, and the absorption of volumes is
+//! included in the base colour. Casters have both per texel.
 
 mod geometry_buffers;
 mod ground;
@@ -33,48 +33,48 @@ use samplers::SamplerSet;
 use surface_textures::{TextureSlot, WHITE};
 use upload::Upload;
 
-/// A scene on the GPU.
+/// Scene on the GPU.
 #[derive(Debug)]
 pub struct GpuScene {
-    /// Geometry, by index from [`Draw::geometry`].
+    /// Geometries, indexed by [`Draw::geometry`].
     pub(crate) geometries: Vec<Geometry>,
-    /// Their vertices and triangles, by index from [`Place::buffers`].
+    /// Buffers of vertices and triangles, indexed by [`Place::buffers`].
     pub(crate) buffers: Vec<GeometryBuffers>,
-    /// Lists of world-from-object matrices, by index from [`Draw::instances`].
+    /// Lists of world-from-object matrices, indexed by [`Draw::instances`].
     pub(crate) instances: Vec<wgpu::Buffer>,
-    /// What to draw.
+    /// Draws.
     pub(crate) draws: Vec<Draw>,
-    /// Surfaces as they are shaded, by index as in [`Scene::materials`].
+    /// Materials for shading, indexed as [`Scene::materials`].
     pub(crate) materials: Vec<Material>,
-    /// The ground that the scene was put on, by index into `draws`.
+    /// Index into `draws` of the ground that the scene was put on; `None` without one.
     ground: Option<usize>,
     textures: Vec<wgpu::TextureView>,
     samplers: SamplerSet,
-    /// World-space box of all triangles.
+    /// World-space bounding box of all triangles.
     pub bounds: Aabb,
-    /// Triangles as drawn: every instance included.
+    /// Number of triangles of all instances.
     pub triangle_count: usize,
     /// Bytes of GPU memory for geometry and textures.
     pub memory_bytes: u64,
 }
 
-/// Indexed triangles of one surface in object space.
+/// Indexed triangles of one material in object space.
 #[derive(Debug)]
 pub(crate) struct Geometry {
     pub place: Place,
     pub index_count: u32,
-    /// The triangles around each vertex, as `shading/bent.wgsl` reads them; `None` where nobody asked for them, or where
-    /// they do not fit a binding.
+    /// Normals of the triangles around each vertex, as `shading/bent.wgsl` reads them; `None` if not requested, or if they do
+    /// not fit a binding.
     pub faces: Option<wgpu::Buffer>,
     /// Index into [`GpuScene::materials`].
     pub material: usize,
-    /// The base colour's image with the way it wraps; `None` where the material has none or the mesh no coordinates.
+    /// Base colour texture; `None` if the material has none or the mesh has no texture coordinates.
     pub texture: Option<TextureSlot>,
-    /// What the surface does to light.
+    /// Effect of the surface on light.
     pub occluder: Occluder,
     closed: bool,
     caster: CasterSurface,
-    /// Another for each pose.
+    /// Version, which changes with the vertices.
     version: MeshVersion,
 }
 
@@ -85,18 +85,18 @@ pub(crate) struct Draw {
     pub instances: usize,
     pub first_instance: u32,
     pub instance_count: u32,
-    /// The instances mirror: what winds counter-clockwise in the mesh winds clockwise in the world.
+    /// Whether the instances mirror: counter-clockwise triangles of the mesh are clockwise in the world.
     mirrored: bool,
     bounds: Aabb,
-    /// Its instances in their order, as they were uploaded.
+    /// Instances in order, as uploaded.
     placed: Vec<Placed>,
 }
 
-/// [`Opacity`] with what it refers to by index.
+/// [`Opacity`] with indices in place of references.
 #[derive(Debug)]
 enum CasterSurface {
     Opaque,
-    /// Nowhere there.
+    /// Nothing: the surface is a hole everywhere.
     Absent,
     Masked {
         texture: TextureSlot,
@@ -113,18 +113,18 @@ enum CasterSurface {
 }
 
 impl CasterSurface {
-    /// Whether it has texture coordinates that the geometry has not.
+    /// Whether the caster has texture coordinates that the geometry lacks.
     fn has_uvs(&self) -> bool {
         matches!(self, Self::Masked { uvs: Some(_), .. } | Self::Translucent { uvs: Some(_), .. })
     }
 }
 
-/// What techniques may do with geometry: draw it, or read it in compute.
+/// Usages of geometry buffers: techniques draw them, or read them in compute.
 const GEOMETRY_USAGE: wgpu::BufferUsages =
     wgpu::BufferUsages::VERTEX.union(wgpu::BufferUsages::STORAGE).union(wgpu::BufferUsages::COPY_DST);
 
 impl Geometry {
-    /// Its corners of triangles, counted from the first of its buffers.
+    /// Range of triangle corners, counted from the first index of its buffers.
     pub(crate) fn corners(&self) -> std::ops::Range<u32> {
         self.place.first_index..self.place.first_index + self.index_count
     }
@@ -136,18 +136,18 @@ impl GpuScene {
         Upload::new(gpu, scene, false).run()
     }
 
-    /// The same, with what coherent shading needs to know of the triangles around each vertex.
+    /// Uploads a scene with the triangles around each vertex, which coherent shading needs.
     pub fn upload_with_faces(gpu: &Gpu, scene: &Scene) -> Self {
         Upload::new(gpu, scene, true).run()
     }
 
-    /// The casters: one for each draw that can stop light. [`casters_for`](Self::casters_for) leaves out what stops none of one light.
+    /// Casters: one for each draw that can block light. [`casters_for`](Self::casters_for) omits those that block none of one light.
     pub fn casters(&self) -> Vec<MeshCaster<'_>> {
         self.draws.iter().filter_map(|draw| self.caster(draw)).collect()
     }
 
     /// Moves instances, given by their indices in [`Scene::instances`], to `offset_m` metres from where they were
-    /// uploaded; zero brings them back to the bit. The queue copies before the next submission.
+    /// uploaded; zero restores them exactly. The queue copies before the next submission.
     pub fn offset_instances(&mut self, gpu: &Gpu, instances: &[usize], offset_m: Vec3) {
         let offset = Mat4::from_translation(offset_m);
         for draw in &mut self.draws {
@@ -198,7 +198,7 @@ impl GpuScene {
         Some(mesh)
     }
 
-    /// A geometry's buffers, which it may share with others.
+    /// Buffers of a geometry, which others may share.
     pub(crate) fn buffers_of(&self, geometry: &Geometry) -> &GeometryBuffers {
         &self.buffers[geometry.place.buffers]
     }
@@ -207,22 +207,22 @@ impl GpuScene {
         SurfaceTexture { uvs, view: &self.textures[slot.view], sampler: &self.samplers.level_0[&slot.wrap] }
     }
 
-    /// Whether any surface is translucent, and so more than the first hit counts for the picture.
+    /// Whether any surface is translucent, so that shading needs more than the first hit.
     pub fn has_translucent_surfaces(&self) -> bool {
         self.draws.iter().any(|draw| self.is_translucent(draw))
     }
 
-    /// Whether a draw's surface lets some light through.
+    /// Whether a draw's surface is translucent.
     pub(crate) fn is_translucent(&self, draw: &Draw) -> bool {
         self.geometries[draw.geometry].occluder == Occluder::Translucent
     }
 
-    /// Whether a draw's surface has holes.
+    /// Whether a draw's surface is alpha-tested.
     pub(crate) fn is_masked(&self, draw: &Draw) -> bool {
         matches!(self.materials[self.geometries[draw.geometry].material].alpha, AlphaMode::Mask { .. })
     }
 
-    /// A geometry's texture, or a white one, with its samplers: level 0, and smooth.
+    /// Texture of a geometry, or a white one, with its samplers: level 0, and smooth.
     pub(crate) fn texture_of(&self, geometry: &Geometry) -> (&wgpu::TextureView, &wgpu::Sampler, &wgpu::Sampler) {
         let slot = geometry.texture.unwrap_or(WHITE);
         (&self.textures[slot.view], &self.samplers.level_0[&slot.wrap], &self.samplers.smooth[&slot.wrap])

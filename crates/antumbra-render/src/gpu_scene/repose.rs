@@ -1,4 +1,4 @@
-//! The same scene at another time: what has moved is written anew, and all else stays as it was uploaded.
+//! Update of an uploaded scene to another time: what moved is written again, everything else stays as uploaded.
 
 use std::collections::HashMap;
 
@@ -12,11 +12,11 @@ use super::split::{MeshPart, split_mesh};
 use super::upload::binding_bytes;
 
 impl GpuScene {
-    /// Makes this, the upload of `before`, that of `after` by writing the vertices and poses that differ. The queue copies
-    /// before the next submission. Pictures are not looked at.
+    /// Turns this upload of `before` into one of `after` by writing the vertices and poses that differ. The queue copies before the
+    /// next submission. Images are not compared.
     ///
-    /// False, and nothing has changed, where another mesh, triangle, material or instance is there than before, or where it
-    /// was made by [`upload_with_faces`](Self::upload_with_faces): then upload anew.
+    /// Returns false and changes nothing if meshes, triangles, materials or instances differ, or if the scene was uploaded by
+    /// [`upload_with_faces`](Self::upload_with_faces): then upload anew.
     pub fn repose(&mut self, gpu: &Gpu, before: &Scene, after: &Scene) -> bool {
         if self.geometries.iter().any(|geometry| geometry.faces.is_some()) || !are_built_alike(before, after) {
             return false;
@@ -71,14 +71,14 @@ impl GpuScene {
     }
 }
 
-/// Whether two scenes are of the same triangles, surfaces and instances, wherever these are.
+/// Whether two scenes have the same triangles, materials and instances, apart from positions and poses.
 fn are_built_alike(a: &Scene, b: &Scene) -> bool {
     let are_alike = |a: &Mesh, b: &Mesh| {
         let lengths = |mesh: &Mesh| [mesh.positions.len(), mesh.normals.len()];
         (lengths(a), a.material, a.closed) == (lengths(b), b.material, b.closed)
             && (&a.indices, &a.uvs, &a.colors) == (&b.indices, &b.uvs, &b.colors)
     };
-    // What is mirrored is drawn apart.
+    // Mirrored instances are drawn separately.
     let is_mirrored = |instance: &antumbra_scene::Instance| instance.world_from_object.determinant() < 0.0;
     let sizes = |scene: &Scene| [scene.meshes.len(), scene.instances.len()];
     sizes(a) == sizes(b)
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(uploaded.bounds, after.bounds());
         let bounds_of = |scene: &GpuScene| scene.casters().iter().map(|caster| caster.bounds).collect::<Vec<_>>();
         assert_eq!(bounds_of(&uploaded), bounds_of(&GpuScene::upload(gpu, &after)));
-        // What was moved by hand stands where it is moved to.
+        // Moved instances are placed relative to the new pose.
         uploaded.offset_instances(gpu, &[2], Vec3::ZERO);
         assert_eq!(uploaded.bounds, after.bounds());
     }

@@ -1,17 +1,17 @@
-//! Samplers for each way that an image wraps.
+//! Samplers for each combination of address modes.
 
 use std::collections::HashMap;
 
 use antumbra_scene::Wrap;
 
-/// Samplers for each way to wrap: level 0 alone, as the definition of visibility has it, and all levels for looks.
+/// Samplers per address modes: one of level 0 only, as visibility is defined, and one of all levels for shading.
 #[derive(Debug)]
 pub(super) struct SamplerSet {
     pub level_0: HashMap<[Wrap; 2], wgpu::Sampler>,
     pub smooth: HashMap<[Wrap; 2], wgpu::Sampler>,
 }
 
-/// Samples along a stretched footprint: floors stay sharp a few metres out, and every adapter can do it.
+/// Anisotropy of the smooth samplers: floors stay sharp a few metres away, and every adapter supports it.
 const SMOOTH_ANISOTROPY: u16 = 8;
 
 impl SamplerSet {

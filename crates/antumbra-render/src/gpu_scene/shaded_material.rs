@@ -1,9 +1,9 @@
-//! Materials as they are shaded: with the means of their images.
+//! Materials for shading, with the means of their images.
 
 use antumbra_scene::{Material, Scene};
 use glam::Vec3;
 
-/// A material with the means of its images in its factors, but for the base colour's.
+/// Returns a material with the means of its images in its factors, except for the base colour's image.
 pub(super) fn shaded(scene: &Scene, material: &Material) -> Material {
     let mean = |image: Option<usize>, channel: usize| {
         image.map_or(1.0, |image| {

@@ -1,4 +1,4 @@
-//! Meshes cut so that each of their buffers fits one binding.
+//! Splitting of meshes so that each of their buffers fits one binding.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -6,19 +6,19 @@ use std::collections::HashMap;
 use antumbra_scene::Mesh;
 use glam::{Vec2, Vec3, Vec4};
 
-/// The triangles of a mesh, or some of them, with the vertices that they use.
+/// All or some triangles of a mesh, with the vertices that they use.
 #[derive(Clone, Debug)]
 pub(crate) struct MeshPart<'a> {
     pub positions: Cow<'a, [Vec3]>,
     pub normals: Cow<'a, [Vec3]>,
-    /// As many as positions, or none.
+    /// Texture coordinates, as many as positions, or none.
     pub uvs: Cow<'a, [Vec2]>,
-    /// As many as positions, or none.
+    /// Vertex colours, as many as positions, or none.
     pub colors: Cow<'a, [Vec4]>,
     pub indices: Cow<'a, [u32]>,
 }
 
-/// A mesh whole where its buffers fit `binding_bytes`, else in runs of triangles that do.
+/// Returns the whole mesh if its buffers fit `binding_bytes`, else runs of triangles that fit.
 pub(crate) fn split_mesh(mesh: &Mesh, binding_bytes: u64) -> Vec<MeshPart<'_>> {
     // Colours are the widest of the vertex buffers.
     let vertex_capacity = binding_bytes as usize / size_of::<Vec4>();
@@ -46,7 +46,7 @@ pub(crate) fn split_mesh(mesh: &Mesh, binding_bytes: u64) -> Vec<MeshPart<'_>> {
     parts
 }
 
-/// A run of triangles with its vertices numbered anew.
+/// Run of triangles with renumbered vertices.
 #[derive(Default)]
 struct Run {
     indices: Vec<u32>,

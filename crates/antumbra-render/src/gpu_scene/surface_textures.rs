@@ -1,4 +1,4 @@
-//! Textures of surfaces: a scene's images, pictures made of several, and a ramp of alphas for colours of vertices.
+//! Textures of surfaces: a scene's images, products of several images, and a ramp of alphas for vertex colours.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,7 @@ use glam::Vec2;
 
 use super::mips::mip_chain;
 
-/// A texture and how it is sampled.
+/// Texture and its address modes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TextureSlot {
     /// Index into [`GpuScene::textures`](super::GpuScene::textures).
@@ -16,33 +16,33 @@ pub(crate) struct TextureSlot {
     pub wrap: [Wrap; 2],
 }
 
-/// The texture that changes nothing.
+/// White texture, which changes nothing.
 pub(super) const WHITE: TextureSlot = TextureSlot { view: 0, wrap: [Wrap::Clamp; 2] };
 
-/// One texel for each 8-bit alpha.
+/// Width of the alpha ramp: one texel for each 8-bit alpha.
 const RAMP_TEXELS: u32 = 256;
 
-/// Where the alpha ramp holds `alpha`: texel 255 · alpha, at its centre.
+/// Texture coordinates of `alpha` in the alpha ramp: texel 255 · alpha, at its centre.
 pub(super) fn alpha_ramp_uv(alpha: f32) -> Vec2 {
     Vec2::new((255.0 * alpha + 0.5) / RAMP_TEXELS as f32, 0.5)
 }
 
-/// Textures that an upload makes, each once.
+/// Textures of an upload, each created once.
 pub(super) struct SurfaceTextures<'a> {
     gpu: &'a Gpu,
     scene: &'a Scene,
-    /// By index from [`TextureSlot::view`].
+    /// Views, indexed by [`TextureSlot::view`].
     pub views: Vec<wgpu::TextureView>,
     images: HashMap<usize, TextureSlot>,
-    /// What materials' images make on closed and on open meshes.
+    /// Products of materials' images, by material and whether the mesh is closed.
     made: HashMap<(usize, bool), TextureSlot>,
     alpha_ramp: Option<TextureSlot>,
-    /// Bytes of all levels.
+    /// Bytes of all textures with all levels.
     pub memory_bytes: u64,
 }
 
 impl<'a> SurfaceTextures<'a> {
-    /// [`WHITE`] alone.
+    /// Creates only [`WHITE`].
     pub fn new(gpu: &'a Gpu, scene: &'a Scene) -> Self {
         let mut textures = Self {
             gpu,
@@ -58,7 +58,7 @@ impl<'a> SurfaceTextures<'a> {
         textures
     }
 
-    /// A picture of the scene.
+    /// Returns the texture of a scene's image.
     pub fn image(&mut self, image: usize) -> TextureSlot {
         if let Some(slot) = self.images.get(&image) {
             return *slot;
@@ -68,7 +68,7 @@ impl<'a> SurfaceTextures<'a> {
         slot
     }
 
-    /// What a material's images make, on closed meshes or on open ones.
+    /// Returns the texture of the product of a material's images, for closed or for open meshes.
     pub fn made(&mut self, material: usize, is_closed: bool) -> TextureSlot {
         if let Some(slot) = self.made.get(&(material, is_closed)) {
             return *slot;
@@ -79,7 +79,7 @@ impl<'a> SurfaceTextures<'a> {
         slot
     }
 
-    /// Each alpha beside the next, with white; [`alpha_ramp_uv`] says where.
+    /// Returns the alpha ramp: white with every alpha; see [`alpha_ramp_uv`].
     pub fn alpha_ramp(&mut self) -> TextureSlot {
         if let Some(slot) = self.alpha_ramp {
             return slot;

@@ -69,7 +69,7 @@ fn translucent_surfaces_are_as_their_material_says() {
     let masked = Material { alpha: AlphaMode::Mask { cutoff: 0.25 }, ..glass };
     let cutoff = SurfaceCoverage::Cutoff { alpha_factor: 0.5, cutoff: 0.25 };
     assert_eq!(of(plain(), masked.clone(), Vec::new()), (Some((cutoff, Vec3::new(0.5, 0.25, 0.0))), false, 3, true));
-    // What has an image of its own has a texture; where a mesh has no coordinates it has none.
+    // A material with an image of its own has a texture; a mesh without coordinates has none.
     let image = Image { width: 1, height: 1, rgba8: vec![[128; 4]], wrap: [Wrap::Clamp; 2] };
     let textured = Material { transmission_image: Some(0), ..masked };
     let mapped = Mesh { uvs: vec![Vec2::ZERO; 4], ..plain() };

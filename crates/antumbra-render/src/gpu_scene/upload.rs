@@ -1,4 +1,4 @@
-//! The upload of a scene: meshes and instances become geometries and draws.
+//! Upload of a scene: meshes and instances become geometries and draws.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -16,18 +16,18 @@ use super::split::{MeshPart, split_mesh};
 use super::surface_textures::{SurfaceTextures, TextureSlot, alpha_ramp_uv};
 use super::{CasterSurface, Draw, GEOMETRY_USAGE, Geometry, GpuScene};
 
-/// The number of the next geometry of any scene.
+/// Version number of the next geometry of any scene.
 static NEXT_GEOMETRY: AtomicU64 = AtomicU64::new(0);
 
-/// A scene on its way to the GPU.
+/// Upload in progress.
 pub(super) struct Upload<'a> {
     gpu: &'a Gpu,
     scene: &'a Scene,
     textures: SurfaceTextures<'a>,
     joined: JoinedGeometries,
-    /// Bytes of the buffers of its own.
+    /// Bytes of the buffers that geometries do not share.
     buffer_bytes: u64,
-    /// Whether coherent shading gets the triangles around each vertex.
+    /// Whether the triangles around each vertex are uploaded for coherent shading.
     with_faces: bool,
 }
 
@@ -112,7 +112,7 @@ impl<'a> Upload<'a> {
             Occluder::Translucent => self.translucent(mesh, &part),
         };
         let faces = self.faces(&mesh.name, &part);
-        // What counts vertices from the geometry's own first lies beside vertices of its own.
+        // Data indexed from the geometry's own first vertex needs vertex buffers of its own.
         let has_own_vertices = faces.is_some() || caster.has_uvs();
         Geometry {
             place: self.joined.push(&part, !has_own_vertices),
@@ -127,7 +127,7 @@ impl<'a> Upload<'a> {
         }
     }
 
-    /// Where each vertex's normals begin and the last ones end, in words, then the normals.
+    /// Offsets of each vertex's first normal and of the end of the last one's, in words, then the normals.
     fn faces(&mut self, label: &str, part: &MeshPart<'_>) -> Option<wgpu::Buffer> {
         if !self.with_faces {
             return None;
@@ -197,7 +197,7 @@ impl<'a> Upload<'a> {
         }
     }
 
-    /// Where the alpha ramp holds each vertex's alpha.
+    /// Texture coordinates of each vertex's alpha in the alpha ramp.
     fn ramp_uvs(&mut self, part: &MeshPart<'_>) -> Option<wgpu::Buffer> {
         let uvs: Vec<_> = part.colors.iter().map(|color| alpha_ramp_uv(color.w)).collect();
         self.optional_buffer("alpha ramp", bytemuck::cast_slice(&uvs))
@@ -217,13 +217,13 @@ impl<'a> Upload<'a> {
     }
 }
 
-/// Bytes that one binding of the scene's buffers may have.
+/// Largest size of one binding of the scene's buffers, bytes.
 pub(super) fn binding_bytes(gpu: &Gpu) -> u64 {
     let limits = gpu.device().limits();
     limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
 }
 
-/// The mean of the vertices' colours.
+/// Mean of the vertex colours; white without any.
 fn mean_color(part: &MeshPart<'_>) -> Vec4 {
     match part.colors.len() {
         0 => Vec4::ONE,

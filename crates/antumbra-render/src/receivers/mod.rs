@@ -1,9 +1,9 @@
 //! Receivers of a camera: depth, exact normals and surface of the first hit at each pixel's centre.
 //!
-//! A small deferred pass (Saito and Takahashi, "Comprehensible Rendering of 3-D Shapes", SIGGRAPH 1990): geometry once,
-//! then as many lights and techniques as there are over the same images. One sample a pixel, both faces of every
-//! triangle, masked texels left out, translucent surfaces counted as first hits, as visibility is defined. Where a scene has
-//! translucent surfaces, a second layer holds what lies behind them, for the picture alone.
+//! A small deferred pass (Saito and Takahashi, "Comprehensible Rendering of 3-D Shapes", SIGGRAPH 1990): geometry is drawn
+//! once, for any number of lights and techniques over the same images. As in the definition of visibility, there is one
+//! sample per pixel, both faces of every triangle count, masked texels are left out, and translucent surfaces are first
+//! hits. For scenes with translucent surfaces, a second layer holds what lies behind them; only shading uses it.
 
 use antumbra::{DepthConvention, Gpu, Receivers, programs};
 use antumbra_light::{ShadowDistance, enclosing_corners};
@@ -14,51 +14,51 @@ use wgpu::util::DeviceExt;
 use crate::gpu_scene::{Draw, Geometry, GpuScene};
 use crate::{buffer_entry, drawn_texture, texture_entry};
 
-/// About how many of the visible points are handed on: enough to weigh a map's texels by.
+/// Approximate number of visible points in [`ReceiverImages::seen`]: enough to weight the texels of a map.
 const SEEN_POINTS: usize = 512;
 
-/// Which surfaces a layer shows.
+/// Layer of surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// Every surface.
     FirstHits,
-    /// All but the translucent: what shows through them.
+    /// All surfaces but the translucent ones, through which the others show.
     BehindTranslucent,
 }
 
-/// The images of one layer, each `size_px`.
+/// Images of one layer, each of `size_px`.
 #[derive(Clone, Debug)]
 pub struct ReceiverImages {
     /// Width and height, pixels.
     pub size_px: UVec2,
-    /// `Depth32Float`: reversed, infinite far; 0 where there is nothing.
+    /// Depth, `Depth32Float`: reversed with an infinite far plane; 0 for background.
     pub depth: wgpu::Texture,
-    /// `Rgba32Float`: unit geometric normal in world space on the camera's side; w is 1 where there is geometry.
+    /// Geometric normal, `Rgba32Float`: unit, in world space, on the camera's side; w is 1 where there is geometry.
     pub geometric_normal: wgpu::Texture,
-    /// `Rgba32Uint`: base colour, shading normal, emission, metallic, roughness and transmission, packed as the shader
-    /// says.
+    /// Surface, `Rgba32Uint`: base colour, shading normal, emission, metallic, roughness and transmission, packed by
+    /// `pack_surface` of the shader.
     pub surface: wgpu::Texture,
     pub(crate) depth_view: wgpu::TextureView,
     pub(crate) geometric_normal_view: wgpu::TextureView,
     pub(crate) surface_view: wgpu::TextureView,
-    /// Where the camera is.
+    /// World position of the camera, metres.
     pub eye: Vec3,
-    /// The camera's pose.
+    /// View matrix of the camera.
     pub view_from_world: Mat4,
-    /// The camera's projection.
+    /// Projection of the camera.
     pub clip_from_view: Mat4,
-    /// How far from the eye shadows are drawn.
+    /// Shadow distance from the eye; `None` for no limit.
     pub shadow_distance: Option<ShadowDistance>,
-    /// World-space box of every visible point; `None` where nothing is seen.
+    /// World-space bounding box of all visible points; `None` if there are none.
     pub bounds: Option<Aabb>,
-    /// World-space points whose convex hull holds every visible point; empty where nothing is seen.
+    /// World-space points whose convex hull contains all visible points; empty if there are none.
     pub hull: Vec<Vec3>,
-    /// Some of the visible points, even over the pixels.
+    /// Some of the visible points, evenly distributed over the pixels.
     pub seen: Vec<Vec3>,
 }
 
 impl ReceiverImages {
-    /// Images of `size_px` that [`ReceiverPass::record`] draws to. The size must be positive and within the device's
+    /// Creates images of `size_px` for [`ReceiverPass::record`] to draw to. The size must be positive and within the device's
     /// largest texture.
     pub fn new(device: &wgpu::Device, camera: &Camera, size_px: UVec2) -> Self {
         let texture = |label, format| drawn_texture(device, label, format, size_px);
@@ -84,14 +84,14 @@ impl ReceiverImages {
         }
     }
 
-    /// Shifts what is drawn by a part of a pixel: each pixel shows what lies `offset_px` to the right of its centre and below it.
+    /// Shifts the projection by a fraction of a pixel: each pixel shows the point `offset_px` to the right of its centre and below it.
     pub fn shift(&mut self, offset_px: Vec2) {
         let ndc = 2.0 * offset_px / self.size_px.as_vec2();
         self.clip_from_view = Mat4::from_translation(Vec3::new(-ndc.x, ndc.y, 0.0)) * self.clip_from_view;
     }
 
-    /// World positions by pixel, in single precision and operation by operation as the library's shaders have them;
-    /// `None` for background. `depths` is what [`depth`](Self::depth) holds.
+    /// World positions per pixel, in single precision with exactly the operations of the library's shaders; `None` for
+    /// background. `depths` are the values of [`depth`](Self::depth).
     pub fn shader_positions(&self, depths: &[f32]) -> Vec<Option<Vec3>> {
         let view_from_clip = self.clip_from_view.as_dmat4().inverse().as_mat4();
         let world_from_view = self.view_from_world.as_dmat4().inverse().as_mat4();
@@ -104,7 +104,7 @@ impl ReceiverImages {
         (0..).zip(depths).map(position).collect()
     }
 
-    /// As the library's techniques take it.
+    /// Returns the receivers as input of the library's techniques.
     pub fn receivers(&self) -> Receivers<'_> {
         let camera = antumbra::Camera {
             view_from_world: self.view_from_world,
@@ -119,21 +119,20 @@ impl ReceiverImages {
             .with_shadow_distance(self.shadow_distance)
     }
 
-    /// World positions by pixel, rebuilt from `depths`, which is what [`depth`](Self::depth) holds; `None` where there is
-    /// nothing. `width · height` of them.
+    /// World positions per pixel, reconstructed from `depths`, the values of [`depth`](Self::depth); `None` for background.
+    /// There are `width · height` of them.
     pub fn positions(&self, depths: &[f32]) -> Vec<Option<Vec3>> {
         let world_from_clip = self.world_from_clip();
         let pixel = |i: u32| UVec2::new(i % self.size_px.x, i / self.size_px.x);
         (0..).zip(depths).map(|(i, depth)| self.position(world_from_clip, pixel(i), *depth)).collect()
     }
 
-    /// One of [`positions`](Self::positions): of a pixel, from the depth there.
+    /// World position of one pixel with this depth; see [`positions`](Self::positions).
     pub fn position_at(&self, pixel: UVec2, depth: f32) -> Option<Vec3> {
         self.position(self.world_from_clip(), pixel, depth)
     }
 
-    /// World from view, and view from clip, in double precision, so that what is lost is the depth buffer's own rounding
-    /// alone.
+    /// World from view, and view from clip, in double precision, so that the only error is the rounding of the depth buffer.
     fn world_from_clip(&self) -> [DMat4; 2] {
         [self.view_from_world, self.clip_from_view].map(|matrix| matrix.as_dmat4().inverse())
     }
@@ -144,14 +143,14 @@ impl ReceiverImages {
         (depth > 0.0).then(|| world_from_view.transform_point3(view.truncate() / view.w).as_vec3())
     }
 
-    /// Takes note of every point that is seen, so that light maps can be fitted to them.
+    /// Sets all visible points, so that light maps can be fitted to them.
     pub fn note_seen(&mut self, seen: &[Vec3]) {
         self.bounds = visible_bounds(seen);
         self.hull = enclosing_corners(seen);
         self.seen = seen.iter().copied().step_by((seen.len() / SEEN_POINTS) | 1).collect();
     }
 
-    /// Looks from elsewhere: the images are to be drawn again. What was seen is forgotten for `bounds`, the scene's box.
+    /// Changes the camera; the images must be drawn again. Visible points are forgotten, and their box becomes the scene's, `bounds`.
     pub fn look_from(&mut self, camera: &Camera, bounds: Option<Aabb>) {
         self.eye = camera.eye;
         self.view_from_world = camera.view_from_world();
@@ -163,18 +162,18 @@ impl ReceiverImages {
     }
 }
 
-/// The pass that draws them.
+/// Pass that draws [`ReceiverImages`].
 #[derive(Debug)]
 pub struct ReceiverPass {
     pub(crate) view_layout: wgpu::BindGroupLayout,
     pub(crate) draw_layout: wgpu::BindGroupLayout,
     solid: wgpu::RenderPipeline,
     masked: wgpu::RenderPipeline,
-    /// Stands in for attributes that a mesh lacks; a binding may not be empty.
+    /// Placeholder for attributes that a mesh lacks, because a binding may not be empty.
     absent_attribute: wgpu::Buffer,
 }
 
-/// What the draws of a scene bind.
+/// Bind groups of a scene's draws.
 #[derive(Debug)]
 pub struct DrawGroups(Vec<wgpu::BindGroup>);
 
@@ -206,7 +205,7 @@ const HAS_UVS: u32 = 1;
 const HAS_COLORS: u32 = 2;
 const IS_BLENDED: u32 = 4;
 
-/// The passes, and how a corner is pulled and a masked texel left out.
+/// Shader of the passes, of vertex pulling and of the alpha test.
 pub(crate) const RECEIVERS_WGSL: &str = include_str!("receivers.wgsl");
 
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -214,7 +213,7 @@ const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 impl ReceiverPass {
-    /// Makes the pipelines.
+    /// Creates the pipelines.
     pub fn new(gpu: &Gpu) -> Self {
         let device = gpu.device();
         let view_layout = programs::create_bind_group_layout(
@@ -277,12 +276,12 @@ impl ReceiverPass {
         }
     }
 
-    /// What each draw of `scene` binds, made once for all frames of it.
+    /// Creates the bind groups of the draws of `scene`, once for all its frames.
     pub fn draw_groups(&self, gpu: &Gpu, scene: &GpuScene) -> DrawGroups {
         DrawGroups(scene.draws.iter().map(|draw| self.draw_group(gpu, scene, draw)).collect())
     }
 
-    /// Records the drawing of a layer of `scene` to `images`. `groups` are the same scene's.
+    /// Records the drawing of a layer of `scene` to `images`. `groups` must be those of the same scene.
     pub fn record(
         &self,
         gpu: &Gpu,
@@ -397,16 +396,16 @@ fn material_uniform(scene: &GpuScene, geometry: &Geometry) -> MaterialUniform {
     }
 }
 
-/// The box of the points seen, grown by what rounding may have moved them: a light map fitted to it must hold them all.
+/// Bounding box of the visible points, grown by their rounding, because a light map fitted to it must contain them all.
 fn visible_bounds(positions: &[Vec3]) -> Option<Aabb> {
     let bounds = Aabb::of(positions.iter().copied());
-    // Single precision resolves 6e-8 of a coordinate; a hundred times that is far below any texel.
+    // Single precision resolves 6e-8 of a coordinate; a hundred times that is still far below any texel.
     const ROUNDING: f32 = 6e-6;
     let margin = Vec3::splat(ROUNDING * (bounds.diagonal() + bounds.min.abs().max(bounds.max.abs()).max_element()));
     (!bounds.is_empty()).then(|| Aabb { min: bounds.min - margin, max: bounds.max + margin })
 }
 
-/// A pipeline that pulls its corners from storage, and keeps what is nearest.
+/// Creates a pipeline with vertex pulling from storage buffers that keeps the nearest surface.
 pub(crate) fn draw_pipeline(
     device: &wgpu::Device,
     layout: &wgpu::PipelineLayout,

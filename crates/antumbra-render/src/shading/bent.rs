@@ -1,4 +1,4 @@
-//! The pass behind coherent shading: how dark the triangles around each pixel's corners are.
+//! Pass of coherent shading: how dark the triangles around each pixel's corners are.
 
 use antumbra::{Gpu, programs};
 
@@ -9,8 +9,8 @@ use crate::receivers::{DEPTH_FORMAT, RECEIVERS_WGSL, ReceiverImages, ReceiverPas
 
 const BENT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 
-/// Draws, for each light, the bent irradiance of what `images` show of `scene`: what a triangle's neighbours get at
-/// least, over what they would get if they faced the light. 1 where there is nothing to bend.
+/// Draws, for each light, the bent irradiance of the surfaces of `scene` in `images`: the least irradiance of a triangle's
+/// neighbours, over their irradiance if they faced the light. 1 if nothing is bent.
 pub(super) fn bent_images(
     gpu: &Gpu,
     encoder: &mut wgpu::CommandEncoder,
@@ -21,9 +21,9 @@ pub(super) fn bent_images(
     let receivers = ReceiverPass::new(gpu);
     let pipelines = Pipelines::new(gpu.device(), &receivers);
     let view_group = receivers.view_group(gpu, images);
-    // Its own depth, so that nothing depends on two shaders placing a vertex alike.
+    // The pass has its own depth, so that no two shaders need to compute equal vertex positions.
     let depth = target(gpu, images, "bent: depth", DEPTH_FORMAT);
-    // A geometry that does not know its triangles has no normals to bend by.
+    // A geometry without faces has no normals to bend by.
     let no_faces = no_faces_for(gpu, scene);
     lights
         .iter()
@@ -83,7 +83,7 @@ impl Pipelines {
     }
 }
 
-/// An image of the receivers' size to draw into.
+/// Creates an image of the receivers' size to draw to.
 fn target(gpu: &Gpu, images: &ReceiverImages, label: &str, format: wgpu::TextureFormat) -> wgpu::TextureView {
     let texture = gpu.device().create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -98,7 +98,7 @@ fn target(gpu: &Gpu, images: &ReceiverImages, label: &str, format: wgpu::Texture
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// What each draw binds: its own group, and the light's with its geometry's faces.
+/// Bind groups of each draw: its own group, and the light's with the faces of its geometry.
 fn draw_groups<'s>(
     gpu: &Gpu,
     scene: &'s GpuScene,
@@ -117,7 +117,7 @@ fn draw_groups<'s>(
     groups.collect()
 }
 
-/// Where nothing is drawn there is nothing to bend: white.
+/// Begins the pass, which clears to white: nothing is bent where nothing is drawn.
 fn begin_pass<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     view: &wgpu::TextureView,
@@ -140,7 +140,7 @@ fn begin_pass<'e>(
     })
 }
 
-/// A buffer of zeroes for as many vertices as any geometry has: no normals at all.
+/// Creates a buffer of zeros for the largest number of vertices of any geometry: no normals at all.
 fn no_faces_for(gpu: &Gpu, scene: &GpuScene) -> wgpu::Buffer {
     let lacking = scene.geometries.iter().filter(|geometry| geometry.faces.is_none());
     let vertices = lacking.map(|geometry| scene.buffers_of(geometry).positions.size() / 12).max().unwrap_or(0);

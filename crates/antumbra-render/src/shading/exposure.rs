@@ -1,16 +1,15 @@
-//! One exposure for all lights of a scene.
+//! Exposure: one for all lights of a scene.
 //!
 //! ```text
-//! a light's shape, candela or lux ─► what it gives, physically ─► by group well exposed ─► all together well exposed
+//! a light's shape, candela or lux ─► its physical strength ─► each group well exposed ─► all together well exposed
 //! ```
 //!
-//! Lights whose candela or lux are known are one group, in which they add up as they would outside the computer: far ones are
-//! dim. Of others nothing is known but that lights of a kind are alike: surfaces glow with one exitance, points with one
-//! intensity, suns give one illuminance. Each of those is a group of its own, and the groups are equally strong in the picture,
-//! since nothing says otherwise.
+//! Lights whose candela or lux are known are one group, in which they add up as in reality: far ones are dim. Other lights are only
+//! known to be alike by kind: surfaces have one exitance, points one intensity, suns one illuminance. Each of these kinds is a
+//! group of its own. The groups are equally strong in the image, because nothing says otherwise.
 //!
-//! *Well exposed* is the unshadowed irradiance that the better lit of the points in view would get, facing each light, were
-//! every light's intensity 1. Intensities dim or raise lights after that, so that 1 exposes sensibly and 2 is twice as bright.
+//! *Well exposed* refers to the unshadowed irradiance that the better lit of the visible points would get, facing each light, if
+//! every light's intensity were 1. Intensities are applied afterwards: 1 exposes sensibly, and 2 is twice as bright.
 
 use std::f32::consts::PI;
 
@@ -19,27 +18,27 @@ use glam::Vec3;
 
 use super::{ELLIPSOID, LEAST_HALF_WIDTH_M, POINTS, RECTANGLE, SPHERE, SUN, kind_and_half_size};
 
-/// Points in view that exposure looks at, at most.
+/// Largest number of visible points that determine the exposure.
 const EXPOSURE_POINTS: usize = 2048;
-/// Light points for each of them.
+/// Number of light points per visible point.
 const EXPOSURE_LIGHT_POINTS: u32 = 16;
-/// Which of the points in view, sorted by irradiance, gets the full exposure: most of the picture is then no brighter,
-/// and what is close to a lamp may be.
+/// Quantile of the visible points, sorted by irradiance, that gets the full exposure: most of the image is then no
+/// brighter, but surfaces close to a lamp may be.
 const EXPOSED_QUANTILE: f32 = 0.75;
-/// Irradiance there: a white diffuse surface that faces the light has the radiance 2.5. Chosen by eye on the built-in
-/// scenes, so that a lit grey floor is bright and a white wall keeps its texture.
+/// Irradiance at that quantile: a white diffuse surface that faces the light has the radiance 2.5. Chosen by eye on the
+/// built-in scenes, so that a lit grey floor is bright and a white wall keeps its texture.
 const EXPOSED_IRRADIANCE: f32 = 2.5 * PI;
 
-/// Lights that add up as their numbers say.
+/// Group of lights whose quantities are comparable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Group {
-    /// Candela or lux are known.
+    /// Lights with known candela or lux.
     Measured,
-    /// One exitance.
+    /// Surfaces of one exitance.
     Surfaces,
-    /// One intensity.
+    /// Points of one intensity.
     Points,
-    /// One illuminance.
+    /// Suns of one illuminance.
     Suns,
 }
 
@@ -56,8 +55,8 @@ impl Group {
     }
 }
 
-/// The radiance of each light (of points: the radiant intensity) that exposes the points `seen` sensibly, with its intensity
-/// and colour. Black where a light reaches nothing that is seen.
+/// Radiance of each light (radiant intensity for points) that exposes the points `seen` sensibly, including its intensity
+/// and colour. Black if a light reaches none of the points.
 pub fn exposed_radiances(lights: &[Light], seen: &[Vec3]) -> Vec<Vec3> {
     let seen: Vec<Vec3> = seen.iter().copied().step_by(seen.len().div_ceil(EXPOSURE_POINTS).max(1)).collect();
     let points = SampleSet::Stratified.points(EXPOSURE_LIGHT_POINTS, 0);
@@ -77,50 +76,50 @@ pub fn exposed_radiances(lights: &[Light], seen: &[Vec3]) -> Vec<Vec3> {
     lights.iter().zip(radiances).map(|(light, radiance)| light.color * (light.intensity * radiance)).collect()
 }
 
-/// Scales the radiances of some lights so that they expose well together.
+/// Scales the radiances of some lights so that together they expose well.
 fn expose(radiances: &mut [f32], unit_irradiances: &[Vec<f32>], members: &[usize]) {
     let seen = unit_irradiances.first().map_or(0, Vec::len);
     let irradiance = |point: usize| members.iter().map(|i| radiances[*i] * unit_irradiances[*i][point]).sum::<f32>();
     let mut irradiances: Vec<f32> = (0..seen).map(irradiance).filter(|e| e.is_finite() && *e > 0.0).collect();
     irradiances.sort_unstable_by(f32::total_cmp);
     let exposed = irradiances.get((irradiances.len() as f32 * EXPOSED_QUANTILE) as usize);
-    // Without any, the lights reach nothing that is seen.
+    // Without any irradiance, the lights reach no visible point.
     let scale = exposed.map_or(0.0, |irradiance| EXPOSED_IRRADIANCE / irradiance);
-    // What single precision cannot hold, a small lamp of 1e35 candela say, is dark.
+    // A radiance beyond single precision, of a small lamp of 1e35 candela for example, becomes 0.
     let scaled = |radiance: f32| Some(radiance * scale).filter(|scaled| scaled.is_finite()).unwrap_or(0.0);
     members.iter().for_each(|i| radiances[*i] = scaled(radiances[*i]));
 }
 
-/// Radiance (of points: radiant intensity) before exposure: of candela or lux, or else what is 1 for all of a group.
+/// Radiance (radiant intensity for points) before exposure: from candela or lux, or else a value that is 1 for the group.
 fn radiance(light: &Light) -> f32 {
     let (kind, half_size) = kind_and_half_size(&light.shape);
     match (light.candela_or_lux, kind) {
-        // Of a sun: over the projected solid angle of its disc.
+        // A sun's illuminance over the projected solid angle of its disc.
         (lux, SUN) => lux.unwrap_or(1.0) / sun_irradiance(half_size.x),
         (None, _) => 1.0,
-        // A surface of radiance L has L A along its axis.
+        // A surface of radiance L and area A has the intensity L A along its axis.
         (Some(candela), POINTS) => candela,
         (Some(candela), _) => candela / shown_area(kind, half_size),
     }
 }
 
-/// Of what a light shows along its axis, square metres.
+/// Area of a light projected along its axis, square metres.
 fn shown_area(kind: u32, half_size: Vec3) -> f32 {
     match kind {
         RECTANGLE => 4.0 * half_size.x * half_size.y,
-        // As its irradiance has it: of the strength of the sphere of its volume.
+        // Consistent with its irradiance: an ellipsoid is as strong as the sphere of the same volume.
         ELLIPSOID => PI * half_size.element_product().powf(2.0 / 3.0),
         _ => PI * half_size.x * half_size.x,
     }
 }
 
-/// Of a sun of unit radiance on what faces it, of the tangent of half its angle.
+/// Irradiance from a sun of unit radiance on a surface that faces it; `tangent` is that of half its angle.
 fn sun_irradiance(tangent: f32) -> f32 {
     PI * tangent * tangent / (1.0 + tangent * tangent)
 }
 
-/// The unshadowed irradiance, at unit radiance, of a surface at `x` that faces the light: summed over points of the
-/// light, given in the unit cube.
+/// Unshadowed irradiance, at unit radiance, of a surface at `x` that faces the light, summed over light points, which are
+/// given in the unit cube.
 fn facing_irradiance(light: &Light, points: &[Vec3], x: Vec3) -> f32 {
     let frame = light.frame();
     if !light.reaches(&frame, x) {
@@ -161,7 +160,7 @@ mod tests {
         Light { candela_or_lux, ..Light::new(shape, height_m * Vec3::Y, Vec3::ZERO) }
     }
 
-    /// The irradiance of each light at the origin.
+    /// Irradiance of each light at the origin.
     fn at_origin(lights: &[Light]) -> Vec<f32> {
         let points = SampleSet::Stratified.points(EXPOSURE_LIGHT_POINTS, 0);
         let radiances = exposed_radiances(lights, &[Vec3::ZERO]);
@@ -174,7 +173,7 @@ mod tests {
         assert!(is_near && values.len() == expected.len(), "{values:?}, and {expected:?} was expected");
     }
 
-    /// Four times as far, a sixteenth as bright; together they expose well.
+    /// A light four times as far is a sixteenth as bright; together the lights expose well.
     #[test]
     fn distances_between_lights_count() {
         let disk = LightShape::Disk { radius_m: 0.1 };
@@ -185,7 +184,7 @@ mod tests {
         }
     }
 
-    /// Candela over the square of the distance are lux, whatever the shape.
+    /// Candela over the square of the distance are lux, for all shapes.
     #[test]
     fn candela_and_lux_are_of_one_scale() {
         let shapes = [
@@ -200,7 +199,7 @@ mod tests {
         assert_near(&at_origin(&lights), &[EXPOSED_IRRADIANCE / 6.0; 6]);
     }
 
-    /// Of lights that say nothing of themselves, kinds are equally strong; intensities come after exposure.
+    /// Without candela or lux, kinds of light are equally strong; intensities are applied after exposure.
     #[test]
     fn kinds_are_equally_strong_and_dimmers_come_last() {
         let sun = LightShape::Sun { angular_diameter_rad: 0.2 };

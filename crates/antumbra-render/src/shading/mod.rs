@@ -1,17 +1,17 @@
-//! The picture: analytic irradiance of each light times visibility, GGX highlights, a little ambient, a tone curve.
+//! Shading of the image: analytic irradiance of each light times visibility, GGX highlights, a little ambient, a tone curve.
 //!
-//! Visibility comes from anywhere: a technique's mask, the reference's image. All else is the same for all, so that two
-//! pictures differ where visibility does.
+//! Visibility comes from any source, such as a technique's mask or the reference's image. Everything else is the same, so
+//! that two images differ only where visibility does.
 //!
-//! **Exposure.** One for all lights, by which those of intensity 1 light the better lit of the points in view sensibly, were
-//! nothing in shadow; `exposure` says how lights add up.
+//! **Exposure.** One for all lights: without shadows, lights of intensity 1 light the better lit of the visible points sensibly.
+//! `exposure` says how lights add up.
 //!
 //! **Coherence.** Smooth normals light triangles that lie in their own shadow, and exact visibility cuts that light off
-//! along the triangles' edges. [`Shading::bend_normals`] lets the light fade out before them.
+//! along the triangles' edges. [`Shading::bend_normals`] makes the light fade out before these edges.
 //!
 //! # Limits
-//! What shows through translucent surfaces is lit with the visibility of the surface in front of it. An emission texture
-//! dims nothing by itself: it shapes visibility alone.
+//! Surfaces behind translucent ones are lit with the visibility of the surface in front. An emission texture changes only
+//! visibility, and does not dim the light itself.
 
 use antumbra::contract::COHERENT_WGSL;
 use antumbra::{Gpu, Mask, MaskChannels, programs};
@@ -29,48 +29,48 @@ mod exposure;
 
 pub use exposure::exposed_radiances;
 
-/// The passes, and the irradiance of lights that they use.
+/// Shader of the passes.
 const SHADING_WGSL: &str = include_str!("shading.wgsl");
-/// `irradiance` of a light at a surface, and what it takes.
+/// Shader function `irradiance` of a light at a surface, and its helpers.
 pub const IRRADIANCE_WGSL: &str = include_str!("irradiance.wgsl");
 
-/// Where a light's visibility comes from.
+/// Source of a light's visibility.
 #[derive(Clone, Copy, Debug)]
 pub enum VisibilitySource<'a> {
-    /// Nothing is in shadow.
+    /// No shadow: visibility is 1.
     Lit,
-    /// An image of the picture's size.
+    /// A visibility image of the shaded image's size.
     Image(&'a Visibility),
-    /// A technique's mask of the picture's size. Of three channels in a format of four components all count; in others the
-    /// first.
+    /// A technique's mask of the shaded image's size. Three channels are used if the mask has three and its format has four
+    /// components, else only the first.
     Mask(&'a Mask),
-    /// A texture of the picture's size, unfilterable floats, and whether three channels count or the first alone.
+    /// A texture of unfilterable floats of the shaded image's size, and whether three channels count rather than the first only.
     Texture(&'a wgpu::TextureView, bool),
 }
 
-/// Shades one view under one set of lights, as often as there are visibilities to see.
+/// Shading of one view under one set of lights, for any number of visibilities.
 #[derive(Debug)]
 pub struct Shading {
     programs: ShadingPrograms,
     frame_storage: wgpu::Buffer,
     view_from_world: Mat4,
     size_px: UVec2,
-    /// What lies behind translucent surfaces; `None` where the scene has none.
+    /// Layer behind translucent surfaces; `None` if the scene has none.
     behind: Option<ReceiverImages>,
     lights: Vec<LightBuffers>,
 }
 
-/// A light's uniform and its list of points.
+/// Uniform and list of points of a light.
 #[derive(Debug)]
 pub struct LightBuffers {
     uniform: LightUniform,
-    /// Storage `light_points` of the shader.
+    /// Storage buffer `light_points` of the shader.
     pub points: wgpu::Buffer,
     /// See [`Shading::bend_normals`].
     bent: Option<wgpu::TextureView>,
 }
 
-/// The pipelines of the picture, made once for a device.
+/// Pipelines of shading, created once per device.
 #[derive(Clone, Debug)]
 pub struct ShadingPrograms {
     receivers_layout: wgpu::BindGroupLayout,
@@ -80,17 +80,17 @@ pub struct ShadingPrograms {
     picture: wgpu::RenderPipeline,
 }
 
-/// What a picture is drawn to.
+/// Render targets of a shaded image.
 #[derive(Debug)]
 pub struct PictureTargets {
-    /// `Rgba32Float`: the finished picture in linear display values, and usages to be read and copied.
+    /// The finished image, `Rgba32Float` in linear display values; it can be read and copied.
     pub picture: wgpu::Texture,
     direct: wgpu::Texture,
     behind_direct: wgpu::Texture,
 }
 
 impl PictureTargets {
-    /// Targets of `size_px`.
+    /// Creates targets of `size_px`.
     pub fn new(device: &wgpu::Device, size_px: UVec2) -> Self {
         let target = |label, format| drawn_texture(device, label, format, size_px);
         Self {
@@ -101,7 +101,7 @@ impl PictureTargets {
     }
 }
 
-/// Storage `frame` of the shader.
+/// Storage buffer `frame` of the shader.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct FrameUniform {
@@ -126,19 +126,19 @@ struct LightUniform {
     radiance: [f32; 3],
     point_count: u32,
     is_tinted: u32,
-    /// Cosines of a spot's inner and outer angle; −2 and −3 where there is no cone.
+    /// Cosines of a spot light's inner and outer angle; −2 and −3 without a cone.
     cone_cosines: [f32; 2],
     padding: u32,
 }
 
-/// Lit radiance, added up light by light: a format that every adapter can blend.
+/// Format of lit radiance, which is summed over lights: every adapter can blend it.
 const DIRECT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
-/// The finished picture, linear.
+/// Format of the finished image, which is linear.
 const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
 impl Shading {
-    /// Makes ready to shade what `images` show under `lights`. `behind` is what lies behind translucent surfaces, where the scene
-    /// has any; `seen` are points in view, to which lights are exposed.
+    /// Prepares shading of `images` under `lights`. `behind` is the layer behind translucent surfaces if the scene has any; `seen` are
+    /// visible points, which determine the exposure.
     pub fn new(
         gpu: &Gpu,
         programs: &ShadingPrograms,
@@ -164,9 +164,9 @@ impl Shading {
         }
     }
 
-    /// Shades coherently from now on: triangles that face away from all of a light are black, and the shading falls off
-    /// towards them, whatever their smooth normals say (Sintorn, Eisemann, Assarsson 2008, section 4.3; see
-    /// [`antumbra::contract::VertexFaces`]). `scene` is of [`GpuScene::upload_with_faces`]; any other has no faces to bend
+    /// Enables coherent shading: triangles that face away from all of a light are black, and the shading falls off towards
+    /// them whatever their smooth normals (Sintorn, Eisemann, Assarsson 2008, section 4.3; see
+    /// [`antumbra::contract::VertexFaces`]). `scene` must come from [`GpuScene::upload_with_faces`]; others have no faces to bend
     /// normals by, and nothing changes.
     pub fn bend_normals(
         &mut self,
@@ -181,10 +181,10 @@ impl Shading {
         }
     }
 
-    /// Records the picture of the same `images`, each light seen through its visibility.
+    /// Records the shading of the same `images`, with one visibility per light.
     ///
     /// # Panics
-    /// Where there are not as many visibilities as lights, or one is of another size than the picture.
+    /// The numbers of visibilities and lights differ, or a visibility has another size than the image.
     pub fn record(
         &self,
         gpu: &Gpu,
@@ -195,7 +195,7 @@ impl Shading {
     ) {
         assert_eq!(self.lights.len(), visibilities.len(), "each light needs its visibility");
         assert_eq!((self.size_px, self.view_from_world), (images.size_px, images.view_from_world), "another view");
-        // What lies behind translucent surfaces is not bent.
+        // Normals of the layer behind translucent surfaces are not bent.
         let nothing_bent = upload(gpu, &Visibility::one(UVec2::ONE, vec![1.0]));
         let light_groups: Vec<_> = self
             .lights
@@ -337,7 +337,7 @@ fn bind_group<const N: usize>(
     gpu.device().create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-/// A visibility image as `R32Float`, or `Rgba32Float` where it has three channels.
+/// Uploads a visibility image as `R32Float`, or as `Rgba32Float` if it has three channels.
 fn upload(gpu: &Gpu, visibility: &Visibility) -> wgpu::TextureView {
     let texels;
     let (format, bytes): (_, &[u8]) = match &visibility.values {
@@ -370,7 +370,7 @@ fn upload(gpu: &Gpu, visibility: &Visibility) -> wgpu::TextureView {
 }
 
 impl ShadingPrograms {
-    /// Makes the pipelines.
+    /// Creates the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
         let float = wgpu::TextureSampleType::Float { filterable: false };
         let depth = wgpu::TextureSampleType::Depth;
@@ -430,13 +430,13 @@ const ELLIPSOID: u32 = 3;
 const SUN: u32 = 4;
 const POINTS: u32 = 5;
 
-/// A light without size shines as one of this half-width, metres; far below what a picture shows.
+/// Half width of a light without size, metres: too small to be visible in an image.
 const LEAST_HALF_WIDTH_M: f32 = 1e-3;
-/// And a sun, as the tangent of half its angle.
+/// Tangent of half the angle of a sun without size.
 const LEAST_TANGENT: f32 = 1e-4;
 
 impl LightBuffers {
-    /// A light of some radiance (of points: radiant intensity).
+    /// Creates the buffers of a light of some radiance (radiant intensity for points).
     pub fn new(device: &wgpu::Device, light: &Light, radiance: Vec3) -> Self {
         let points: Vec<Vec4> = match &light.shape {
             LightShape::Points { positions_m } => positions_m.iter().map(|p| p.extend(0.0)).collect(),
@@ -453,7 +453,7 @@ impl LightBuffers {
         }
     }
 
-    /// Uniform `Light` of the shader.
+    /// Contents of the uniform `Light` of the shader.
     pub fn uniform_bytes(&self) -> &[u8] {
         bytemuck::bytes_of(&self.uniform)
     }

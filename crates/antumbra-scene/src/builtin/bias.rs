@@ -1,7 +1,7 @@
-//! `tilted-planes` and `spheres`: where a depth bias that is wrong shows.
+//! `tilted-planes` and `spheres`: scenes in which a wrong depth bias is visible.
 //!
-//! Too little bias makes acne, first on surfaces that the light grazes; too much detaches the shadows of small things
-//! from what they stand on. Both scenes let the light sink to 5 degrees above the ground.
+//! Too little bias causes acne, first on surfaces at grazing light; too much detaches the shadows of small objects from
+//! what they stand on. In both scenes the light can sink to 5 degrees above the ground.
 
 use glam::{Quat, Vec2, Vec3};
 
@@ -14,7 +14,7 @@ use crate::Scene;
 fn light_at_elevation(stage: &mut Stage, arguments: &Arguments, target: Vec3) {
     const DISTANCE_M: f32 = 6.5;
     const SIDE_M: f32 = 0.5;
-    /// Where on the horizon the light rises: left of the camera and before the scene, degrees from +z towards −x.
+    /// Azimuth of the light, degrees from +z towards −x: left of the camera and in front of the scene.
     const AZIMUTH_DEG: f32 = 62.0;
     let (sin, cos) = (arguments.get("light_elevation_deg") as f32).to_radians().sin_cos();
     let horizon = AZIMUTH_DEG.to_radians();
@@ -43,7 +43,7 @@ pub(super) fn tilted_planes(arguments: &Arguments) -> Scene {
             };
             let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| turn * axis);
             let half = 0.5 * SLAB_M;
-            // The lowest corner is a hair below the ground.
+            // The lowest corner is 3 mm below the ground.
             let reach: f32 = axes.iter().zip(half.to_array()).map(|(axis, half)| axis.y.abs() * half).sum();
             let center = Vec3::new((column as f32 - 2.5) * PITCH_M.x, reach - 0.003, (row as f32 - 1.0) * PITCH_M.y);
             slabs.oriented_box(center, axes, half);
@@ -65,7 +65,7 @@ pub(super) fn tilted_planes(arguments: &Arguments) -> Scene {
 
 /// Two rows of five spheres, coarse to fine, resting on the ground.
 pub(super) fn spheres(arguments: &Arguments) -> Scene {
-    /// Meridians and parallels.
+    /// Numbers of meridians and parallels.
     const TESSELLATIONS: [(u32, u32); 10] =
         [(6, 4), (8, 6), (10, 8), (12, 8), (16, 12), (24, 16), (32, 20), (48, 32), (80, 48), (128, 80)];
     const RADIUS_M: f32 = 0.42;

@@ -1,7 +1,7 @@
 //! `checker-far`: a chequered canopy over a road to the horizon, under the sun.
 //!
-//! Fine regular occluders whose shadows shrink below a pixel towards the horizon, and below a texel everywhere: what is
-//! sampled without a filter turns to moiré.
+//! Fine regular occluders. Their shadows are smaller than a texel everywhere, and smaller than a pixel towards the
+//! horizon: without filtering they turn into moiré.
 
 use glam::{Vec2, Vec3};
 
@@ -17,7 +17,7 @@ pub(super) fn checker_far(arguments: &Arguments) -> Scene {
     const COLUMNS: u32 = 31;
     const ROWS: u32 = 200;
     const HEIGHT_M: f32 = 2.7;
-    /// Boards are smaller than their cells by this, so that those that meet at a corner share no edge, metres.
+    /// Difference between cell and board sizes, metres: boards that meet at a corner must not share an edge.
     const GAP_M: f32 = 0.02;
     let half_width = 0.5 * CELL_M * COLUMNS as f32;
     let length = CELL_M * ROWS as f32;

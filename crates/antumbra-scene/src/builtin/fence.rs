@@ -1,7 +1,7 @@
 //! `fence-alpha` and `fence-geometry`: one wire fence, as masked cards and as wires.
 //!
-//! After Selgrad, Dachsbacher, Meyer & Stamminger 2014, fig. 11: a fence of fine detail from alpha maps. The same
-//! pattern as solid wires tells what a mask's filtering costs.
+//! After Selgrad, Dachsbacher, Meyer & Stamminger 2014, fig. 11: a fence of fine detail from alpha maps. Comparison with
+//! the same pattern as solid wires shows what filtering a mask costs.
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -21,7 +21,7 @@ const MESH_Y_M: (f32, f32) = (0.08, 1.52);
 const DIAMOND_M: f32 = 0.12;
 /// Radius of a wire, metres.
 const WIRE_RADIUS_M: f32 = 0.005;
-/// Posts of the polyline that the fence follows, on the ground, x and z in metres; each panel is as wide as the rest.
+/// Positions of the posts along the fence, x and z in metres; all panels have the same width.
 fn posts() -> [Vec2; 4] {
     let corner = Vec2::new(0.9, 0.1);
     let west = Vec2::new(-PANEL_WIDTH_M, 0.0);
@@ -55,7 +55,7 @@ fn surroundings(name: &str) -> Stage {
     stage
 }
 
-/// Each panel is one quad; one texture tile is one diamond.
+/// Fence of alpha-tested quads, one per panel; one texture tile is one diamond.
 pub(super) fn fence_alpha(arguments: &Arguments) -> Scene {
     let mut stage = surroundings(arguments.scene);
     stage.scene.images.push(wire_image());
@@ -86,14 +86,14 @@ pub(super) fn fence_alpha(arguments: &Arguments) -> Scene {
 fn wire_image() -> Image {
     const TEXELS: u32 = 128;
     let texel_m = DIAMOND_M / TEXELS as f32;
-    // Both diagonals, and the neighbours' parts that reach in at the corners: distance on the torus of tiles.
+    // Distance to both diagonals on the torus of tiles, because neighbouring tiles reach in at the corners.
     let distance_m = |coordinate: f32| (coordinate - coordinate.round()).abs() * DIAMOND_M * FRAC_1_SQRT_2;
     let texel = |i: u32| {
         let p = Vec2::new((i % TEXELS) as f32 + 0.5, (i / TEXELS) as f32 + 0.5) / TEXELS as f32;
         let nearest = distance_m(p.x - p.y).min(distance_m(p.x + p.y));
         let alpha = (0.5 + (WIRE_RADIUS_M - nearest) / (2.0 * texel_m)).clamp(0.0, 1.0);
-        // Lighter along the middle, as a round wire is; the same colour where there is none, so that filtering does
-        // not darken edges.
+        // Lighter along the middle, as a round wire is. Transparent texels have the wire's colour, so that filtering does not
+        // darken edges.
         let bulge = (1.0 - (nearest / WIRE_RADIUS_M).min(1.0).powi(2)).sqrt();
         let grey = (120.0 + 50.0 * bulge) as u8;
         [grey, grey, grey, (255.0 * alpha).round() as u8]
@@ -101,7 +101,7 @@ fn wire_image() -> Image {
     Image { width: TEXELS, height: TEXELS, rgba8: (0..TEXELS * TEXELS).map(texel).collect(), wrap: [Wrap::Repeat; 2] }
 }
 
-/// Each wire is a six-sided tube along a diagonal of its panel.
+/// Fence of wires, each a six-sided tube along a diagonal of its panel.
 pub(super) fn fence_geometry(arguments: &Arguments) -> Scene {
     const SIDES: u32 = 6;
     let mut stage = surroundings(arguments.scene);
@@ -113,7 +113,7 @@ pub(super) fn fence_geometry(arguments: &Arguments) -> Scene {
     for (panel, pair) in posts.windows(2).enumerate() {
         let [a, b] = [pair[0], pair[1]].map(|p| Vec3::new(p.x, 0.0, p.y));
         let along = (b - a).normalize();
-        // Sides alternate, so that a wire does not end in the very ring where the next panel's begins.
+        // Sides alternate, so that the end ring of a wire does not coincide with the first ring in the next panel.
         let normal = along.cross(Vec3::Y) * if panel % 2 == 0 { 1.0 } else { -1.0 };
         // A wire that rises to the right meets the lower edge at x = k · DIAMOND_M, clipped to 0 ≤ x ≤ width.
         let (first, last) = ((-height / DIAMOND_M).round() as i32 + 1, (PANEL_WIDTH_M / DIAMOND_M).round() as i32);

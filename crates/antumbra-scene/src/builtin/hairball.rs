@@ -40,7 +40,7 @@ pub(super) fn hairball(arguments: &Arguments) -> Scene {
         for _ in 0..SEGMENTS {
             point += heading * (length / SEGMENTS as f32);
             points.push(point);
-            // Neighbouring hairs turn alike, and all hang a little: locks, not needles.
+            // Neighbouring hairs turn alike, and all droop a little, which forms locks.
             let lock = Vec3::from_array([0.0, 31.0, 57.0].map(|shift| value_noise(point * 2.6 + shift)));
             heading = (heading + lock * 0.55 - Vec3::Y * 0.07).normalize();
         }

@@ -1,7 +1,7 @@
-//! `knot` and `ten-knots`: one closed surface with as many triangles as asked for, and ten of it.
+//! `knot` and `ten-knots`: one closed surface with a given number of triangles, and ten instances of it.
 //!
-//! Stands for the torus knot of varying tessellation of Sintorn, Eisemann & Assarsson 2008, fig. 11, and for the dragon
-//! and the ten dragons of Marrs, Watson & Healey 2014, figs. 1 and 3: much geometry, wound so that it shades itself.
+//! Replaces the torus knot of varying tessellation of Sintorn, Eisemann & Assarsson 2008, fig. 11, and the dragon and the
+//! ten dragons of Marrs, Watson & Healey 2014, figs. 1 and 3: much geometry that shadows itself.
 
 use std::f32::consts::TAU;
 
@@ -13,13 +13,13 @@ use super::shapes::MeshBuilder;
 use super::stage::{Stage, palette};
 use crate::Scene;
 
-/// A (2, 3) torus knot with ripples and a rough skin, about the origin, lying in the xz plane, 3.1 m across and 1.5 m
-/// high; `triangles` within 1 %.
+/// A (2, 3) torus knot with ripples and a rough skin, centred on the origin in the xz plane, 3.1 m across and 1.5 m
+/// high. Its number of triangles is `triangles` within 1 %.
 fn knot_surface(triangles: f64) -> MeshBuilder {
     const RING_RADIUS_M: f32 = 1.0;
     const WINDING_RADIUS_M: f32 = 0.42;
     const TUBE_RADIUS_M: f32 = 0.2;
-    /// Length of the knot by its girth: makes the quads about square.
+    /// Ratio of the knot's length to its girth, which makes the quads about square.
     const COLUMNS_PER_ROW: f64 = 12.0;
     let rows = (0.5 * triangles / COLUMNS_PER_ROW).sqrt().round().max(3.0);
     let columns = (0.5 * triangles / rows).round();
@@ -53,7 +53,7 @@ fn knot_surface(triangles: f64) -> MeshBuilder {
 
 /// One knot, upright, on a low plinth.
 pub(super) fn knot(arguments: &Arguments) -> Scene {
-    /// Ground and plinth.
+    /// Triangles of ground and plinth.
     const OTHER_TRIANGLES: f64 = 24.0;
     let mut stage = Stage::new(arguments.scene);
     stage.ground(Vec2::new(0.2, 0.2), Vec2::new(8.0, 7.0), palette::SAND);

@@ -1,8 +1,8 @@
-//! Built-in scenes: small procedural worlds after the figures of the papers, each with its camera and its light.
+//! Built-in scenes: small procedural scenes modelled on figures of the papers, each with its camera and its light.
 //!
 //! [`NAMES`] lists them; [`build`] makes one from `NAME` or `NAME?key=value&key=value`. The same specification gives
-//! the same scene every time. Whatever is solid in the world is a closed mesh here (`Mesh::closed`); leaves, blades of
-//! grass, alpha-masked cards and panes of glass are open sheets.
+//! the same scene every time. Solid objects are closed meshes (`Mesh::closed`); leaves, blades of grass, alpha-masked
+//! cards and panes of glass are open sheets.
 
 use std::fmt;
 
@@ -28,32 +28,32 @@ mod town;
 mod trees;
 mod window;
 
-/// A built-in scene, before it is built.
+/// Description of a built-in scene.
 #[derive(Clone, Copy, Debug)]
 pub struct BuiltinInfo {
     /// The name in `builtin:NAME`.
     pub name: &'static str,
-    /// What it shows, in one line.
+    /// Summary in one line.
     pub summary: &'static str,
-    /// The paper's figure that it is modelled on, or what it is for.
+    /// Figure of the paper that the scene is modelled on, or its purpose.
     pub source: &'static str,
-    /// Triangles as drawn, with default parameters.
+    /// Number of triangles drawn, with default parameters.
     pub triangles: usize,
-    /// No surface is masked, blended or transmitting.
+    /// Whether all surfaces are opaque: none is masked, blended or transmitting.
     pub opaque: bool,
-    /// Something thinner than 2 cm casts a shadow of its own: wires, hairs, blades.
+    /// Whether something thinner than 2 cm casts a shadow of its own: wires, hairs, blades.
     pub thin_bars: bool,
-    /// What may follow the question mark.
+    /// Parameters that may follow the question mark.
     pub parameters: &'static [BuiltinParameter],
     make: fn(&Arguments) -> Scene,
 }
 
-/// A number that a built-in scene takes.
+/// Numeric parameter of a built-in scene.
 #[derive(Clone, Copy, Debug)]
 pub struct BuiltinParameter {
     /// The key.
     pub name: &'static str,
-    /// What it is, and what more of it does.
+    /// Description, and the effect of larger values.
     pub meaning: &'static str,
     /// The unit, or empty for a count.
     pub unit: &'static str,
@@ -61,21 +61,21 @@ pub struct BuiltinParameter {
     pub min: f64,
     /// Largest value.
     pub max: f64,
-    /// The value when it is not given.
+    /// Default value.
     pub default: f64,
     /// Whether it must be a whole number.
     pub whole: bool,
 }
 
-/// What is wrong with the specification of a built-in scene.
+/// Error in the specification of a built-in scene.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BuiltinError {
     /// No scene has this name.
     #[error("there is no built-in scene `{name}`; nearest: {nearest}")]
     UnknownName {
-        /// What was asked for.
+        /// Name as given.
         name: String,
-        /// Names that look like it.
+        /// Similar names.
         nearest: String,
     },
     /// The scene has no such parameter.
@@ -83,12 +83,12 @@ pub enum BuiltinError {
     UnknownKey {
         /// The scene.
         scene: &'static str,
-        /// What was given.
+        /// Key as given.
         key: String,
-        /// What it takes.
+        /// Parameters that the scene takes.
         known: String,
     },
-    /// Not `key=value`, or a key that comes twice.
+    /// Not `key=value`, or a repeated key.
     #[error("built-in scene `{scene}`: `{part}` is not one `key=value` for each parameter, joined by `&`")]
     Malformed {
         /// The scene.
@@ -103,24 +103,24 @@ pub enum BuiltinError {
         scene: &'static str,
         /// The parameter.
         key: &'static str,
-        /// What was given.
+        /// Value as given.
         value: String,
-        /// What would be right.
+        /// Valid values.
         range: String,
     },
 }
 
-/// What stands before the name of a built-in scene wherever scenes are named.
+/// Prefix of the names of built-in scenes.
 const PREFIX: &str = "builtin:";
 
-/// What follows `builtin:` in a scene's name; `None` for a file. In any case, as the scenes' names are.
+/// Part of a scene's name after `builtin:`, in any case; `None` for a file.
 pub fn spec_of(name: &str) -> Option<&str> {
     let (head, spec) = name.split_at_checked(PREFIX.len())?;
     head.eq_ignore_ascii_case(PREFIX).then_some(spec)
 }
 
-/// A scene's name as it is declared: `builtin:overlap` for `Builtin:OVERLAP`. Files' names, and what no scene is called, are as they
-/// were.
+/// Name of a scene in its declared case: `builtin:overlap` for `Builtin:OVERLAP`. Names of files are returned unchanged, and so is
+/// the part after `builtin:` if no scene has that name.
 pub fn declared_name(name: &str) -> String {
     let Some(spec) = spec_of(name) else { return name.to_owned() };
     let (scene, query) = spec.split_once('?').map_or((spec, None), |(scene, query)| (scene, Some(query)));
@@ -128,7 +128,7 @@ pub fn declared_name(name: &str) -> String {
     query.map_or_else(|| format!("{PREFIX}{scene}"), |query| format!("{PREFIX}{scene}?{query}"))
 }
 
-/// The scene of a name, in any case.
+/// Finds a scene by its name, in any case.
 pub fn named(name: &str) -> Option<&'static BuiltinInfo> {
     NAMES.iter().find(|info| info.name.eq_ignore_ascii_case(name))
 }
@@ -160,7 +160,7 @@ impl fmt::Display for BuiltinParameter {
     }
 }
 
-/// The direction of the light in the scenes made for testing bias.
+/// Elevation of the light in the scenes that test bias.
 const LIGHT_ELEVATION: BuiltinParameter = BuiltinParameter {
     name: "light_elevation_deg",
     meaning: "height of the light above the ground as seen from the scene's middle; less is more grazing",
@@ -171,7 +171,7 @@ const LIGHT_ELEVATION: BuiltinParameter = BuiltinParameter {
     whole: false,
 };
 
-/// How finely the knot is made.
+/// Number of triangles of `knot`.
 const KNOT_TRIANGLES: BuiltinParameter = BuiltinParameter {
     name: "triangles",
     meaning: "triangles in the scene, within 1 %; more makes the same surface finer",
@@ -182,7 +182,7 @@ const KNOT_TRIANGLES: BuiltinParameter = BuiltinParameter {
     whole: true,
 };
 
-/// What most scenes are; completed by each.
+/// Defaults of the entries in [`NAMES`].
 const SOLID: BuiltinInfo = BuiltinInfo {
     name: "",
     summary: "",
@@ -428,7 +428,7 @@ pub const NAMES: &[BuiltinInfo] = &[
 /// Builds a scene from `NAME` or `NAME?key=value&key=value`.
 ///
 /// # Errors
-/// An unknown name, an unknown or repeated key, or a value outside its range; one line says what would be right.
+/// An unknown name, an unknown or repeated key, or a value outside its range; the message is one line with a remedy.
 pub fn build(spec: &str) -> Result<Scene, BuiltinError> {
     let (name, query) = spec.split_once('?').unwrap_or((spec, ""));
     let info =
@@ -472,7 +472,7 @@ fn parse_arguments(info: &BuiltinInfo, query: &str) -> Result<Arguments, Builtin
     Ok(Arguments { scene: info.name, values: info.parameters.iter().map(value_of).collect() })
 }
 
-/// The three names with Levenshtein's smallest distance, those that contain `name` first.
+/// The three names with the smallest Levenshtein distance, those that contain `name` first.
 fn nearest_names(name: &str) -> String {
     const SUGGESTIONS: usize = 3;
     let name = &name.to_lowercase();

@@ -17,39 +17,39 @@ impl Random {
         Self { seed: hash_u32(seed), counter: 0 }
     }
 
-    /// All 32 bits random.
+    /// 32 random bits.
     pub fn bits(&mut self) -> u32 {
         self.counter = self.counter.wrapping_add(1);
         hash_u32(hash_u32(self.counter) ^ self.seed)
     }
 
-    /// Uniform in `[0, 1)`.
+    /// Uniform random number in `[0, 1)`.
     pub fn unit(&mut self) -> f32 {
         unit_f32(self.bits())
     }
 
-    /// Uniform in `[low, high)`.
+    /// Uniform random number in `[low, high)`.
     pub fn range(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.unit()
     }
 
-    /// Uniform in `[-half_width, half_width)`.
+    /// Uniform random number in `[-half_width, half_width)`.
     pub fn around_zero(&mut self, half_width: f32) -> f32 {
         self.range(-half_width, half_width)
     }
 
-    /// An index below `n`.
+    /// Random index below `n`.
     pub fn below(&mut self, n: usize) -> usize {
         ((self.unit() * n as f32) as usize).min(n - 1)
     }
 
-    /// Uniform in the unit disc.
+    /// Random point, uniform in the unit disc.
     pub fn in_disc(&mut self) -> Vec2 {
         let radius = self.unit().sqrt();
         Vec2::from_angle(self.range(0.0, TAU)) * radius
     }
 
-    /// Uniform over the unit sphere (Archimedes: height and azimuth are uniform).
+    /// Random direction, uniform over the unit sphere (Archimedes: height and azimuth are uniform).
     pub fn direction(&mut self) -> Vec3 {
         let y = self.range(-1.0, 1.0);
         let horizontal = Vec2::from_angle(self.range(0.0, TAU)) * (1.0 - y * y).max(0.0).sqrt();

@@ -13,7 +13,7 @@ use super::stage::{Stage, palette, shade};
 use super::{Arguments, noise::Random};
 use crate::Scene;
 
-/// How far things that stand on something are sunk into it, so that no two faces coincide, metres.
+/// Depth by which objects sink into what they stand on, metres, so that no two faces coincide.
 const SUNK_M: f32 = 0.005;
 
 /// A pergola's boards (A) over a low table (B) over the ground (C): A to B is some seven times B to C.
@@ -68,7 +68,7 @@ pub(super) fn overlap(arguments: &Arguments) -> Scene {
     stage.scene
 }
 
-/// A lantern hangs a hand from the wall; a banner hangs between the light and the lantern's surroundings.
+/// A lantern close to a wall, and a banner between the light and the lantern's surroundings.
 pub(super) fn lantern_wall(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
     stage.ground(Vec2::new(0.1, 1.6), Vec2::new(5.8, 3.6), palette::STONE);
@@ -131,7 +131,7 @@ pub(super) fn lantern_wall(arguments: &Arguments) -> Scene {
     stage.scene
 }
 
-/// A plank leans against a low wall; the light beyond lays its shadow out towards the camera.
+/// A plank that leans against a low wall; the light behind the wall casts its shadow towards the camera.
 pub(super) fn leaning_plank(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
     stage.ground(Vec2::new(0.0, 0.6), Vec2::new(7.5, 5.6), palette::SAND);
@@ -161,7 +161,7 @@ pub(super) fn stacked_panels(arguments: &Arguments) -> Scene {
     let ochre = stage.material("boards", palette::OCHRE, 0.6);
     let steel = stage.material("rods", palette::STEEL, 0.4);
 
-    // Each panel is the shadow of the one above it as the light's centre sees it: same direction, size by distance.
+    // Each panel is the projection of the one above it from the light's centre: same direction, size by distance.
     let lowest = Vec3::new(-0.65, 0.95, -0.45);
     let mut panels = MeshBuilder::new();
     let mut rods = MeshBuilder::new();
@@ -180,7 +180,7 @@ pub(super) fn stacked_panels(arguments: &Arguments) -> Scene {
     stage.add("panels", paint, panels);
     stage.add("rods", steel, rods);
 
-    // Upright boards, one behind the other along the light's way over the ground, shrinking likewise.
+    // Upright boards, one behind the other along the light's direction over the ground, shrinking likewise.
     let first = Vec3::new(0.35, 0.0, 1.35);
     let along = (Vec3::new(first.x - light_center.x, 0.0, first.z - light_center.z)).normalize();
     let across = along.cross(Vec3::Y).normalize();

@@ -1,7 +1,7 @@
 //! `ring-in-grass`: a ring stands in a lawn of separate blades.
 //!
-//! After the ring scene of 379 000 triangles in Sintorn, Eisemann & Assarsson 2008, fig. 15 right, which they have from
-//! Laine, Aila, Assarsson, Lehtinen & Akenine-Möller, *Soft Shadow Volumes for Ray Tracing*, SIGGRAPH 2005.
+//! After the ring scene of 379 000 triangles in Sintorn, Eisemann & Assarsson 2008, fig. 15 right, originally from Laine,
+//! Aila, Assarsson, Lehtinen & Akenine-Möller, *Soft Shadow Volumes for Ray Tracing*, SIGGRAPH 2005.
 
 use std::f32::consts::TAU;
 

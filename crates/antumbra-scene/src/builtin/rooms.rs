@@ -1,4 +1,4 @@
-//! `lamp-room` and `hall`: rooms that close about their light, which most shadow maps cannot.
+//! `lamp-room` and `hall`: rooms that enclose their light, so that one shadow map cannot cover them.
 
 use std::f32::consts::TAU;
 
@@ -10,10 +10,10 @@ use super::shapes::MeshBuilder;
 use super::stage::{Stage, palette, shade};
 use crate::Scene;
 
-/// Half the room's floor, and its height, metres.
+/// Half extents of the room's floor, and the room's height, metres.
 const ROOM_HALF_M: Vec2 = Vec2::new(3.0, 2.5);
 const ROOM_HEIGHT_M: f32 = 2.7;
-/// How thick walls, floor and ceiling are, metres.
+/// Thickness of walls, floor and ceiling, metres.
 const WALL_M: f32 = 0.12;
 
 /// A room with a lamp that hangs in its middle: things on all sides of it, on the floor, the walls and the ceiling.
@@ -132,11 +132,11 @@ fn add_shelves(furniture: &mut MeshBuilder) {
     furniture.box_between(Vec3::new(-2.99, 0.0, -0.7), Vec3::new(-2.5, 1.5, 0.9));
 }
 
-/// Half the hall's floor, and its height, metres.
+/// Half extents of the hall's floor, and the hall's height, metres.
 const HALL_HALF_M: Vec2 = Vec2::new(9.0, 6.0);
 const HALL_HEIGHT_M: f32 = 7.0;
 
-/// A hall of one mesh, columns and galleries included, whose box holds the light: no near plane follows from it.
+/// A hall of one mesh, columns and galleries included. Its bounding box contains the light and gives no near plane.
 pub(super) fn hall(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
     let stone = stage.material("hall", palette::STONE * 1.2, 0.85);

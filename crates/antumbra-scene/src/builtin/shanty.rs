@@ -22,7 +22,7 @@ struct Shed {
     roof_rise_m: f32,
 }
 
-/// The meshes that parts go to, by material.
+/// Mesh builders, one per material.
 #[derive(Default)]
 struct Parts {
     planks: MeshBuilder,
@@ -74,7 +74,7 @@ pub(super) fn shanty(arguments: &Arguments) -> Scene {
     stage.add("pipes", pipe, parts.pipes);
     stage.add("barrels", drum, parts.barrels);
     stage.add("washing", linen, parts.cloth);
-    // What is left of the triangles lies about and leans as loose planks.
+    // Loose planks use up the remaining triangles.
     let loose = (TRIANGLES - stage.triangle_count() - parts.planks.triangle_count()) / TRIANGLES_PER_PLANK;
     add_loose_planks(&mut parts.planks, &mut random, loose);
     stage.add("planks", wood, parts.planks);
@@ -146,7 +146,7 @@ fn add_ladder(parts: &mut Parts) {
     }
 }
 
-/// Planks in piles, about, and leaning.
+/// Loose planks: in piles, as litter, and leaning.
 fn add_loose_planks(planks: &mut MeshBuilder, random: &mut Random, count: usize) {
     for i in 0..count {
         planks.tint(shade(random.unit(), 0.4));

@@ -10,7 +10,7 @@ use glam::{Affine3A, Mat3, Vec2, Vec3, Vec4};
 
 use crate::Mesh;
 
-/// A mesh in the making: shapes are appended under a current placement and a current colour.
+/// Mesh builder: shapes are appended with a current placement and a current colour.
 #[derive(Clone, Debug)]
 pub(super) struct MeshBuilder {
     positions: Vec<Vec3>,
@@ -47,7 +47,7 @@ impl MeshBuilder {
         Self::default()
     }
 
-    /// Places the shapes that follow. Must not mirror: that would turn them inside out.
+    /// Sets the placement of the shapes that follow. It must not mirror, because that would turn them inside out.
     pub fn place(&mut self, mesh_from_part: Affine3A) -> &mut Self {
         debug_assert!(mesh_from_part.matrix3.determinant() > 0.0, "a placement must not mirror");
         self.mesh_from_part = mesh_from_part;
@@ -66,7 +66,7 @@ impl MeshBuilder {
         self.indices.len() / 3
     }
 
-    /// The finished mesh.
+    /// Returns the finished mesh.
     pub fn build(self, name: &str, material: usize) -> Mesh {
         Mesh {
             name: name.into(),

@@ -1,4 +1,4 @@
-//! What all built-in scenes share: putting meshes, surfaces, a camera and lights into a [`Scene`], and a palette.
+//! Scene builder of the built-in scenes: adds meshes, materials, a camera and lights to a [`Scene`]. Also a palette.
 
 use antumbra_light::{Light, LightShape};
 use glam::{Affine3A, Mat4, Vec2, Vec3, Vec4};
@@ -31,10 +31,10 @@ pub(super) mod palette {
     pub const MEADOW: Vec3 = Vec3::new(0.27, 0.34, 0.15);
 }
 
-/// Thickness of the slabs that stand for ground, metres.
+/// Thickness of ground slabs, metres.
 const GROUND_THICKNESS_M: f32 = 0.1;
 
-/// A scene in the making.
+/// Scene builder.
 pub(super) struct Stage {
     pub scene: Scene,
 }
@@ -44,7 +44,7 @@ impl Stage {
         Self { scene: Scene { name: name.into(), ..Scene::default() } }
     }
 
-    /// An opaque dielectric; returns its index.
+    /// Adds an opaque dielectric; returns its index.
     pub fn material(&mut self, name: &str, base_color: Vec3, roughness: f32) -> usize {
         self.push_material(Material {
             name: name.into(),
@@ -54,7 +54,7 @@ impl Stage {
         })
     }
 
-    /// An opaque metal; returns its index.
+    /// Adds an opaque metal; returns its index.
     pub fn metal(&mut self, name: &str, base_color: Vec3, roughness: f32) -> usize {
         self.push_material(Material {
             name: name.into(),
@@ -73,7 +73,7 @@ impl Stage {
     /// Adds a mesh without placing it; returns its index.
     pub fn mesh(&mut self, name: &str, material: usize, builder: MeshBuilder) -> usize {
         let mut mesh = builder.build(name, material);
-        // Tints may brighten, but glTF wants vertex colours within [0, 1]: the excess moves to the material.
+        // Tints may brighten, but glTF requires vertex colours within [0, 1]: the excess moves to the material.
         let brightest = mesh.colors.iter().fold(Vec4::ONE, |brightest, color| brightest.max(*color));
         if brightest != Vec4::ONE {
             assert!(self.scene.meshes.iter().all(|other| other.material != material), "`{name}` shares its material");
@@ -117,7 +117,7 @@ impl Stage {
         });
     }
 
-    /// A slightly warm light; the first is the key.
+    /// Adds a slightly warm light; the first one is the key light.
     pub fn light(&mut self, shape: LightShape, center: Vec3, target: Vec3) {
         const WARM_WHITE: Vec3 = Vec3::new(1.0, 0.95, 0.87);
         let mut light = Light::new(shape, center, target);
@@ -135,7 +135,7 @@ impl Stage {
     }
 }
 
-/// A brightness factor that makes parts of one material differ as boards and stones do; `unit` in `[0, 1)`.
+/// Brightness factor that varies parts of one material, as of boards and stones; `unit` is in `[0, 1)`.
 pub(super) fn shade(unit: f32, spread: f32) -> Vec3 {
     Vec3::splat(1.0 + spread * (2.0 * unit - 1.0))
 }

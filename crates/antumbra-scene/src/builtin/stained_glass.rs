@@ -12,7 +12,7 @@ use super::shapes::MeshBuilder;
 use super::stage::{Stage, palette};
 use crate::{Material, Scene};
 
-/// Linear RGB that passes each kind of glass, whose colour is throughout.
+/// Name and transmitted linear RGB of each kind of glass, which is coloured throughout.
 const TINTS: [(&str, Vec3); 5] = [
     ("ruby", Vec3::new(0.814, 0.098, 0.107)),
     ("cobalt", Vec3::new(0.107, 0.191, 0.860)),
@@ -21,13 +21,13 @@ const TINTS: [(&str, Vec3); 5] = [
     ("violet", Vec3::new(0.461, 0.135, 0.674)),
 ];
 
-/// Bottom of the glass, middle of the rose, and radius of the rose, metres; the window's middle plane is z = 0.
+/// Bottom of the glass, centre of the rose, and radius of the rose, metres; the window's middle plane is z = 0.
 const SILL_Y_M: f32 = 0.55;
 const ROSE_CENTER: Vec3 = Vec3::new(0.0, 2.2, 0.0);
 const ROSE_RADIUS_M: f32 = 1.0;
 
 const PETALS: usize = 12;
-/// Width of a lancet, and where it ends under the rose, metres.
+/// Width of a lancet, and its upper end under the rose, metres.
 const LANCET_WIDTH_M: f32 = 0.5 * ROSE_RADIUS_M;
 const LANCET_TOP_Y_M: f32 = ROSE_CENTER.y - ROSE_RADIUS_M - 0.08;
 
@@ -153,7 +153,7 @@ fn add_wall(stage: &mut Stage) {
             if (polygon[1] - polygon[0]).perp_dot(polygon[2] - polygon[0]) < 0.0 {
                 polygon.reverse();
             }
-            // No two wedges share an edge: each has a depth of its own.
+            // Each wedge has a depth of its own, so that no two share an edge.
             let inset = 0.006 + 0.001 * (3 * quadrant + k) as f32;
             let part = glam::Affine3A::from_translation(Vec3::new(0.0, 0.0, -HALF_DEPTH_M + inset));
             wall.prism(part, &polygon, 2.0 * (HALF_DEPTH_M - inset));

@@ -1,4 +1,4 @@
-//! `staircase`: stairs beside the wall that their light is let into, so that wall, rail and treads lie along its horizon.
+//! `staircase`: stairs beside the wall that contains their light, so that wall, rail and treads lie near its horizon.
 
 use antumbra_light::LightShape;
 use glam::{Vec2, Vec3};
@@ -11,9 +11,9 @@ use crate::Scene;
 const STEPS: usize = 13;
 const RISE_M: f32 = 0.18;
 const RUN_M: f32 = 0.27;
-/// Front edge of the lowest step; stairs climb towards −z.
+/// z of the lowest step's front edge, metres; stairs climb towards −z.
 const FOOT_Z_M: f32 = 1.6;
-/// The wall that has the light, and the stairs' open side, metres.
+/// x of the wall with the light and of the stairs' open side, metres.
 const WALL_X_M: f32 = -1.2;
 const OPEN_X_M: f32 = 0.0;
 
@@ -23,7 +23,7 @@ pub(super) fn staircase(arguments: &Arguments) -> Scene {
     add_steps(&mut stage);
     add_rails(&mut stage);
     stage.camera(Vec3::new(1.75, 1.75, 3.9), Vec3::new(-0.35, 1.15, -0.4), 56.0);
-    // Flush with the plaster but for a centimetre, halfway up.
+    // Halfway up, one centimetre in front of the plaster.
     let center = Vec3::new(WALL_X_M + 0.01, 1.95, 0.1);
     stage.light(LightShape::Rectangle { size_m: Vec2::new(0.9, 0.35) }, center, center + Vec3::X);
     stage.scene
@@ -45,7 +45,7 @@ fn add_well(stage: &mut Stage) {
     stage.add("walls", plaster, walls);
 }
 
-/// Treads and risers of their own, let into the wall.
+/// Separate treads and risers, let into the wall.
 fn add_steps(stage: &mut Stage) {
     let oak = stage.material("steps", palette::PALE_WOOD, 0.6);
     let mut steps = MeshBuilder::new();

@@ -1,10 +1,10 @@
 //! `street`: a market street of many layers: tiled roofs, awnings, wires, lanterns, balconies, stalls.
 //!
 //! After the *Streets of Asia* scene of 400 000 triangles of Selgrad, Dachsbacher, Meyer & Stamminger 2014, fig. 16:
-//! "a more game-like scene", whose depth complexity as the light sees it is high.
+//! "a more game-like scene", whose depth complexity seen from the light is high.
 //!
 //! The street runs along z. A place on a row of houses is given by its side (−1 left, +1 right), its z, its height and
-//! how far it stands out from the facades towards the street's middle.
+//! its distance from the facades towards the street's middle.
 
 use std::f32::consts::{PI, TAU};
 
@@ -16,16 +16,16 @@ use super::shapes::MeshBuilder;
 use super::stage::{Stage, palette, shade};
 use crate::Scene;
 
-/// From the street's middle to the facades, metres.
+/// Distance from the street's middle to the facades, metres.
 const HALF_WIDTH_M: f32 = 2.9;
-/// Houses of a row.
+/// Number of houses per row.
 const HOUSES: usize = 5;
 /// Width of a house along the street, metres.
 const HOUSE_M: f32 = 4.2;
-/// Where the rows begin, metres; they run towards −z.
+/// z of the beginning of the rows, metres; they run towards −z.
 const FIRST_Z_M: f32 = 4.4;
 
-/// The meshes that parts go to, by material.
+/// Mesh builders, one per material.
 #[derive(Default)]
 struct Parts {
     walls: MeshBuilder,
@@ -38,7 +38,7 @@ struct Parts {
     paving: MeshBuilder,
 }
 
-/// A place on a row of houses.
+/// World position of a place on a row of houses.
 fn on(side: f32, z: f32, height: f32, out: f32) -> Vec3 {
     Vec3::new(side * (HALF_WIDTH_M - out), height, z)
 }
@@ -80,7 +80,7 @@ pub(super) fn street(arguments: &Arguments) -> Scene {
         let material = stage.material(name, color, roughness);
         stage.add(name, material, builder);
     }
-    // What is left of the triangles lies in the crates.
+    // Fruit in the crates uses up the remaining triangles.
     const SEGMENTS: u32 = 14;
     const RINGS: u32 = 9;
     let triangles_each = (2 * SEGMENTS * (RINGS - 1)) as usize;
@@ -176,7 +176,7 @@ fn add_house(parts: &mut Parts, random: &mut Random, side: f32, house: usize) {
     add_sign(parts, random, side, z1 - insets[1], 3.1);
 }
 
-/// A box along a house's front, by its reach along the street, in height, and out of the wall.
+/// Adds a box at a house's front, given by its extents along the street, in height, and out of the wall.
 fn board(mesh: &mut MeshBuilder, side: f32, z: (f32, f32), y: (f32, f32), out: (f32, f32)) {
     mesh.box_between(on(side, z.0, y.0, out.0), on(side, z.1, y.1, out.1));
 }

@@ -148,7 +148,7 @@ fn the_camera_sees_the_scene() {
     }
 }
 
-/// Scenes that are there for what is not before the light.
+/// Scenes with geometry beside or behind their light.
 const AROUND_THEIR_LIGHT: [&str; 3] = ["lamp-room", "hall", "staircase"];
 
 #[test]

@@ -10,7 +10,7 @@ use super::shapes::MeshBuilder;
 use super::stage::{Stage, palette};
 use crate::Scene;
 
-/// From a street to the next, metres, and rows of houses to either side of the middle.
+/// Distance between streets, metres, and number of rows of houses on either side of the middle.
 const BLOCK_M: f32 = 46.0;
 const ROWS: i32 = 14;
 
@@ -18,7 +18,7 @@ const TREES: u32 = 1100;
 const POLES: i32 = 20;
 const POLE_STEP_M: f32 = 32.0;
 
-/// Half the street that the camera stands in, with its pavements, metres.
+/// Half width of the camera's street with its pavements, metres.
 const STREET_HALF_M: f32 = 7.0;
 
 pub(super) fn town(arguments: &Arguments) -> Scene {
@@ -44,7 +44,7 @@ fn unit(seed: u32) -> f32 {
     unit_f32(hash_u32(seed))
 }
 
-/// One house, as often as there are lots; none is quite like another.
+/// Instances of one house on all lots, each shifted, turned and scaled differently.
 fn add_houses(stage: &mut Stage) {
     let plaster = stage.material("house", palette::PLASTER, 0.9);
     let tiles = stage.material("roof", palette::TERRACOTTA, 0.8);
@@ -134,7 +134,7 @@ fn add_poles(stage: &mut Stage) {
     }
 }
 
-/// A bench, a fence and a few boxes close by: fine things in the first metres.
+/// A bench, a fence and a few boxes: fine detail in the first metres.
 fn add_things(stage: &mut Stage) {
     let wood = stage.material("fence and bench", palette::PALE_WOOD, 0.7);
     let mut things = MeshBuilder::new();

@@ -23,15 +23,15 @@ struct Limb {
     level: usize,
 }
 
-/// How a tree grows. Arrays are indexed by level, 0 is the trunk.
+/// Growth parameters of a tree. Arrays are indexed by level; level 0 is the trunk.
 struct Habit {
-    /// Children of each limb of a level; its length is the number of levels that bear limbs.
+    /// Number of children of each limb, per level; the array's length is the number of levels that bear limbs.
     children: &'static [usize],
     /// Lengths of limbs, metres.
     length_m: &'static [f32],
     /// Angle between a limb and its parent, degrees.
     spread_deg: &'static [f32],
-    /// Where along the trunk the first bough leaves it, as a fraction of its length.
+    /// Position of the first bough along the trunk, as a fraction of the trunk's length.
     bare: f32,
 }
 
@@ -42,7 +42,7 @@ const OLD_TREE: Habit = Habit {
     bare: 0.5,
 };
 
-/// Fewer limbs, higher: for what stands beneath.
+/// A taller tree with fewer limbs, for scenes with objects beneath it.
 const TALL_TREE: Habit = Habit {
     children: &[7, 6, 4, 3],
     length_m: &[3.1, 1.75, 0.9, 0.5, 0.28],
@@ -50,7 +50,7 @@ const TALL_TREE: Habit = Habit {
     bare: 0.72,
 };
 
-/// Few limbs, for a tree that stands there many times.
+/// A tree with few limbs, for many instances.
 const YOUNG_TREE: Habit =
     Habit { children: &[7, 4], length_m: &[2.6, 1.25, 0.7], spread_deg: &[0.0, 52.0, 50.0], bare: 0.42 };
 
@@ -95,7 +95,7 @@ fn grow_limb(
             let parent = (points[k + 1] - points[k]).normalize();
             let azimuth = first_azimuth + GOLDEN_ANGLE_RAD * child as f32;
             let side = Quat::from_axis_angle(parent, azimuth) * parent.any_orthonormal_vector();
-            // The last child goes on where its parent ends.
+            // The last child continues its parent.
             let spread = habit.spread_deg[level + 1] * if child + 1 == children { 0.35 } else { 1.0 };
             let (sin, cos) = (spread + random.around_zero(8.0)).to_radians().sin_cos();
             let radius = (root_radius_m + (tip_radius_m - root_radius_m) * t) * 0.62;
@@ -105,7 +105,7 @@ fn grow_limb(
     limbs.push(Limb { points, root_radius_m, tip_radius_m, level });
 }
 
-/// Limbs as closed tubes, rounder where thicker.
+/// Limbs as closed tubes, with more sides on lower levels.
 fn wood(limbs: &[Limb]) -> MeshBuilder {
     const SIDES: [u32; 5] = [14, 9, 6, 4, 3];
     let mut wood = MeshBuilder::new();
@@ -131,7 +131,7 @@ fn leaf_site(twig: &Limb, t: f32, random: &mut Random) -> (Vec3, Vec3) {
     (twig.points[k].lerp(twig.points[k + 1], fraction), away)
 }
 
-/// A normal for something that lies along `along` and faces the sky as far as it can, with some disorder.
+/// Normal perpendicular to `along` that faces the sky as far as possible, with some disorder.
 fn facing_sky(along: Vec3, random: &mut Random) -> Vec3 {
     let wish = Vec3::Y + random.direction() * 0.7;
     let normal = wish.reject_from_normalized(along);
@@ -149,7 +149,7 @@ fn leaves(limbs: &[Limb], twig_level: usize, leaves_per_twig: usize, length_m: f
             let normal = facing_sky(along, &mut random);
             let length = length_m * random.range(0.7, 1.15);
             let half_width = 0.28 * length;
-            // Right of the midrib with the upper side towards the eye and the tip away from it.
+            // To the right of the midrib, if the upper side faces the eye and the tip points away from it.
             let right = along.cross(normal);
             let fold = normal * (0.35 * half_width);
             let tip = base + along * length - normal * (0.12 * length);
@@ -181,7 +181,7 @@ fn cards(limbs: &[Limb], twig_level: usize, cards_per_twig: usize, size_m: f32, 
             let right = along.cross(normal) * (0.5 * size);
             let up = along * size;
             let uvs = [Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::new(1.0, 0.0), Vec2::ZERO];
-            // No brighter than the image.
+            // Not brighter than the image.
             cards.tint(shade(random.unit(), 0.25) / 1.25);
             cards.card_sheet([base - right, base + right, base + right + up, base - right + up], uvs, normal);
         }
@@ -236,7 +236,7 @@ fn leaf_material(name: &str) -> Material {
     }
 }
 
-/// Cut out by a spray of leaves; its index.
+/// Adds an alpha-tested material with the image of a spray of leaves; returns its index.
 fn push_card_material(stage: &mut Stage) -> usize {
     stage.scene.images.push(spray_image());
     stage.push_material(Material {
@@ -275,9 +275,9 @@ pub(super) fn tree_alpha(arguments: &Arguments) -> Scene {
     stage.scene
 }
 
-/// Trees along the grove's sides: one in each square of a grid, but for a clearing.
+/// Number of trees along the grove's sides: one in each square of a grid, except for a clearing.
 const GROVE_ROWS: i32 = 8;
-/// From tree to tree, metres, and how far they stand from the middles of their squares.
+/// Distance between trees, and their largest offset from the centres of their squares, metres.
 const GROVE_STEP_M: f32 = 3.0;
 const GROVE_DISORDER_M: f32 = 0.8;
 

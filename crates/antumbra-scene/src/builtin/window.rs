@@ -1,7 +1,7 @@
 //! `window`: a room lit through a latticed window.
 //!
 //! After the scene of Marrs, Watson & Healey, *Real-Time Soft Shadowing via Fragment Reprojection*, 2014, fig. 6 top:
-//! 780 triangles, all of them boxes, with regular bars that make the quality of a light's sampling plain.
+//! 780 triangles, all of boxes, with regular bars that reveal the quality of light sampling.
 
 use glam::{Vec2, Vec3};
 
@@ -15,7 +15,7 @@ const OPENING: (Vec2, Vec2) = (Vec2::new(-1.0, 0.85), Vec2::new(1.0, 2.55));
 /// The wall's outer and inner faces, metres along z; the room is at +z.
 const WALL_Z_M: (f32, f32) = (-0.22, 0.0);
 
-/// 65 boxes.
+/// The room, of 65 boxes.
 pub(super) fn window(arguments: &Arguments) -> Scene {
     let mut stage = Stage::new(arguments.scene);
     let boards = stage.material("floor", palette::WOOD * 1.5, 0.6);

@@ -1,4 +1,4 @@
-//! Buffers of a document: vertices, indices and pictures as views and accessors.
+//! Buffers of a document: vertices, indices and images as views and accessors.
 
 use glam::Vec4;
 use serde_json::{Map, Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use super::{gl, object};
 use crate::Mesh;
 
-/// A document in the making.
+/// Builder of a document's binary chunk, buffer views and accessors.
 #[derive(Default)]
 pub(super) struct Writer {
     pub(super) bin: Vec<u8>,
@@ -15,7 +15,7 @@ pub(super) struct Writer {
 }
 
 impl Writer {
-    /// `material` is the index in the file; vertex colours are divided by `color_scale`.
+    /// Writes a mesh. `material` is the index in the file; vertex colours are divided by `color_scale`.
     pub(super) fn mesh(&mut self, mesh: &Mesh, material: usize, color_scale: f32) -> Value {
         let mut attributes = Map::new();
         let bounds = crate::Aabb::of(mesh.positions.iter().copied());
@@ -34,7 +34,7 @@ impl Writer {
             attributes.insert("TEXCOORD_0".into(), uvs.into());
         }
         if !mesh.colors.is_empty() {
-            // Not cast: a Vec4 may be aligned to 16 bytes, which bytemuck need not accept of a list of them.
+            // Copied rather than cast: a Vec4 may be aligned to 16 bytes, and bytemuck may then refuse the cast.
             let scaled = |c: &Vec4| (c.truncate() / color_scale).extend(c.w).clamp(Vec4::ZERO, Vec4::ONE).to_array();
             let colors: Vec<[f32; 4]> = mesh.colors.iter().map(scaled).collect();
             let colors = self.accessor(bytemuck::cast_slice(&colors), "VEC4", colors.len());
@@ -54,7 +54,7 @@ impl Writer {
         }))
     }
 
-    /// Floats for vertices.
+    /// Adds an accessor of float vertex attributes; returns its index.
     fn accessor(&mut self, bytes: &[u8], kind: &str, count: usize) -> usize {
         let view = self.view(bytes, Some(gl::ARRAY_BUFFER));
         self.accessors.push(json!({

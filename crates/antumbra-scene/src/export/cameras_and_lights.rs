@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use super::object;
 use crate::Camera;
 
-/// The rotation of a node that looks along `forward` with its −z.
+/// Rotation of a node whose −z points along `forward`.
 fn looking(forward: Vec3, up: Vec3) -> [f32; 4] {
     let right = forward.cross(up).normalize();
     Quat::from_mat3(&Mat3::from_cols(right, right.cross(forward), -forward)).normalize().to_array()
@@ -67,7 +67,7 @@ pub(super) fn light(light: &Light) -> Value {
             ("point", "points")
         }
     };
-    // A cone is a spot's alone, whatever the shape.
+    // glTF allows a cone for spots only, so the type is spot whatever the shape.
     let kind = if light.cone.is_some() { "spot" } else { kind };
     extra("shape", shape.into());
     if let Some(fov_rad) = light.fov_rad {
@@ -88,7 +88,7 @@ pub(super) fn light(light: &Light) -> Value {
         "name": light.name,
         "type": kind,
         "color": light.color.to_array(),
-        // What other programs read.
+        // For other programs: this crate's loader reads `extras`.
         "intensity": light.candela_or_lux.unwrap_or(1.0) * light.intensity,
         "spot": spot,
         "extras": extras,

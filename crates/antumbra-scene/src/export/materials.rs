@@ -1,4 +1,4 @@
-//! Materials, with their pictures and samplers.
+//! Materials, with their images and samplers.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -9,11 +9,11 @@ use serde_json::{Map, Value, json};
 use super::{gl, object};
 use crate::{AlphaMode, Image, Material, Scene, Volume, Wrap};
 
-/// The materials to write, and for each mesh which of them it has and by what its vertex colours are divided.
+/// Materials to write, and for each mesh its material index and the divisor of its vertex colours.
 ///
-/// glTF wants colours and factors in [0, 1]. Where vertex colours exceed 1 their largest goes into a material of its
-/// own, whose factor has room for it. It counts the thickness of a volume in the mesh's space, where it may differ from mesh
-/// to mesh: the scale of a mesh's first instance says how.
+/// glTF requires colours and factors in [0, 1]. If vertex colours exceed 1, the mesh gets a material of its own whose
+/// factor is multiplied by their maximum. glTF measures the thickness of a volume in mesh space, so a material with a
+/// volume is copied for each scale; a mesh's first instance determines its scale.
 pub(super) fn surfaces(scene: &Scene) -> (Vec<Material>, Vec<(usize, f32)>) {
     let mut surfaces = scene.materials.clone();
     let mut scaled: HashMap<(usize, u32, u32), usize> = HashMap::new();
@@ -75,7 +75,7 @@ pub(super) fn material(material: &Material) -> Value {
         "metallicFactor": material.metallic,
         "roughnessFactor": material.roughness,
     });
-    // One texture was written for each picture, in order.
+    // One texture was written for each image, in the same order.
     let texture = |image: Option<usize>| image.map_or(Value::Null, |image| json!({ "index": image }));
     pbr["baseColorTexture"] = texture(material.base_color_image);
     pbr["metallicRoughnessTexture"] = texture(material.metallic_roughness_image);
@@ -96,7 +96,7 @@ pub(super) fn material(material: &Material) -> Value {
         });
         extensions.insert("KHR_materials_volume".into(), object(volume));
     }
-    // The factor may not exceed 1; a strength carries the rest.
+    // The factor may not exceed 1; the strength takes the excess.
     let strength = material.emissive.max_element().max(1.0);
     if strength > 1.0 {
         extensions.insert("KHR_materials_emissive_strength".into(), json!({ "emissiveStrength": strength }));

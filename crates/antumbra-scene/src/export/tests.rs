@@ -47,12 +47,12 @@ fn built_ins_survive_the_round_trip() {
         for (a, b) in scene.instances.iter().zip(&back.instances) {
             let (a, b) = (&scene.meshes[a.mesh], &back.meshes[b.mesh]);
             assert_eq!(a.closed, b.closed, "{}: {}", info.name, a.name);
-            // By corner: vertices that no triangle uses are not loaded.
+            // Compared per triangle corner: vertices that no triangle uses are not loaded.
             let corners = a.indices.iter().map(|i| *i as usize).zip(b.indices.iter().map(|i| *i as usize));
             let (m, n) = (&scene.materials[a.material], &back.materials[b.material]);
             assert_eq!((&m.name, m.alpha, m.occluder()), (&n.name, n.alpha, n.occluder()));
             assert_eq!(m.roughness, n.roughness);
-            // What exceeds 1 as a product cannot be said in glTF.
+            // glTF cannot represent products above 1.
             let product = |m: &Material, c: &Vec4| (m.base_color * *c).min(Vec4::ONE);
             assert_eq!(a.colors.is_empty(), b.colors.is_empty());
             for (i, k) in corners {
@@ -161,7 +161,7 @@ fn every_light_shape_and_material_survives() {
 fn the_export_is_valid_for_another_reader() {
     let scene = builtin::build("window").unwrap();
     let bytes = export_glb(&scene).unwrap();
-    // The crate's own reader validates the whole document, which this crate's loader does not ask it to.
+    // The reader of the `gltf` crate validates the whole document; this crate's loader skips that validation.
     let parsed = gltf::Gltf::from_slice(&bytes).unwrap();
     assert_eq!(parsed.meshes().len(), scene.meshes.len());
     assert_eq!(load_bytes(&bytes, "w", &LoadOptions::default()).unwrap().triangle_count(), scene.triangle_count());

@@ -1,4 +1,4 @@
-//! Typed arrays out of buffer views: strides, integers as fractions, sparse replacements, all checked.
+//! Typed arrays read from buffer views, all checked: strides, normalized integers, sparse replacements.
 //!
 //! Source: glTF 2.0, section 3.6.2, and KHR_mesh_quantization.
 
@@ -8,7 +8,7 @@ use gltf::json::validation::Checked;
 use super::fault::{Fault, Result};
 use super::source::Source;
 
-/// Which component types an attribute may have.
+/// Component types that an attribute may have.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Allowed {
     /// 32-bit floats; with KHR_mesh_quantization any 8- or 16-bit integer too.
@@ -20,7 +20,7 @@ pub(super) enum Allowed {
     SignedFractions,
     /// 8- or 16-bit unsigned whole numbers: joints.
     Joints,
-    /// 32-bit floats alone: times, matrices.
+    /// Only 32-bit floats: times, matrices.
     Floats,
 }
 
@@ -50,9 +50,9 @@ impl Allowed {
     }
 }
 
-/// The elements of an accessor as raw bytes, sparse replacements not yet applied.
+/// Elements of an accessor as raw bytes, before sparse replacements.
 struct Layout<'s> {
-    /// `None` where all is zero.
+    /// `None` if all elements are zero.
     bytes: Option<&'s [u8]>,
     stride: usize,
     count: usize,
@@ -62,12 +62,12 @@ struct Layout<'s> {
 }
 
 impl Source<'_> {
-    /// How many elements an accessor has.
+    /// Number of elements of an accessor.
     pub(super) fn accessor_count(&self, index: usize, place: &str) -> Result<usize> {
         self.accessor(index, place).map(|a| a.count.0 as usize)
     }
 
-    /// How many components an element has.
+    /// Number of components of an element.
     pub(super) fn accessor_components(&self, index: usize, place: &str) -> Result<usize> {
         match self.accessor(index, place)?.type_ {
             Checked::Valid(kind) => Ok(kind.multiplicity()),
@@ -86,9 +86,9 @@ impl Source<'_> {
             .ok_or_else(|| Fault::unresolved(place, "accessors", index, self.root.accessors.len()))
     }
 
-    /// Elements of `N` components as floats; normalized integers become fractions (section 3.6.2.2).
+    /// Reads elements of `N` components as floats; normalized integers become fractions (section 3.6.2.2).
     ///
-    /// `place` says who asks, for messages. Values may be NaN or infinite.
+    /// `place` names the reader in messages. Values may be NaN or infinite.
     pub(super) fn read_floats<const N: usize>(
         &self,
         index: usize,
@@ -125,7 +125,7 @@ impl Source<'_> {
         Ok(out)
     }
 
-    /// Unsigned whole numbers: indices of vertices.
+    /// Reads unsigned whole numbers: vertex indices.
     pub(super) fn read_indices(&self, index: usize, place: &str) -> Result<Vec<u32>> {
         let layout = self.layout(index, Type::Scalar, place)?;
         let component = layout.component;
@@ -145,7 +145,7 @@ impl Source<'_> {
         Ok(out)
     }
 
-    /// Checks type and extent; after it every element may be read without a further check.
+    /// Checks type and extent, so that every element of the result can be read without further checks.
     fn layout(&self, index: usize, kind: Type, place: &str) -> Result<Layout<'_>> {
         let accessor = self.accessor(index, place)?;
         let own = format!("accessors[{index}]");
@@ -192,7 +192,7 @@ impl Source<'_> {
                         "the stride must hold an element",
                     ));
                 }
-                // The last element needs its own bytes alone, not a whole stride (section 3.6.2.4).
+                // The last element needs only its own bytes, not a whole stride (section 3.6.2.4).
                 let end = accessor
                     .count
                     .0
@@ -267,9 +267,9 @@ impl Source<'_> {
     }
 }
 
-/// `bytes` has the component's size.
+/// Decodes one component; `bytes` has its size.
 fn float_from(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
-    /// A signed normalized integer's most negative value means −1, as its opposite means 1.
+    /// Divides by `max` if `normalized`, clamped because the two most negative integers both mean −1.
     fn signed(v: f32, max: f32, normalized: bool) -> f32 {
         if normalized { (v / max).max(-1.0) } else { v }
     }
@@ -283,7 +283,7 @@ fn float_from(bytes: &[u8], component: ComponentType, normalized: bool) -> f32 {
     }
 }
 
-/// `bytes` has at least the component's size.
+/// Decodes one unsigned component; `bytes` has at least its size.
 fn unsigned_from(bytes: &[u8], component: ComponentType) -> u32 {
     match component.size() {
         1 => u32::from(bytes[0]),

@@ -11,7 +11,7 @@ use super::fault::{Fault, Result};
 use super::numbers::unit_quaternion;
 use super::source::Source;
 
-/// What animations give a node in place of its resting values.
+/// Animated values of a node, which replace its resting values.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Driven {
     pub translation: Option<Vec3>,
@@ -27,19 +27,19 @@ impl Driven {
     }
 }
 
-/// What animations come to at one time.
+/// Animations sampled at one time.
 pub(super) struct Sampled {
-    /// The values of all animated nodes.
+    /// Animated values of all nodes, by node index.
     pub driven: Vec<Driven>,
-    /// The first and the last time of what drives anything, seconds; `None` where nothing is animated.
+    /// First and last time of all channels in use, seconds; `None` if nothing is animated.
     pub ends_s: Option<[f32; 2]>,
 }
 
-/// The values of all animated nodes at `time_s`.
+/// Samples the animations of all nodes at `time_s`.
 ///
-/// A file with several clips gives no order of play: the first clip plays, and of later ones whatever drives a
-/// property that no earlier clip drives. That plays files with one clip per object whole, and of a character's walk,
-/// run and jump the first.
+/// A file with several clips gives no order of play. The first clip plays, and later ones drive the properties that no
+/// earlier clip drives. Files with one clip per object thus play whole; of a character's walk, run and jump, the first
+/// plays.
 pub(super) fn sample(source: &Source, time_s: f32) -> Result<Sampled> {
     let mut driven = vec![Driven::default(); source.root.nodes.len()];
     let mut ends: Option<[f32; 2]> = None;
@@ -54,7 +54,7 @@ pub(super) fn sample(source: &Source, time_s: f32) -> Result<Sampled> {
                 let list = "samplers";
                 return Err(Fault::unresolved(place, list, channel.sampler.value(), animation.samplers.len()));
             };
-            // Nodes and samplers that do not exist make the file wrong; values that cannot be read cost the channel.
+            // Nodes and samplers that do not exist make the file invalid; unreadable values only cost the channel.
             if let Err(fault) = drive(source, slot, channel, sampler, time_s, &mut ends, &place) {
                 source.warn(fault.as_warning("the channel is left out"));
             }
@@ -66,7 +66,7 @@ pub(super) fn sample(source: &Source, time_s: f32) -> Result<Sampled> {
     Ok(Sampled { driven, ends_s: ends })
 }
 
-/// What is shown in place of a time that the clips do not have; `None` where they have it, or where it is the default's.
+/// Message about a time outside the clips; `None` for a time inside, or for the default time.
 fn beyond(time_s: f32, ends: Option<[f32; 2]>) -> Option<String> {
     let taken = |why: String| Some(format!("--time {time_s}: {why}"));
     match ends {
@@ -80,7 +80,7 @@ fn beyond(time_s: f32, ends: Option<[f32; 2]>) -> Option<String> {
     }
 }
 
-/// `ends` is the first and the last time of what drives anything.
+/// Samples one channel into `slot` unless an earlier clip drives the property. `ends` is extended by the channel's first and last time.
 fn drive(
     source: &Source,
     slot: &mut Driven,
@@ -132,7 +132,7 @@ fn drive(
     Ok(())
 }
 
-/// A time between two keys.
+/// Time between two keys of a sampler.
 struct Moment {
     key_count: usize,
     before: usize,
@@ -141,13 +141,13 @@ struct Moment {
     t: f32,
     /// Seconds from `before` to `after`.
     span_s: f32,
-    /// The first key's time and the last one's, seconds.
+    /// Times of the first and last key, seconds.
     ends_s: [f32; 2],
     interpolation: Interpolation,
 }
 
 impl Moment {
-    /// `None`, with a warning, where the times cannot be used.
+    /// Finds the keys around a time; `None`, with a warning, if the sampler's times are unusable.
     fn find(source: &Source, sampler: &Sampler, time_s: f32, place: &str) -> Result<Option<Self>> {
         let times: Vec<f32> =
             source.read_floats::<1>(sampler.input.value(), Allowed::Floats, place)?.into_iter().map(|[t]| t).collect();
@@ -170,12 +170,12 @@ impl Moment {
         Ok(Some(Self { key_count: times.len(), before, after, t, span_s, ends_s, interpolation }))
     }
 
-    /// A cubic key holds an in-tangent, a value and an out-tangent.
+    /// Number of elements per key: a cubic key holds an in-tangent, a value and an out-tangent.
     fn elements_per_key(&self) -> usize {
         if self.interpolation == Interpolation::CubicSpline { 3 } else { 1 }
     }
 
-    /// The `width` elements of the value.
+    /// Interpolated value, of `width` elements.
     fn value<const N: usize>(&self, keys: &[[f32; N]], width: usize, place: &str) -> Result<Vec<[f32; N]>> {
         if keys.len() != self.key_count * self.elements_per_key() * width {
             return Err(Fault::new(
@@ -206,7 +206,7 @@ impl Moment {
             .collect())
     }
 
-    /// Rotations turn at a constant rate along the shorter arc (appendix C.3); `None` where one has no direction.
+    /// Interpolated rotation, at a constant rate along the shorter arc (appendix C.3); `None` if a key has no direction.
     fn rotation(&self, keys: &[[f32; 4]], place: &str) -> Result<Option<Quat>> {
         let mixed = self.value(keys, 1, place)?;
         if self.interpolation != Interpolation::Linear {

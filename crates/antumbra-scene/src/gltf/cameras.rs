@@ -1,7 +1,7 @@
 //! Cameras of the asset.
 //!
-//! Source: glTF 2.0, section 3.10. A camera looks down its node's −z with +y up. Orthographic ones are left out: the
-//! laboratory's cameras are pinholes.
+//! Source: glTF 2.0, section 3.10. A camera looks down its node's −z with +y up. Orthographic ones are left out, because
+//! the laboratory has only pinhole cameras.
 
 use glam::{Mat4, Vec3};
 
@@ -11,10 +11,10 @@ use super::materials::floats;
 use super::source::Source;
 use crate::Camera;
 
-/// The far plane where the file says infinity, metres; as a setup file's default.
+/// Far plane if the file gives an infinite one, metres: the default of setup files.
 const FAR_M: f32 = 200.0;
 
-/// A camera at a node; `None`, with a warning, where there is no pinhole camera to be had.
+/// Reads the camera of a node; `None`, with a warning, if it gives no pinhole camera.
 pub(super) fn read(source: &Source, index: usize, world_from_node: Mat4) -> Result<Option<Camera>> {
     let cameras = &source.root.cameras;
     let Some(json) = cameras.get(index) else {
@@ -27,7 +27,7 @@ pub(super) fn read(source: &Source, index: usize, world_from_node: Mat4) -> Resu
     };
     let eye = world_from_node.w_axis.truncate();
     let forward = -world_from_node.z_axis.truncate().normalize_or_zero();
-    // Exported cameras say how far away their target is; for others it is one metre.
+    // Exported cameras give the distance of their target; others get one metre.
     let distance_m = floats(extras::of(&json.extras).get("target_distance")).map_or(1.0, |[d]| d);
     let near_m = perspective.znear;
     let camera = Camera {

@@ -4,11 +4,11 @@
 
 use super::fault::{Fault, Result};
 
-/// The two parts of a glTF file.
+/// Parts of a glTF file.
 #[derive(Debug)]
 pub(super) struct Container<'a> {
     pub json: &'a [u8],
-    /// The binary chunk, where the file is a container and has one.
+    /// Binary chunk; `None` if the file is plain JSON or has none.
     pub bin: Option<&'a [u8]>,
 }
 
@@ -22,7 +22,7 @@ const CONVERT: &str = "give a .glb or .gltf file of version 2.0; convert .obj, .
     File > Export > glTF 2.0";
 const UTF8_BYTE_ORDER_MARK: &[u8] = &[0xEF, 0xBB, 0xBF];
 
-/// Splits a file by its first bytes, whatever its name says.
+/// Splits a file. Its first bytes determine the format, not its name.
 pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>> {
     if bytes.starts_with(MAGIC) {
         return split_binary(bytes);
@@ -82,7 +82,7 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
     if kind != CHUNK_JSON {
         return Err(Fault::new("byte 16", "the first chunk is not JSON", "the first chunk must have type `JSON`"));
     }
-    // Chunks after the second, and unknown ones, are to be ignored (section 4.4.1); what is known must be in place.
+    // Chunks after the second, and unknown ones, are ignored (section 4.4.1); known ones must be in place.
     let mut bin = None;
     let mut at = HEADER_BYTES + CHUNK_HEADER_BYTES + json.len();
     let mut second = true;

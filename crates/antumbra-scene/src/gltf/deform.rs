@@ -1,4 +1,4 @@
-//! Morph targets and skins, applied on the CPU once: a scene is a moment.
+//! Morph targets and skins, applied once on the CPU for the scene's time.
 //!
 //! Source: glTF 2.0, sections 3.7.2.2 (morph targets) and 3.7.3 (skins).
 
@@ -10,7 +10,7 @@ use super::geometry::{Geometry, cofactor};
 use super::nodes::Graph;
 use super::source::Source;
 
-/// Displaces by the weighted sum of the targets. Missing weights are 0, surplus ones are ignored.
+/// Displaces the vertices by the weighted sum of the targets. Missing weights are 0, surplus ones are ignored.
 pub(super) fn morph(geometry: &mut Geometry, weights: &[f32]) {
     for (target, &weight) in geometry.targets.iter().zip(weights) {
         if weight == 0.0 || !weight.is_finite() {
@@ -21,7 +21,7 @@ pub(super) fn morph(geometry: &mut Geometry, weights: &[f32]) {
     }
 }
 
-/// A skeleton at one moment: `world_from_bind` of each joint.
+/// Skeleton at one time: `world_from_bind` of each joint.
 pub(super) struct Skeleton {
     joints: Vec<Mat4>,
 }
@@ -71,7 +71,7 @@ impl Skeleton {
             let mut total = 0.0;
             for set in &geometry.influences {
                 for (joint, weight) in set.joints[v].into_iter().zip(set.weights[v]) {
-                    // Weights should add up to 1 and joints exist; what does not is left out and the rest rescaled.
+                    // Weights should sum to 1 and joints exist. Invalid influences are left out and the others rescaled.
                     if weight.is_finite() && weight > 0.0 {
                         match self.joints.get(joint as usize) {
                             Some(world_from_bind) => {
@@ -86,7 +86,7 @@ impl Skeleton {
             let world_from_bind = if total > 0.0 {
                 sum * (1.0 / total)
             } else {
-                // A vertex that no joint holds follows the first joint that it names, or the skeleton's first.
+                // A vertex without influences follows the first joint that it names, or the skeleton's first.
                 let named = geometry.influences.first().and_then(|set| self.joints.get(set.joints[v][0] as usize));
                 named.or(self.joints.first()).copied().unwrap_or(Mat4::IDENTITY)
             };
@@ -100,14 +100,14 @@ impl Skeleton {
         if stray > 0 {
             source.warn(format!("{place}: {stray} weights belong to joints that do not exist; they are left out"));
         }
-        // A skeleton that mirrors turns the winding over as a whole.
+        // A skeleton that mirrors reverses the winding of the whole mesh.
         if 2 * mirrored > geometry.positions.len() {
             geometry.flip();
         }
     }
 }
 
-/// The morph weights that hold for a node: animated, the node's own, the mesh's (section 3.7.4).
+/// Morph weights of a node, by precedence: animated, the node's own, the mesh's (section 3.7.4).
 pub(super) fn morph_weights<'w>(
     driven: Option<&'w [f32]>,
     node: Option<&'w [f32]>,

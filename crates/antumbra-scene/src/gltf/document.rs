@@ -1,14 +1,14 @@
-//! From JSON to the typed document of the `gltf` crate, and the checks that concern the document as a whole.
+//! Parsing of JSON into the typed document of the `gltf` crate, and checks of the document as a whole.
 //!
-//! The crate's own validation is not used: it refuses files that the extensions read here allow, and stops at the
-//! first doubt where a repair would do. Every index and range is checked where it is used instead.
+//! The crate's own validation is not used: it refuses files that the extensions read here allow, and refuses where a
+//! repair would do. Every index and range is checked where it is used instead.
 
 use gltf::json::Root;
 use serde_json::Value;
 
 use super::fault::{Fault, Result, quoted};
 
-/// Extensions whose meaning this loader honours.
+/// Extensions that this loader implements.
 const HONOURED: &[&str] = &[
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -24,8 +24,7 @@ const HONOURED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// Extensions that change neither geometry nor what casts a shadow, and may be ignored even where a file requires
-/// them.
+/// Extensions that change neither geometry nor shadows, and may be ignored even if a file requires them.
 const HARMLESS: &[&str] = &[
     "EXT_lights_ies",
     "KHR_materials_anisotropy",
@@ -41,7 +40,7 @@ const HARMLESS: &[&str] = &[
     "KHR_xmp_json_ld",
 ];
 
-/// Parses and checks version and required extensions.
+/// Parses a document; checks version and required extensions.
 pub(super) fn parse(json: &[u8]) -> Result<Root> {
     let text = std::str::from_utf8(json).map_err(|e| {
         Fault::new(format!("JSON byte {}", e.valid_up_to()), "is not UTF-8", "the document must be UTF-8 text")
@@ -71,7 +70,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root> {
     Ok(root)
 }
 
-/// What is said of animations of other things than nodes, which [`retry_leniently`] leaves out.
+/// Warning about animations of other things than nodes, which [`retry_leniently`] leaves out.
 pub(super) fn unread_animations(root: &Root) -> Option<String> {
     let name = "KHR_animation_pointer";
     let is_used = root.extensions_used.iter().any(|used| used == name);
@@ -80,7 +79,7 @@ pub(super) fn unread_animations(root: &Root) -> Option<String> {
 
 /// Refuses documents nested so deeply that reading them could exhaust the stack.
 fn check_depth(text: &str) -> Result<()> {
-    /// As serde_json's own limit, which does not hold for data that it skips.
+    /// Largest depth, as serde_json's own limit, which does not apply to data that it skips.
     const DEEPEST: usize = 128;
     let (mut depth, mut in_string, mut escaped) = (0usize, false, false);
     for byte in text.bytes() {
@@ -100,8 +99,8 @@ fn check_depth(text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Reads what the specification allows and the typed document refuses: whole numbers written as `1.0` (JSON does not
-/// tell them apart), scenes without `nodes`, animation channels whose target is not a node.
+/// Reads what the specification allows but the typed document refuses: whole numbers written as `1.0` (equal in JSON),
+/// scenes without `nodes`, animation channels whose target is not a node.
 fn retry_leniently(text: &str) -> Option<Root> {
     let mut value: Value = serde_json::from_str(text).ok()?;
     make_whole(&mut value);
@@ -115,9 +114,9 @@ fn retry_leniently(text: &str) -> Option<Root> {
     serde_json::from_value(value).ok()
 }
 
-/// Recursion is bounded by [`check_depth`].
+/// Turns whole floats into integers. [`check_depth`] bounds the recursion.
 fn make_whole(value: &mut Value) {
-    /// Whole numbers up to here are exact in an f64.
+    /// Largest number up to which all whole numbers are exact in an f64.
     const EXACT: f64 = 9_007_199_254_740_992.0;
     match value {
         Value::Array(items) => items.iter_mut().for_each(make_whole),
@@ -136,8 +135,7 @@ fn check_version(root: &Root) -> Result<()> {
         let (major, minor) = text.split_once('.')?;
         Some((major.parse::<u32>().ok()?, minor.parse::<u32>().ok()?))
     };
-    // Later 2.x are readable as 2.0 but for what they add (section 3.2), and what they add is unknown here: they are
-    // read as far as that goes.
+    // Later versions 2.x can be read as 2.0, without their additions (section 3.2).
     let version = parse(&root.asset.version);
     let least = root.asset.min_version.as_deref().map_or(Some((2, 0)), parse);
     let ok = matches!((version, least), (Some(version @ (2, _)), Some(least @ (2, _))) if least <= version);

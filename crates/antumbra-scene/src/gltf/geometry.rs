@@ -1,26 +1,26 @@
-//! Triangles on their way from a primitive to a mesh: parallel lists of vertex attributes, kept parallel.
+//! Triangles between primitive and mesh: parallel lists of vertex attributes.
 
 use glam::{DVec3, Mat3, Mat4, Vec2, Vec3, Vec4};
 
 use super::numbers::LARGEST_COORDINATE_M;
 
-/// A vertex's place in a skeleton: joint numbers and weights, as many as the file has sets of four.
+/// One set of skinning attributes, of several that a file may have.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Influences {
-    /// For each vertex `sets · 4` joint numbers.
+    /// Four joint indices per vertex.
     pub joints: Vec<[f32; 4]>,
-    /// For each of them its weight.
+    /// Four weights per vertex.
     pub weights: Vec<[f32; 4]>,
 }
 
-/// Displacements of a morph target; empty where it displaces nothing.
+/// Displacements of a morph target; empty lists displace nothing.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MorphTarget {
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
 }
 
-/// Indexed triangles with every attribute that loading needs. Lists are empty or as long as `positions`.
+/// Indexed triangles with all attributes that loading needs. Lists are empty or as long as `positions`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Geometry {
     pub positions: Vec<Vec3>,
@@ -29,12 +29,12 @@ pub(super) struct Geometry {
     pub colors: Vec<Vec4>,
     pub influences: Vec<Influences>,
     pub targets: Vec<MorphTarget>,
-    /// Three a triangle, each below `positions.len()`.
+    /// Vertex indices, three per triangle, each below `positions.len()`.
     pub indices: Vec<u32>,
 }
 
 impl Geometry {
-    /// Makes every list again from the vertices `from`, in that order.
+    /// Rebuilds every list from the vertices `from`, in that order.
     fn gather(&mut self, from: &[u32]) {
         fn picked<T: Copy>(list: &mut Vec<T>, from: &[u32]) {
             if !list.is_empty() {
@@ -62,8 +62,8 @@ impl Geometry {
         self.indices = (0..from.len() as u32).collect();
     }
 
-    /// Forgets vertices that no triangle uses: files share one vertex list among many primitives, and bounds are
-    /// taken over all vertices.
+    /// Removes vertices that no triangle uses, because files share one vertex list among many primitives and bounds are
+    /// computed from all vertices.
     pub(super) fn compact(&mut self) {
         const UNUSED: u32 = u32::MAX;
         let mut new_of_old = vec![UNUSED; self.positions.len()];
@@ -81,11 +81,11 @@ impl Geometry {
             }
         }
         self.indices.iter_mut().for_each(|i| *i = new_of_old[*i as usize]);
-        // An attribute list that ends up empty would read as absent; there is then no triangle either.
+        // An attribute list that becomes empty would count as absent, but then there is no triangle either.
         self.gather(&from);
     }
 
-    /// Drops triangles with a corner that is not finite or too far out; returns how many.
+    /// Drops triangles with a vertex that is not finite or too far away; returns their number.
     pub(super) fn drop_unbounded(&mut self) -> usize {
         // NaN fails the comparison.
         let sound: Vec<bool> =
@@ -101,7 +101,7 @@ impl Geometry {
         (before - self.indices.len()) / 3
     }
 
-    /// Turns every triangle over.
+    /// Reverses the winding of every triangle.
     pub(super) fn flip(&mut self) {
         self.indices.chunks_exact_mut(3).for_each(|t| t.swap(1, 2));
     }
@@ -113,8 +113,8 @@ impl Geometry {
         self.normals.iter_mut().for_each(|n| *n = cofactor * *n);
     }
 
-    /// Makes every normal unit. Where one has no direction it is made from the triangles around its vertex, weighted
-    /// by area; where those have none either, it is up.
+    /// Normalizes every normal. A normal without direction is recomputed from the triangles around its vertex, weighted by
+    /// area; if those have no area either, it is up.
     pub(super) fn repair_normals(&mut self) {
         self.normals.resize(self.positions.len(), Vec3::ZERO);
         let mut lost = false;
@@ -138,7 +138,7 @@ impl Geometry {
         }
     }
 
-    /// Whether any triangle has an area that can be told from none.
+    /// Whether any triangle has an area other than zero.
     pub(super) fn has_area(&self) -> bool {
         self.indices.chunks_exact(3).any(|t| {
             let [a, b, c] = [0, 1, 2].map(|k| self.positions[t[k] as usize].as_dvec3());
@@ -147,14 +147,14 @@ impl Geometry {
     }
 }
 
-/// Unit, in double precision so that lengths such as 1e20 neither overflow nor vanish.
+/// Normalizes in double precision, so that lengths such as 1e20 neither overflow nor vanish.
 fn unit(v: DVec3) -> Option<Vec3> {
     let length = v.length();
     (length.is_finite() && length > 0.0).then(|| (v / length).as_vec3())
 }
 
-/// The matrix that takes normals along with a linear map: the inverse transpose times |det|, defined for singular
-/// maps too. Normals keep their side under a mirror; the winding does not, see [`Geometry::flip`].
+/// Matrix that transforms normals with a linear map: the inverse transpose times |det|, also defined for singular maps.
+/// A mirror keeps the side of normals but reverses the winding; see [`Geometry::flip`].
 pub(super) fn cofactor(m: Mat3) -> Mat3 {
     let c = Mat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
     if m.determinant() < 0.0 { -1.0 * c } else { c }

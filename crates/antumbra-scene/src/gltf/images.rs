@@ -1,10 +1,10 @@
-//! Pictures: fetched, recognised by their first bytes, decoded within limits.
+//! Images: fetched, recognised by their first bytes, decoded within limits.
 //!
-//! Source: glTF 2.0, section 3.8; EXT_texture_webp, whose picture comes before the texture's own one, which is for
-//! readers without it.
+//! Source: glTF 2.0, section 3.8; EXT_texture_webp, whose image is preferred to the texture's own, a fallback for readers
+//! without the extension.
 //!
-//! A picture that cannot be had is left out with a warning, so that a scene with one broken texture still shows; a
-//! reference to a picture that the document does not have is an error.
+//! An unreadable image is left out with a warning, so that a scene with one broken texture still loads. A reference to an
+//! image that the document does not have is an error.
 
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -18,16 +18,16 @@ use super::fault::{Fault, Result, quoted};
 use super::source::Source;
 use crate::{Image, Wrap, linear_from_srgb};
 
-/// The pictures of a scene so far. A picture that is used with two ways of wrapping is there twice.
+/// Images of a scene so far. An image that is used with two address modes is there twice.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Images {
-    /// Those that were decoded; what is known of a picture before counts on.
+    /// Decoded images, except those that [`Self::take_loaded`] removed.
     pub loaded: Vec<Image>,
     by_use: HashMap<(usize, [Wrap; 2]), Option<usize>>,
     means: HashMap<usize, Option<Means>>,
 }
 
-/// What a picture amounts to on average.
+/// Mean of an image.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Means {
     /// Mean of the stored fractions.
@@ -37,12 +37,12 @@ pub(super) struct Means {
 }
 
 impl Images {
-    /// Takes the pictures out; where each of them stands in the scene remains known, so that none is decoded again.
+    /// Moves the decoded images out. Their indices in the scene stay known, so that none is decoded again.
     pub(super) fn take_loaded(&mut self) -> Vec<Image> {
         std::mem::take(&mut self.loaded)
     }
 
-    /// The scene's index of a texture's picture; `None` where there is none to be had.
+    /// Index in the scene of a texture's image; `None` if no image is readable.
     pub(super) fn of_texture(&mut self, source: &Source, texture: usize, place: &str) -> Result<Option<usize>> {
         let wrap = wrap_of_texture(source, texture, place)?;
         for Candidate { image, otherwise } in images_of(source, texture, place)? {
@@ -53,7 +53,7 @@ impl Images {
         Ok(None)
     }
 
-    /// `otherwise` says what is done where the picture cannot be had.
+    /// Index in the scene of one image; `otherwise` tells, in a warning, what replaces an unreadable one.
     fn of_image(&mut self, source: &Source, image: usize, wrap: [Wrap; 2], otherwise: &str) -> Option<usize> {
         if let Some(known) = self.by_use.get(&(image, wrap)) {
             return *known;
@@ -69,7 +69,7 @@ impl Images {
         index
     }
 
-    /// The mean of a texture, for surfaces that keep one value where the file has a picture.
+    /// Mean of a texture, for materials that keep one value instead of an image.
     pub(super) fn mean_of_texture(&mut self, source: &Source, texture: usize, place: &str) -> Result<Option<Means>> {
         for Candidate { image, otherwise } in images_of(source, texture, place)? {
             let mean = self.means.entry(image).or_insert_with(|| Some(Means::of(&decode(source, image, otherwise)?)));
@@ -101,16 +101,16 @@ impl Means {
     }
 }
 
-/// An image of a texture, and what is done where it cannot be had.
+/// Image of a texture, and the words of a warning for what replaces an unreadable one.
 struct Candidate {
     image: usize,
     otherwise: &'static str,
 }
 
-/// What is done without a picture.
+/// Words of a warning for a missing image.
 const WHITE: &str = "it is taken as white";
 
-/// The images of a texture, the best first; none where the texture has none that can be read.
+/// Images of a texture, the preferred one first; empty if the texture has no readable one.
 fn images_of(source: &Source, texture: usize, place: &str) -> Result<Vec<Candidate>> {
     let found = texture_of(source, texture, place)?;
     let checked = |image: usize, key: &str| {
@@ -140,7 +140,7 @@ fn texture_of<'s>(source: &'s Source, texture: usize, place: &str) -> Result<&'s
     textures.get(texture).ok_or_else(|| Fault::unresolved(place, "textures", texture, textures.len()))
 }
 
-/// How a texture's sampler continues its picture.
+/// Address modes of a texture's sampler.
 pub(super) fn wrap_of_texture(source: &Source, texture: usize, place: &str) -> Result<[Wrap; 2]> {
     let Some(index) = texture_of(source, texture, place)?.sampler else { return Ok([Wrap::Repeat; 2]) };
     let samplers = &source.root.samplers;
@@ -154,7 +154,7 @@ pub(super) fn wrap_of_texture(source: &Source, texture: usize, place: &str) -> R
     }))
 }
 
-/// Decodes an image of the document; a failure becomes a warning, with what is done `otherwise`.
+/// Decodes an image of the document; a failure becomes a warning that ends with `otherwise`.
 fn decode(source: &Source, index: usize, otherwise: &str) -> Option<DynamicImage> {
     let place = Source::label(source.root.images[index].name.as_ref(), "images", index);
     match try_decode(source, index, &place) {
@@ -193,7 +193,7 @@ fn try_decode(source: &Source, index: usize, place: &str) -> Result<DynamicImage
     if width == 0 || height == 0 || width.max(height) > limits.image_side {
         return Err(bad(format!("is {width} x {height} texels, from 1 to {} a side are loaded", limits.image_side)));
     }
-    /// Deflate cannot expand more than this (RFC 1951: 258 bytes from 2 bits); what claims more is cut or a bomb.
+    /// Largest expansion of deflate (RFC 1951: 258 bytes from 2 bits); an image that claims more is truncated or a bomb.
     const DEFLATE_EXPANSION: u64 = 1032;
     if png && decoder.total_bytes() / DEFLATE_EXPANSION > bytes.len() as u64 {
         return Err(bad(format!("claims {width} x {height} texels in {} bytes, which is impossible", bytes.len())));

@@ -1,4 +1,4 @@
-//! Many copies of a node's mesh.
+//! Instances of a node's mesh.
 //!
 //! Source: EXT_mesh_gpu_instancing (Khronos 2021).
 
@@ -11,7 +11,7 @@ use super::fault::{Fault, Result};
 use super::numbers::unit_quaternion;
 use super::source::Source;
 
-/// `node_from_instance` of each copy; the identity alone for a node that is not instanced.
+/// `node_from_instance` of each instance; only the identity for a node without the extension.
 pub(super) fn transforms(source: &Source, node: &Node, index: usize) -> Result<Vec<Mat4>> {
     let extension = node.extensions.as_ref().and_then(|e| e.others.get("EXT_mesh_gpu_instancing"));
     let Some(extension) = extension else { return Ok(vec![Mat4::IDENTITY]) };
@@ -25,7 +25,7 @@ pub(super) fn transforms(source: &Source, node: &Node, index: usize) -> Result<V
         }
     };
     let [translation, rotation, scale] = [attribute("TRANSLATION")?, attribute("ROTATION")?, attribute("SCALE")?];
-    // Copies may be told apart by attributes that mean nothing here; each still is a copy.
+    // Attributes without a meaning here still give the number of instances.
     let any = extension
         .get("attributes")
         .and_then(Value::as_object)

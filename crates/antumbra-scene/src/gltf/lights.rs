@@ -1,8 +1,7 @@
 //! Lights of the asset.
 //!
-//! Source: KHR_lights_punctual. Its lights are points without size, and a soft shadow needs one: spot and point lights
-//! get a radius of 5 cm, directional lights the sun's 0.53° (`docs/formats.md`). `extras` of the light, or of its
-//! node, overrides:
+//! Source: KHR_lights_punctual. Its lights have no size, but soft shadows need one: spot and point lights get a radius of
+//! 5 cm, directional lights the sun's 0.53° (`docs/formats.md`). `extras` of the light, or of its node, overrides:
 //!
 //! | key | meaning |
 //! |---|---|
@@ -11,14 +10,14 @@
 //! | `angular_diameter` | sun, degrees |
 //! | `radii` | half-axes of an ellipsoid, metres |
 //! | `positions` | points in the node's space, metres |
-//! | `shape` | `rectangle`, `disk`, `sphere`, `ellipsoid`, `sun` or `points`, where the others leave it open |
-//! | `fov` | of a square frustum that the light is held to, degrees |
-//! | `intensity`, `candela`, `lux` | as in a setup file; where any is given, or `shape` makes a lamp a sun or a sun a lamp, the extension's own number is not taken |
-//! | `emission` | `{width, height, luminance, tint}`: a rectangle's texture; `tint`, RGB of each texel, where it is coloured |
+//! | `shape` | `rectangle`, `disk`, `sphere`, `ellipsoid`, `sun` or `points`, if the other keys leave it open |
+//! | `fov` | of a square frustum that restricts the light, degrees |
+//! | `intensity`, `candela`, `lux` | as in a setup file; each, or a `shape` of the other unit, disables the extension's number |
+//! | `emission` | `{width, height, luminance, tint}`: a rectangle's texture; `tint`, RGB of each texel, if it is coloured |
 //!
-//! A spot keeps its cone; a point light shines all around.
+//! A spot light keeps its cone; a point light shines in all directions.
 //!
-//! The exporter writes them, so that a round trip keeps shape and size.
+//! The exporter writes these keys, so that a round trip keeps shape and size.
 
 use antumbra_light::{Cone, EmissionTexture, Light, LightShape};
 use glam::{Mat4, Vec2, Vec3};
@@ -31,21 +30,21 @@ use super::fault::{Fault, Result};
 use super::materials::floats;
 use super::source::Source;
 
-/// Radius of a spot or point light that says nothing of its size, metres (`docs/formats.md`).
+/// Default radius of a spot or point light, metres (`docs/formats.md`).
 const RADIUS_M: f32 = 0.05;
-/// The sun's diameter seen from the earth, degrees (`docs/formats.md`).
+/// Angular diameter of the sun seen from the earth, degrees (`docs/formats.md`).
 const SUN_DEGREES: f32 = 0.53;
-/// A cone this wide off its axis, radians, is no restriction: the light reaches everything in front of it.
+/// Smallest angle off the axis, radians, of a cone that does not restrict the light: it reaches everything in front.
 const UNRESTRICTED_RAD: f32 = std::f32::consts::FRAC_PI_2 * 0.999;
 
-/// A light and what is needed to finish it once all lights and the scene's bounds are known.
+/// Light, to be finished once all lights and the scene's bounds are known.
 pub(super) struct Found {
     light: Light,
-    /// A point light without a direction of its own.
+    /// Whether it is a point light without a direction of its own.
     all_round: bool,
 }
 
-/// A light at a node; `None`, with a warning, where it cannot be used.
+/// Reads the light of a node; `None`, with a warning, if it cannot be used.
 pub(super) fn read(
     source: &Source,
     index: usize,
@@ -70,7 +69,7 @@ pub(super) fn read(
     let intensity = number("intensity");
     let shape = shape(&keys, kind, world_from_node);
     let unit = shape.photometric_unit();
-    // The extension's number is candela, or lux of a sun: of a shape that `extras` made a sun or no sun it means nothing.
+    // The extension's number is candela, or lux for a sun: it has no meaning if `extras` changes a sun to another shape or back.
     let is_of_unit = (unit == "lux") == (kind == Type::Directional);
     let extension = (intensity.is_none() && is_of_unit).then_some(json.intensity);
     let light = Light {
@@ -100,7 +99,7 @@ fn shape(keys: &Map<String, Value>, kind: Type, world_from_node: Mat4) -> LightS
     let radius = floats::<1>(keys.get("radius")).map_or(RADIUS_M, |[r]| r);
     let radii = floats::<3>(keys.get("radii"));
     let positions = keys.get("positions").and_then(Value::as_array).and_then(|list| {
-        // The node's turn and place, without its scale: sizes are metres.
+        // The node's rotation and translation, but not its scale, because sizes are in metres.
         let (_, rotation, translation) = world_from_node.to_scale_rotation_translation();
         list.iter().map(|p| floats(Some(p)).map(|p| translation + rotation * Vec3::from_array(p))).collect()
     });
@@ -121,7 +120,7 @@ fn shape(keys: &Map<String, Value>, kind: Type, world_from_node: Mat4) -> LightS
     }
 }
 
-/// A spot's cone; none where it is no narrower than all that is before the light.
+/// Cone of a spot light; `None` if it is no narrower than the half-space in front of the light.
 fn cone(json: &JsonLight, kind: Type) -> Option<Cone> {
     let spot = json.spot.as_ref().filter(|spot| kind == Type::Spot && spot.outer_cone_angle < UNRESTRICTED_RAD)?;
     Some(Cone { inner_rad: spot.inner_cone_angle, outer_rad: spot.outer_cone_angle })
@@ -145,7 +144,7 @@ fn emission(value: &Value) -> Option<EmissionTexture> {
     })
 }
 
-/// Finishes the lights: those without a direction look at the middle of the scene.
+/// Finishes the lights: those without a direction point at the centre of the scene.
 pub(super) fn finish(mut found: Vec<Found>, scene_center: Option<Vec3>) -> Vec<Light> {
     for f in found.iter_mut().filter(|f| f.all_round) {
         let towards = scene_center.map_or(Vec3::ZERO, |c| c - f.light.center);

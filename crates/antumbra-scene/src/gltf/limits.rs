@@ -1,7 +1,7 @@
-//! How much one file may make the loader allocate.
+//! Limits of what the loader allocates for one file.
 //!
-//! A glTF file of a kilobyte can ask for terabytes: accessors without data, instances of instances, compressed
-//! views and pictures. Each such amplifier draws on a budget; what exceeds it is an error, not an allocation.
+//! A glTF file of a kilobyte can request terabytes: accessors without data, instances of instances, compressed views and
+//! images. Each such amplifier draws on a budget; exceeding it is an error, without an allocation.
 
 use std::cell::Cell;
 
@@ -12,13 +12,13 @@ use super::fault::{Fault, Result};
 pub(crate) struct Limits {
     /// Bytes of the scene file and of each file beside it. The GLB container's own limit.
     pub file_bytes: u64,
-    /// Bytes in all that are fetched from other files.
+    /// Total bytes fetched from other files.
     pub fetched_bytes: u64,
-    /// Accessor elements that are read, again for each reader: bounds the time.
+    /// Accessor elements that are read, counted at each read: bounds the time.
     pub elements: usize,
-    /// Elements in all of accessors that have no data and read as zeros.
+    /// Total elements of accessors without data, which read as zeros.
     pub zero_elements: usize,
-    /// Bytes in all that compressed buffer views decode to.
+    /// Total decoded bytes of compressed buffer views.
     pub decoded_bytes: usize,
     /// Vertices of all meshes, deformed and mirrored copies included.
     pub vertices: usize,
@@ -26,16 +26,16 @@ pub(crate) struct Limits {
     pub indices: usize,
     /// Placed meshes.
     pub instances: usize,
-    /// Cameras and lights, each: a scene with more is a mistake, and every one carries application data.
+    /// Cameras, and lights: a scene with more of either is a mistake, and each one carries application data.
     pub cameras_and_lights: usize,
-    /// Texels along a side of an image: the largest that common GPUs take.
+    /// Texels along a side of an image: the largest size that common GPUs support.
     pub image_side: u32,
     /// Texels of all images.
     pub texels: usize,
 }
 
 impl Limits {
-    /// For files that a user chooses: a scene that reaches one of these has some 10 GB in memory.
+    /// For files that a user chooses: a scene at one of these limits takes some 10 GB of memory.
     pub const GENEROUS: Self = Self {
         file_bytes: u32::MAX as u64,
         fetched_bytes: 2 * u32::MAX as u64,
@@ -50,8 +50,8 @@ impl Limits {
         texels: 1 << 28,
     };
 
-    /// For files that a user opens where an address has 32 bits, as in a browser's tab: a scene that reaches one of these
-    /// has about 1 GB in memory.
+    /// For files that a user opens where addresses have 32 bits, as in a browser's tab: a scene at one of these limits takes
+    /// about 1 GB of memory.
     pub const SMALL: Self = Self {
         file_bytes: 1 << 29,
         fetched_bytes: 1 << 29,
@@ -66,7 +66,7 @@ impl Limits {
         texels: 1 << 26,
     };
 
-    /// For bytes of unknown origin and for fuzzing: some 100 MB.
+    /// For bytes of unknown origin and for fuzzing: some 100 MB of memory.
     pub const TIGHT: Self = Self {
         file_bytes: 1 << 26,
         fetched_bytes: 1 << 26,
@@ -82,7 +82,7 @@ impl Limits {
     };
 }
 
-/// What is left of [`Limits`].
+/// Remaining part of [`Limits`].
 #[derive(Debug)]
 pub(super) struct Budget {
     pub limits: Limits,

@@ -1,11 +1,11 @@
-//! Surfaces: the metallic-roughness material, reduced to what shadows and their shading need.
+//! Metallic-roughness materials, reduced to what shadows and their shading need.
 //!
 //! Source: glTF 2.0, section 3.9; KHR_materials_transmission, KHR_materials_volume, KHR_materials_emissive_strength,
-//! KHR_materials_pbrSpecularGlossiness, KHR_texture_transform. Pictures are kept of the base colour, and of what light
-//! passes a transmitting surface; the means of others are taken. Normal and occlusion pictures are not read.
+//! KHR_materials_pbrSpecularGlossiness, KHR_texture_transform. Images of the base colour and of transmission are kept;
+//! others are replaced by their means. Normal and occlusion maps are not read.
 //!
-//! A mesh has one set of texture coordinates, the base colour's: a picture that lies on the mesh in another way than the
-//! base colour's is replaced by its mean too, and a warning says so.
+//! A mesh has one set of texture coordinates, the base colour's. An image with other coordinates or another sampler is
+//! replaced by its mean too, with a warning.
 
 use glam::{Affine2, Vec2, Vec3, Vec4, Vec4Swizzles};
 use gltf::json::material::{AlphaMode as JsonAlphaMode, Material as JsonMaterial};
@@ -18,14 +18,14 @@ use super::images::{Images, Means, wrap_of_texture};
 use super::source::Source;
 use crate::{AlphaMode, Material, Volume, Wrap};
 
-/// A material, and how its primitives' texture coordinates are to be made.
+/// Material, and the source of its primitives' texture coordinates.
 pub(super) struct Surface {
     pub material: Material,
-    /// The pictures' coordinates; `None` without a picture.
+    /// Texture coordinates of the images; `None` without an image.
     pub uv: Option<UvSource>,
 }
 
-/// Which texture coordinates a picture uses and how they are transformed.
+/// Texture coordinates of an image and their transform.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct UvSource {
     /// `TEXCOORD_n`.
@@ -34,7 +34,7 @@ pub(super) struct UvSource {
     pub image_from_mesh: Affine2,
 }
 
-/// A material's pictures. The first that is kept says how all that are kept lie on the mesh.
+/// Images of a material. The first one kept determines texture coordinates and address modes of all.
 struct Pictures<'r, 's, 'a> {
     source: &'s Source<'a>,
     images: &'r mut Images,
@@ -42,17 +42,17 @@ struct Pictures<'r, 's, 'a> {
     kept: Option<(UvSource, [Wrap; 2])>,
 }
 
-/// What there is of a picture.
+/// Image of a texture, or its replacement.
 enum Picture {
-    /// None that can be had: white.
+    /// No readable image: white.
     White,
-    /// The scene's image of this index.
+    /// Index of the scene's image.
     Kept(usize),
     Mean(Means),
 }
 
 impl Pictures<'_, '_, '_> {
-    /// A texture's picture, or its mean where it lies on the mesh in another way than those before.
+    /// Reads a texture's image, or its mean if its coordinates or address modes differ from those of the images kept before.
     fn read(&mut self, info: &Info, what: &str) -> Result<Picture> {
         let texture = info.index.value();
         let lies = (uv_source(info), wrap_of_texture(self.source, texture, self.place)?);
@@ -69,7 +69,7 @@ impl Pictures<'_, '_, '_> {
         Ok(image.map_or(Picture::White, Picture::Kept))
     }
 
-    /// A factor and the picture that multiplies it; `channel` is what of a mean does.
+    /// Reads a factor and the image that multiplies it. `channel` selects the channel of a mean.
     fn factor(
         &mut self,
         factor: f32,
@@ -97,7 +97,7 @@ struct Microsurface {
     image: Option<usize>,
 }
 
-/// What passes a surface where it is.
+/// Transmission of a surface.
 #[derive(Default)]
 struct Transmitted {
     factor: f32,
@@ -135,7 +135,7 @@ pub(super) fn read(source: &Source, index: usize, images: &mut Images) -> Result
     Ok(Surface { material, uv })
 }
 
-/// Unread pictures must still exist: a reference past the end is a broken file, not a matter of taste.
+/// Checks references to unread images: one past the end makes the file invalid.
 fn check_unread(source: &Source, json: &JsonMaterial, place: &str) -> Result<()> {
     let unread = [json.normal_texture.as_ref().map(|t| t.index), json.occlusion_texture.as_ref().map(|t| t.index)];
     match unread.into_iter().flatten().find(|texture| texture.value() >= source.root.textures.len()) {
@@ -159,12 +159,12 @@ fn alpha_mode(source: &Source, json: &JsonMaterial, place: &str) -> AlphaMode {
     }
 }
 
-/// KHR_materials_pbrSpecularGlossiness, which comes before the metallic-roughness values.
+/// KHR_materials_pbrSpecularGlossiness, which takes precedence over the metallic-roughness values.
 fn specular_glossiness(json: &JsonMaterial) -> Option<&Value> {
     json.extensions.as_ref()?.others.get("KHR_materials_pbrSpecularGlossiness")
 }
 
-/// The base colour's factor and picture.
+/// Factor and image of the base colour.
 fn base_color(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Result<(Vec4, Option<usize>)> {
     let pbr = &json.pbr_metallic_roughness;
     let (factor, texture) = match specular_glossiness(json) {
@@ -181,7 +181,7 @@ fn base_color(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Resul
     Ok((factor, image))
 }
 
-/// Metalness and roughness: with their picture where `is_kept`, else with its means.
+/// Reads metalness and roughness, with their image if `is_kept`, else with its means.
 fn microsurface(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>, is_kept: bool) -> Result<Microsurface> {
     if let Some(old) = specular_glossiness(json) {
         let glossiness = floats(old.get("glossinessFactor")).map_or(1.0, |[g]| g);
@@ -202,7 +202,7 @@ fn microsurface(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>, is_kep
     Ok(Microsurface { metallic: plain.metallic * mean.z, roughness: plain.roughness * mean.y, image: None })
 }
 
-/// KHR_materials_transmission, and KHR_materials_volume beneath it.
+/// Reads KHR_materials_transmission, and KHR_materials_volume beneath it.
 fn transmitted(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Result<Transmitted> {
     let Some(extension) = json.extensions.as_ref().and_then(|e| e.transmission.as_ref()) else {
         return Ok(Transmitted::default());
@@ -216,7 +216,7 @@ fn transmitted(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Resu
     Ok(Transmitted { factor, image, volume: volume(json, pictures)? })
 }
 
-/// KHR_materials_volume; `None` where it absorbs nothing.
+/// Reads KHR_materials_volume; `None` if the volume absorbs nothing.
 fn volume(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Result<Option<Volume>> {
     let Some(extension) = json.extensions.as_ref().and_then(|e| e.others.get("KHR_materials_volume")) else {
         return Ok(None);
@@ -242,7 +242,7 @@ fn volume(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Result<Op
     Ok(Some(Volume { thickness_m, thickness_image, attenuation_color, attenuation_distance_m }))
 }
 
-/// What a material emits: its factor, its picture's mean, and KHR_materials_emissive_strength.
+/// Emission of a material: its factor, its image's mean, and KHR_materials_emissive_strength.
 fn emissive(source: &Source, json: &JsonMaterial, images: &mut Images, place: &str) -> Result<Vec3> {
     let mut emissive = Vec3::from_array(json.emissive_factor.0);
     if let Some(texture) = &json.emissive_texture {
@@ -280,7 +280,7 @@ fn finite_or(v: f32, otherwise: f32) -> f32 {
     if v.is_finite() { v } else { otherwise }
 }
 
-/// `N` numbers out of untyped JSON: an array, or a bare number where `N` is 1.
+/// Reads `N` numbers from untyped JSON: an array, or a bare number if `N` is 1.
 pub(super) fn floats<const N: usize>(value: Option<&Value>) -> Option<[f32; N]> {
     let value = value?;
     let number = |v: &Value| v.as_f64().map(|v| v as f32).filter(|v| v.is_finite());

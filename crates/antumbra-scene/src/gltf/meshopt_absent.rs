@@ -1,9 +1,9 @@
-//! Compressed buffer views where the decoder is not built: the feature `meshopt` is C++, which browsers' builds leave out.
+//! Compressed buffer views without a decoder: the feature `meshopt` is C++, and builds for browsers omit it.
 
 use super::fault::{Fault, Result, quoted};
 use super::meshopt_view::Compression;
 
-/// Refuses what it cannot decode.
+/// Refuses every compressed view.
 pub(super) fn decode(compression: &Compression<'_>, _encoded: &[u8], place: &str) -> Result<Vec<u8>> {
     let Compression { mode, filter, .. } = compression;
     Err(Fault::new(

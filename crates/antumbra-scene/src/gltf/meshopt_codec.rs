@@ -1,12 +1,12 @@
-//! What compressed buffer views decode to, by the `meshopt` crate, which wraps its author's C++.
+//! Decoding of compressed buffer views by the `meshopt` crate, which wraps the C++ of meshoptimizer.
 //!
-//! Its decoders promise to be safe on any bytes; their preconditions on sizes are checked here, because they are mere
-//! assertions there. Without the feature `meshopt` this file is not built, and `meshopt_absent.rs` stands in its place.
+//! Its decoders promise to be safe for any bytes. Their preconditions on sizes are mere assertions and are checked here.
+//! Without the feature `meshopt`, `meshopt_absent.rs` replaces this file.
 
 use super::fault::{Fault, Result, quoted};
 use super::meshopt_view::Compression;
 
-/// `stride · count` bytes from the compressed ones.
+/// Decodes compressed bytes to `stride · count` bytes.
 pub(super) fn decode(compression: &Compression<'_>, encoded: &[u8], place: &str) -> Result<Vec<u8>> {
     let bad = |problem: String, remedy: &str| Fault::new(place, problem, remedy);
     let undecodable = || bad("the compressed data is corrupt".into(), "export or fetch the file again");
@@ -33,7 +33,7 @@ pub(super) fn decode(compression: &Compression<'_>, encoded: &[u8], place: &str)
     }
 }
 
-/// Section "Filters": in place, after ATTRIBUTES.
+/// Applies the view's filter (section "Filters") in place, after the mode ATTRIBUTES.
 fn filtered(bytes: Vec<u8>, compression: &Compression<'_>, place: &str) -> Result<Vec<u8>> {
     let i16s = |b: &[u8]| [0, 2, 4, 6].map(|k| i16::from_le_bytes([b[k], b[k + 1]]));
     let from_i16s = |v: Vec<[i16; 4]>| v.into_iter().flatten().flat_map(i16::to_le_bytes).collect();
@@ -89,7 +89,7 @@ fn little_endian_u32(values: Vec<u32>) -> Vec<u8> {
     values.into_iter().flat_map(u32::to_le_bytes).collect()
 }
 
-/// An element of `WORDS · 4` bytes: the decoder takes its stride from a type.
+/// Element of `WORDS · 4` bytes, because the decoder takes its stride from a type.
 #[derive(Clone)]
 struct Words<const WORDS: usize>([[u8; 4]; WORDS]);
 
@@ -104,7 +104,7 @@ fn decode_words<const WORDS: usize>(encoded: &[u8], count: usize) -> Option<Vec<
     Some(elements.into_iter().flat_map(|e| e.0).flatten().collect())
 }
 
-/// `stride` is 4 to 256 in fours.
+/// Decodes vertices; `stride` is a multiple of 4 from 4 to 256.
 fn decode_vertices(encoded: &[u8], stride: usize, count: usize) -> Option<Vec<u8>> {
     macro_rules! by_words {
         ($($words:literal)*) => {

@@ -7,7 +7,7 @@ use super::limits::Budget;
 use super::meshopt_codec as codec;
 use super::meshopt_view::Compression;
 
-/// `byteStride · count` bytes from the compressed ones, taken from the budget before they are made.
+/// Decodes compressed bytes to `byteStride · count` bytes, which are drawn from the budget before they are allocated.
 pub(super) fn decode(
     compression: &Compression<'_>,
     encoded: &[u8],

@@ -9,11 +9,11 @@ use super::fault::{Fault, Result};
 
 /// Compression of a buffer view, as the view describes it.
 pub(super) struct Compression<'v> {
-    /// The buffer that holds the compressed bytes, and where in it they lie.
+    /// Buffer of the compressed bytes, and their range in it.
     pub buffer: usize,
     pub offset: u64,
     pub length: u64,
-    /// Bytes of an element, and how many there are.
+    /// Bytes per element, and number of elements.
     pub stride: usize,
     pub count: usize,
     pub mode: &'v str,
@@ -21,7 +21,7 @@ pub(super) struct Compression<'v> {
 }
 
 impl<'v> Compression<'v> {
-    /// The compression of a view, where it has one.
+    /// Returns the compression of a view; `None` if it is not compressed.
     pub(super) fn of(view: &'v View, place: &str) -> Result<Option<Self>> {
         let extensions = view.extensions.as_ref().map(|e| &e.others);
         let Some((name, value)) = extensions.and_then(|others| {

@@ -7,10 +7,10 @@
 //!                 └─► animation ─► nodes ──────────────────────────────────┴─► cameras, lights
 //! ```
 //!
-//! A file is untrusted. Every index and range is checked where it is used, what can grow beyond the file's size draws
-//! on a budget ([`limits`]), nothing recurses over the file's structure, and no file outside the scene's folder is
-//! opened ([`uri`]). What contradicts the specification is an error that says where; bad numbers and missing pictures
-//! are left out or repaired, with a line in [`Scene::warnings`].
+//! A file is untrusted. Every index and range is checked where it is used, allocations that can exceed the file's size
+//! draw on a budget ([`limits`]), nothing recurses over the file's structure, and no file outside the scene's folder is
+//! opened ([`uri`]). A contradiction of the specification is an error that gives its place. Bad numbers and missing
+//! images are left out or repaired, with a line in [`Scene::warnings`].
 
 mod accessors;
 mod animation;
@@ -60,50 +60,50 @@ use placement::Placement;
 use primitives::Wanted;
 use source::Source;
 
-/// The moment at which a scene is loaded.
+/// Time at which a scene is loaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Pose {
     /// As modelled, without animation.
     #[cfg_attr(not(test), expect(dead_code, reason = "the tests compare with figures of the resting pose"))]
     Rest,
-    /// Animations sampled at this many seconds.
+    /// Animations sampled at this time, seconds.
     At(f32),
 }
 
-/// A file's scene, and what is needed to have it at other times.
+/// Scene of a file, and its animations.
 pub(crate) struct Loaded {
-    /// As it is at the time that was asked for; it may be empty.
+    /// Scene at the requested time; it may be empty.
     pub scene: Scene,
-    /// `None` where nothing in the file is animated.
+    /// `None` if nothing in the file is animated.
     pub animations: Option<Animations>,
 }
 
-/// The animations of a file, which stays in memory: its scene at any time, without its pictures being decoded again.
+/// Animations of a file, which stays in memory: give its scene at any time, without decoding its images again.
 #[derive(Debug)]
 pub struct Animations {
     bytes: Vec<u8>,
-    /// Where files beside the scene lie; `None` where it has no place.
+    /// Folder of the scene and the files beside it; `None` if the scene was loaded from memory.
     folder: Option<PathBuf>,
     name: String,
-    /// What messages call the file.
+    /// Name of the file in messages.
     origin: String,
     limits: Limits,
-    /// Without texels.
+    /// Known images, without texels.
     images: Images,
     ends_s: [f32; 2],
 }
 
 impl Animations {
-    /// The first and the last time of what moves anything, seconds. Times outside clamp to these.
+    /// First and last time of all animations, seconds. Times outside clamp to these.
     pub fn ends_s(&self) -> [f32; 2] {
         self.ends_s
     }
 
-    /// The scene at `time_s` seconds, as [`load`](crate::load()) gives it at that time, but for [`Scene::images`], which
-    /// is empty: the pictures are those of the scene that these animations were loaded with.
+    /// Scene at `time_s` seconds, as [`load`](crate::load()) returns it at that time, but with empty [`Scene::images`]: use
+    /// the images of the scene with which these animations were loaded.
     ///
     /// # Errors
-    /// One line, where the scene cannot be had at that time.
+    /// One line, if the scene cannot be loaded at that time.
     pub fn scene_at(&self, time_s: f32) -> std::result::Result<Scene, SceneError> {
         let folder = self.folder.as_deref();
         let pose = Pose::At(time_s);
@@ -112,7 +112,7 @@ impl Animations {
         if scene.images.is_empty() {
             return Ok(scene);
         }
-        // Only what had no finite place before can bring a picture that was not needed.
+        // Only a node whose transform was not finite before can bring a new image.
         let problem = format!("shows something at {time_s} s that it does not show when it is opened");
         Err(Fault::new("the whole", problem, "open it at that time").within(&self.origin))
     }
@@ -137,7 +137,7 @@ pub(crate) fn load_file(path: &Path, pose: Pose, limits: Limits) -> std::result:
     load_owned(bytes, folder.map(Path::to_owned), name, origin, pose, limits)
 }
 
-/// Loads the bytes of a `.glb` or `.gltf` file that lies nowhere: files beside it are refused.
+/// Loads a `.glb` or `.gltf` file from memory; references to files beside it are refused.
 pub(crate) fn load_bytes(
     bytes: &[u8],
     name: &str,
@@ -162,14 +162,14 @@ fn load_owned(
     Ok(Loaded { scene, animations })
 }
 
-/// What is found in a file beside its scene.
+/// Images and times found while loading a scene.
 struct Found {
-    /// Which pictures the scene has, without their texels.
+    /// Known images of the scene, without their texels.
     images: Images,
     ends_s: Option<[f32; 2]>,
 }
 
-/// `images` are those that are known already; those that are not are the scene's.
+/// Loads a scene. `images` are the images known already; only new ones are decoded into the scene.
 fn load_slice(
     bytes: &[u8],
     folder: Option<&Path>,
@@ -209,7 +209,7 @@ fn load_slice(
     Ok((scene, Found { images, ends_s }))
 }
 
-/// The scene being put together.
+/// Scene builder.
 struct Loader<'s, 'a> {
     source: &'s Source<'a>,
     driven: &'s [Driven],
@@ -219,7 +219,7 @@ struct Loader<'s, 'a> {
     surfaces: HashMap<Option<usize>, (usize, Option<UvSource>)>,
     /// Scene mesh by the document's mesh and primitive, for those that no node deforms.
     shared: HashMap<(usize, usize), Option<usize>>,
-    /// By the document's skin.
+    /// Skeleton by the document's skin.
     skeletons: HashMap<usize, Rc<Skeleton>>,
     placement: Placement,
     lights: Vec<lights::Found>,
@@ -242,7 +242,7 @@ impl Loader<'_, '_> {
         {
             self.placement.scene.cameras.extend(cameras::read(source, camera.value(), world_from_node)?);
         }
-        // Cameras look on whether their node is visible or not.
+        // A camera is used even if its node is invisible.
         if !self.graph.is_visible[index] {
             return Ok(());
         }
@@ -306,7 +306,7 @@ impl Loader<'_, '_> {
         Ok(made)
     }
 
-    /// Reads a primitive, deforms it where asked, and adds it as a mesh; `None` where nothing of it can be drawn.
+    /// Reads a primitive, deforms it if asked, and adds it as a mesh; `None` if nothing of it can be drawn.
     fn mesh(
         &mut self,
         (mesh, primitive): (usize, usize),
@@ -327,7 +327,7 @@ impl Loader<'_, '_> {
             read => read?,
         };
         let Some(mut geometry) = geometry else { return Ok(None) };
-        // Joined by the resting positions: what a file means to be one vertex is exactly equal there.
+        // Tested before deformation: vertices that the file means to be one have exactly equal resting positions.
         let closed = is_closed(&geometry.positions, &geometry.indices);
         deform::morph(&mut geometry, weights);
         if let Some(skeleton) = skeleton {
@@ -360,7 +360,7 @@ impl Loader<'_, '_> {
         })))
     }
 
-    /// The scene's material for one of the document.
+    /// Scene material for a material of the document.
     fn surface(&mut self, material: Option<usize>, place: &str) -> Result<(usize, Option<UvSource>)> {
         if let Some(known) = self.surfaces.get(&material) {
             return Ok(*known);

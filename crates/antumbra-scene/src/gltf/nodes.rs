@@ -1,7 +1,7 @@
-//! The node graph: which nodes the scene shows and where they stand.
+//! Node graph: the nodes that the scene shows, and their transforms.
 //!
-//! Source: glTF 2.0, section 3.5; KHR_node_visibility. The graph is walked with lists, not by recursion: depth is the file's choice, the
-//! stack is not.
+//! Source: glTF 2.0, section 3.5; KHR_node_visibility. The graph is walked with lists rather than by recursion, because the file
+//! determines the depth but the stack is limited.
 
 use glam::{Mat4, Quat, Vec3, Vec4};
 use gltf::json::scene::Node;
@@ -11,18 +11,18 @@ use super::fault::{Fault, Result};
 use super::numbers::{LARGEST_COORDINATE_M, unit_quaternion};
 use super::source::Source;
 
-/// The nodes of a document at one moment.
+/// Nodes of a document at one time.
 pub(super) struct Graph {
-    /// Where each node stands; `None` where its transform is not finite.
+    /// World transform of each node; `None` if it is not finite.
     pub world_from_node: Vec<Option<Mat4>>,
-    /// The nodes of the scene, parents before children.
+    /// Nodes of the scene, parents before children.
     pub reached: Vec<usize>,
-    /// Whether what each node holds is seen: neither it nor what it hangs from is hidden. Cameras are there in any case.
+    /// Whether the contents of each node are visible: neither it nor an ancestor is hidden. Cameras ignore this.
     pub is_visible: Vec<bool>,
 }
 
 impl Graph {
-    /// Follows the default scene; without one, the first scene; without any, all roots.
+    /// Walks the default scene; without one, the first scene; without any scene, all roots.
     pub(super) fn new(source: &Source, driven: &[Driven]) -> Result<Self> {
         let nodes = &source.root.nodes;
         let order = topological_order(nodes)?;
@@ -57,7 +57,7 @@ impl Graph {
     }
 }
 
-/// KHR_node_visibility of the node itself.
+/// Whether KHR_node_visibility hides the node itself.
 fn is_hidden(source: &Source, index: usize) -> bool {
     let node = &source.root.nodes[index];
     let extension = node.extensions.as_ref().and_then(|e| e.others.get("KHR_node_visibility"));
@@ -148,7 +148,7 @@ fn local_transform(source: &Source, node: &Node, index: usize, driven: &Driven) 
             affine_column(matrix.w_axis, 1.0),
         );
     }
-    // A node with a matrix must not be animated; where one is, its matrix gives the resting values.
+    // A node with a matrix must not be animated. If one is, its matrix gives the resting values.
     let (scale, rotation, translation) = match matrix {
         Some(matrix) => matrix.to_scale_rotation_translation(),
         None => (

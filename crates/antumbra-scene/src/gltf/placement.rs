@@ -1,5 +1,5 @@
-//! Meshes put into the world, so that whatever reads the scene may trust every instance: finite, invertible, never
-//! mirrored; and every mesh: counter-clockwise in front.
+//! Placement of meshes in the world. Afterwards every instance is finite, invertible and not mirrored, and every mesh is
+//! counter-clockwise seen from the front.
 
 use std::collections::HashMap;
 
@@ -13,20 +13,20 @@ use super::source::Source;
 use crate::closed::is_closed;
 use crate::{Instance, Material, Mesh, Scene, Volume};
 
-/// Two mirrors make none: a mirrored instance becomes a mirrored mesh in an instance that is not, so that winding
-/// means the same in every mesh and instance.
+/// Mirror along x, applied to both the mesh and the transform of a mirrored instance. The two cancel, so that the winding
+/// has the same meaning in every mesh and instance.
 const MIRROR: Vec3 = Vec3::new(-1.0, 1.0, 1.0);
 
-/// What a transform does to a mesh.
+/// Effect of a transform on a mesh.
 #[derive(Debug, PartialEq)]
 enum Kind {
-    /// Invertible, keeps the orientation.
+    /// Invertible, keeps the winding.
     Regular,
-    /// Invertible, turns the winding over.
+    /// Invertible, reverses the winding.
     Mirror,
-    /// Flattens to a sheet, or scales so far that an f32 cannot hold the inverse.
+    /// Flattens to a sheet, or scales so much that an f32 cannot hold the inverse.
     Flat,
-    /// Leaves a line or a point.
+    /// Collapses to a line or a point.
     Vanishing,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Placement {
     pub scene: Scene,
     bounds: Vec<Aabb>,
     mirrored: HashMap<usize, usize>,
-    /// Meshes with a volume by the mesh that they are copies of and their scale.
+    /// Copies of meshes with a volume, by original mesh and scale.
     scaled: HashMap<(usize, i32), usize>,
 }
 
@@ -51,7 +51,7 @@ impl Placement {
         self.scene.meshes.len() - 1
     }
 
-    /// Places a mesh; what cannot be seen or held in an f32 is left out with a warning.
+    /// Places a mesh. A mesh that would be invisible or exceed an f32 is left out with a warning.
     pub(super) fn place(&mut self, source: &Source, mesh: usize, world_from_object: Mat4, label: &str) -> Result<()> {
         let corners = self.bounds[mesh].corners().map(|p| world_from_object.transform_point3(p));
         // NaN fails the comparison.
@@ -80,11 +80,11 @@ impl Placement {
         Ok(())
     }
 
-    /// The same mesh with its volume as thick as the transform makes it: KHR_materials_volume counts a thickness in the
-    /// mesh's space, and what it absorbs by the world's.
+    /// Copy of a mesh whose volume has the thickness that the transform gives it: KHR_materials_volume measures thickness in
+    /// mesh space, and attenuation distance in world space.
     fn with_thickness(&mut self, source: &Source, mesh: usize, world_from_object: Mat4, label: &str) -> Result<usize> {
-        /// Steps of the scale's logarithm: finer than what a thickness of two digits can mean, coarser than what turning
-        /// a matrix does to its determinant.
+        /// Number of steps per unit of the scale's logarithm: finer than the precision of a thickness of two digits, coarser than
+        /// the effect of a rotation on a matrix's determinant.
         const STEPS: f32 = 1e3;
         let material = self.scene.meshes[mesh].material;
         let Some(volume) = &self.scene.materials[material].volume else { return Ok(mesh) };
@@ -108,7 +108,7 @@ impl Placement {
         Ok(index)
     }
 
-    /// The same mesh mirrored along x, wound such that it is counter-clockwise in front again.
+    /// Copy of a mesh, mirrored along x and wound counter-clockwise seen from the front again.
     fn mirror_of(&mut self, source: &Source, mesh: usize, label: &str) -> Result<usize> {
         if let Some(&known) = self.mirrored.get(&mesh) {
             return Ok(known);
@@ -125,7 +125,7 @@ impl Placement {
         Ok(index)
     }
 
-    /// The mesh in world space.
+    /// Copy of a mesh in world space; `None`, with a warning, if it has no area.
     fn baked(&mut self, source: &Source, mesh: usize, world_from_object: Mat4, label: &str) -> Result<Option<usize>> {
         let original = &self.scene.meshes[mesh];
         source.budget.take_vertices(original.positions.len(), label)?;
@@ -147,7 +147,7 @@ impl Placement {
         Ok(Some(self.add_mesh(copy)))
     }
 
-    /// The scene without meshes that nothing shows.
+    /// Returns the scene without meshes that no instance uses.
     pub(super) fn finish(self) -> Scene {
         let mut scene = self.scene;
         let mut new_of_old: Vec<Option<usize>> = vec![None; scene.meshes.len()];
@@ -163,11 +163,11 @@ impl Placement {
     }
 }
 
-/// Judged relative to the lengths of the columns, in double precision: a micrometre is not a singularity.
+/// Classifies a transform relative to the lengths of its columns, in double precision: a scale of a micrometre is not singular.
 fn kind(matrix: Mat4) -> Kind {
-    /// A sheet a millionth as thick as it is wide is flat to an f32, which has seven digits.
+    /// Largest relative thickness of a sheet that counts as flat: an f32 has seven digits.
     const FLATNESS: f64 = 1e-6;
-    /// Determinants outside this range, or their reciprocals, are not ordinary f32 numbers.
+    /// Range of determinants that are, like their reciprocals, ordinary f32 numbers.
     const ORDINARY: std::ops::RangeInclusive<f64> = 1e-36..=1e36;
     let [a, b, c] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|column| column.truncate().as_dvec3());
     let determinant = a.cross(b).dot(c);

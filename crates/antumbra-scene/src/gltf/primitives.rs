@@ -1,7 +1,7 @@
 //! One primitive of the document as triangles.
 //!
-//! Source: glTF 2.0, section 3.7.2. Strips and fans become lists; points and lines cast no shadow of an area and are
-//! left out with a warning.
+//! Source: glTF 2.0, section 3.7.2. Strips and fans become lists. Points and lines have no area that could cast a shadow
+//! and are left out with a warning.
 
 use glam::{Vec2, Vec3, Vec4};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
@@ -13,10 +13,10 @@ use super::geometry::{Geometry, Influences, MorphTarget};
 use super::materials::UvSource;
 use super::source::Source;
 
-/// How primitives are to be read.
+/// Attributes to read from primitives.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Wanted {
-    /// The base colour picture's coordinates.
+    /// Texture coordinates of the material's images.
     pub uv: Option<UvSource>,
     /// Joints and weights.
     pub influences: bool,
@@ -24,12 +24,12 @@ pub(super) struct Wanted {
     pub targets: bool,
 }
 
-/// The attribute that a semantic names.
+/// Accessor of the attribute with a semantic.
 pub(super) fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<usize> {
     primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value())
 }
 
-/// Reads a primitive; `None`, with a warning, where it has no triangles to draw.
+/// Reads a primitive; `None`, with a warning, if it has no triangles to draw.
 ///
 /// The geometry's normals are those of the file, or empty. All indices are in range.
 pub(super) fn read(source: &Source, primitive: &Primitive, wanted: Wanted, place: &str) -> Result<Option<Geometry>> {
@@ -79,7 +79,7 @@ pub(super) fn read(source: &Source, primitive: &Primitive, wanted: Wanted, place
 
     geometry.compact();
     if geometry.normals.is_empty() {
-        // Section 3.7.2.1: without normals, flat ones; a vertex then belongs to one triangle.
+        // Section 3.7.2.1: a primitive without normals gets flat ones, for which each vertex must belong to one triangle.
         source.budget.take_vertices(geometry.indices.len(), place)?;
         geometry.unshare();
     }
@@ -94,7 +94,7 @@ pub(super) fn read(source: &Source, primitive: &Primitive, wanted: Wanted, place
     Ok(Some(geometry))
 }
 
-/// Refuses attribute lists of differing length, which the file must not have.
+/// Refuses attribute lists of different lengths, which are invalid.
 fn same_count(have: usize, want: usize, place: &str) -> Result<()> {
     if have == want {
         return Ok(());
@@ -107,7 +107,7 @@ fn vec3s(source: &Source, accessor: usize, count: usize, place: &str) -> Result<
     Ok(source.read_floats::<3>(accessor, Allowed::Geometry, place)?.into_iter().map(Vec3::from_array).collect())
 }
 
-/// The corners of the triangles, in range and without the joints of strips.
+/// Vertex indices of the triangles, in range and without the degenerate triangles that join strips.
 fn triangles(source: &Source, primitive: &Primitive, mode: Mode, vertices: usize, place: &str) -> Result<Vec<u32>> {
     let corners = match primitive.indices {
         Some(accessor) => {
@@ -125,7 +125,7 @@ fn triangles(source: &Source, primitive: &Primitive, mode: Mode, vertices: usize
             source.budget.take_indices(2 * corners.len(), place)?;
             let turned = |(k, t): (usize, &[u32])| if k % 2 == 0 { [t[0], t[1], t[2]] } else { [t[0], t[2], t[1]] };
             let triangles = corners.windows(3).enumerate().map(turned);
-            // Strips are joined by triangles that use a vertex twice; nothing is drawn there.
+            // Triangles that use a vertex twice join strips; they draw nothing.
             triangles.filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]).collect()
         }
         Mode::TriangleFan => {
@@ -176,7 +176,7 @@ fn uvs(source: &Source, primitive: &Primitive, uv: UvSource, count: usize, place
     same_count(source.accessor_count(accessor, &place)?, count, &place)?;
     let uvs = source.read_floats::<2>(accessor, Allowed::Fractions, &place)?;
     let mut uvs: Vec<Vec2> = uvs.into_iter().map(Vec2::from_array).collect();
-    /// Beyond this an f32 has no digits left for the place within a texel.
+    /// Largest texture coordinate: beyond it an f32 has no digits left for the position within a texel.
     const LARGEST: f32 = 1e6;
     let mut repaired = 0;
     for v in &mut uvs {

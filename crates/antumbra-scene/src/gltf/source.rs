@@ -1,6 +1,6 @@
-//! One glTF file being read: its document, its bytes, what may still be allocated, what was left out.
+//! One glTF file being read: its document, bytes, remaining budget and warnings.
 //!
-//! Buffers are fetched when first used, so that what the scene does not need cannot fail it.
+//! Buffers are fetched on first use, so that unused ones cannot cause a failure.
 
 use std::borrow::Cow;
 use std::cell::{OnceCell, RefCell};
@@ -20,7 +20,7 @@ use super::uri;
 pub(super) struct Source<'a> {
     pub root: Root,
     pub budget: Budget,
-    /// Integer positions, normals and texture coordinates are allowed (KHR_mesh_quantization).
+    /// Whether integer positions, normals and texture coordinates are allowed (KHR_mesh_quantization).
     pub quantized: bool,
     bin: Option<&'a [u8]>,
     folder: Option<&'a Path>,
@@ -29,16 +29,16 @@ pub(super) struct Source<'a> {
     warnings: RefCell<Vec<String>>,
 }
 
-/// The bytes of a buffer view.
+/// Bytes of a buffer view.
 #[derive(Clone, Copy)]
 pub(super) struct ViewBytes<'s> {
     pub bytes: &'s [u8],
-    /// Bytes from one element to the next, where the view says.
+    /// Bytes from one element to the next; `None` if the view does not say.
     pub stride: Option<usize>,
 }
 
 impl<'a> Source<'a> {
-    /// Parses the document; `folder` is where the files beside the scene lie, `None` where it has no place.
+    /// Parses the document. `folder` is where the files beside the scene lie; `None` for a scene in memory.
     pub(super) fn new(container: Container<'a>, folder: Option<&'a Path>, limits: Limits) -> Result<Self> {
         let root = document::parse(container.json)?;
         let warnings = RefCell::new(Vec::from_iter(document::unread_animations(&root)));
@@ -56,9 +56,9 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// Notes what was left out or repaired; each line once.
+    /// Adds a warning about something left out or repaired; each line once.
     pub(super) fn warn(&self, line: String) {
-        /// A file in which everything is wrong still gives a list that a person can read.
+        /// Largest number of warnings, so that the list stays readable even for a file in which everything is wrong.
         const MOST: usize = 50;
         let mut warnings = self.warnings.borrow_mut();
         if warnings.len() < MOST && !warnings.contains(&line) {
@@ -73,7 +73,7 @@ impl<'a> Source<'a> {
         self.warnings.into_inner()
     }
 
-    /// The bytes that an image's URI leads to.
+    /// Reads the bytes that an image's URI refers to.
     pub(super) fn read_uri(&self, uri: &str, place: &str) -> Result<Vec<u8>> {
         let bytes = uri::resolve(uri, self.folder, self.budget.fetchable_bytes(), place)?;
         self.budget.take_fetched_bytes(bytes.len(), place)?;
@@ -133,7 +133,7 @@ impl<'a> Source<'a> {
         Ok(bytes)
     }
 
-    /// A range of a buffer, checked.
+    /// Returns a range of a buffer after checking it.
     pub(super) fn buffer_range(&self, buffer: usize, offset: u64, length: u64, place: &str) -> Result<&[u8]> {
         if buffer >= self.root.buffers.len() {
             return Err(Fault::unresolved(place, "buffers", buffer, self.root.buffers.len()));
@@ -150,7 +150,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The bytes of a buffer view, decompressed where it is compressed.
+    /// Returns the bytes of a buffer view, decompressed if necessary.
     pub(super) fn view(&self, index: usize) -> Result<ViewBytes<'_>> {
         let Some(view) = self.root.buffer_views.get(index) else {
             return Err(Fault::unresolved("bufferView", "bufferViews", index, self.root.buffer_views.len()));
@@ -170,7 +170,7 @@ impl<'a> Source<'a> {
         Ok(ViewBytes { bytes, stride })
     }
 
-    /// A name for messages: the object's own, or its kind and number.
+    /// Name for messages: the object's own, or its kind and number.
     pub(super) fn label(name: Option<&String>, kind: &str, index: usize) -> String {
         match name {
             Some(name) if !name.is_empty() => format!("{kind}[{index}] {}", quoted(name)),
@@ -180,7 +180,7 @@ impl<'a> Source<'a> {
 }
 
 fn checked_stride(view: &View, place: &str) -> Result<Option<usize>> {
-    /// Section 3.6.2.1: a stride is 4 to 252 bytes and a multiple of 4.
+    /// Valid strides, which are also multiples of 4 (section 3.6.2.1).
     const STRIDES: std::ops::RangeInclusive<usize> = 4..=252;
     match view.byte_stride.map(|s| s.0) {
         Some(stride) if !STRIDES.contains(&stride) || !stride.is_multiple_of(4) => Err(Fault::new(

@@ -1,7 +1,7 @@
-//! What a URI in a glTF file may lead to: data inside it, or a file in the scene's own folder.
+//! URIs in a glTF file: data inside it, or a file in the scene's own folder.
 //!
 //! Source: glTF 2.0, sections 2.8 (URIs) and 3.6.1.1; RFC 2397 (data URIs), RFC 4648 (base64), RFC 3986 (percent
-//! encoding). A scene is untrusted: it must not be able to name files elsewhere, devices, or the network.
+//! encoding). Scenes are untrusted and must not reach files elsewhere, devices, or the network.
 
 use std::fs::File;
 use std::io::Read;
@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 use super::fault::{Fault, Result, quoted};
 use crate::base64;
 
-/// The bytes that `uri` stands for.
+/// Reads the bytes that `uri` refers to.
 ///
-/// `folder` is where the scene lies; `None` where it came without a place, and then files are refused. Reads at most
-/// `at_most` bytes.
+/// `folder` is the scene's folder; files are refused if it is `None`, because the scene was loaded from memory. Reads at
+/// most `at_most` bytes.
 pub(super) fn resolve(uri: &str, folder: Option<&Path>, at_most: u64, place: &str) -> Result<Vec<u8>> {
     if let Some(rest) = strip_scheme(uri, "data:") {
         return decode_data(rest, place);
@@ -38,7 +38,7 @@ fn strip_scheme<'a>(uri: &'a str, scheme: &str) -> Option<&'a str> {
     head.eq_ignore_ascii_case(scheme).then(|| &uri[scheme.len()..])
 }
 
-/// The path of a relative URI, once it is certain to lie in `folder` or below, symbolic links followed.
+/// Path of a relative URI, after checking that it lies in `folder` or below with symbolic links followed.
 fn inside(uri: &str, folder: Option<&Path>, place: &str) -> Result<PathBuf> {
     let refused = |why: &str| {
         Fault::new(
@@ -56,7 +56,7 @@ fn inside(uri: &str, folder: Option<&Path>, place: &str) -> Result<PathBuf> {
         return Err(refused("is not a path"));
     }
     let parts: Vec<&str> = decoded.split(['/', '\\']).collect();
-    // `scheme:` or a drive letter; a colon later in a path is an ordinary character.
+    // A scheme or a drive letter; a colon later in a path is an ordinary character.
     if parts[0].contains(':') {
         return Err(refused("is not a relative path"));
     }
@@ -87,7 +87,7 @@ fn percent_decoded(text: &[u8]) -> Vec<u8> {
     percent_encoding::percent_decode(text).collect()
 }
 
-/// RFC 2397 after `data:`. The media type is not needed: images are recognised by their bytes.
+/// Decodes a data URI after `data:` (RFC 2397). The media type is ignored: images are recognised by their bytes.
 fn decode_data(rest: &str, place: &str) -> Result<Vec<u8>> {
     let bad = |problem: &str| Fault::new(place, problem, "`data:[type];base64,DATA` with DATA in base64 is right");
     let Some((head, body)) = rest.split_once(',') else {
@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn data_uris_carry_text_and_base64() {
         assert_eq!(decode_data("text/plain,a%20b", "").unwrap(), b"a b");
-        // A sign that begins no code stands for itself.
+        // A percent sign without two hexadecimal digits stands for itself.
         assert_eq!(decode_data("text/plain,5%,%4g%41%", "").unwrap(), b"5%,%4gA%");
         assert_eq!(decode_data("application/octet-stream;base64,Zm9v", "").unwrap(), b"foo");
         assert!(decode_data("application/octet-stream;base64", "").is_err());

@@ -9,11 +9,11 @@ use image::{DynamicImage, ImageBuffer, ImageReader};
 
 use crate::{base64, srgb_from_linear};
 
-/// More than a light needs; keeps a mistaken path from filling the memory.
+/// Largest side of a texture, texels: more than a light needs, but a bound on memory if the path is wrong.
 const LARGEST_SIDE: u32 = 4096;
 const DATA_URI_HEAD: &str = "data:image/png;base64,";
 
-/// Reads `texture`, which lies in `folder` unless it is a data URI. The error says what is wrong, not where.
+/// Reads `texture`, a data URI or a path relative to `folder`. The error says what is wrong, but not where.
 pub(super) fn read(texture: &str, folder: &Path) -> Result<EmissionTexture, String> {
     let bytes = match texture.strip_prefix(DATA_URI_HEAD) {
         Some(data) => base64::decode(data.as_bytes()).ok_or("the data URI is not base64")?,
@@ -38,8 +38,8 @@ pub(super) fn read(texture: &str, folder: &Path) -> Result<EmissionTexture, Stri
     Ok(EmissionTexture::from_rgb(width, height, &rgb))
 }
 
-/// A data URI that [`read`] reads back to within 16 bits. Only ratios count, so the brightest channel of any texel becomes 1
-/// where it is brighter than that.
+/// Encodes a texture as a data URI that [`read`] restores within 16 bits. Only ratios matter, so values are scaled if the brightest
+/// channel of any texel exceeds 1.
 pub(super) fn data_uri(emission: &EmissionTexture) -> Option<String> {
     let EmissionTexture { width, height, .. } = *emission;
     let scale = emission.colors().map(Vec3::max_element).fold(1.0, f32::max).recip();

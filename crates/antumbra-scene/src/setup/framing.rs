@@ -1,4 +1,4 @@
-//! A camera and a light for scenes that bring none.
+//! Default camera and light for scenes that have none.
 
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{Vec2, Vec3};
@@ -6,56 +6,56 @@ use glam::{Vec2, Vec3};
 use super::FOV_Y_DEGREES;
 use crate::{Camera, Scene};
 
-/// From the middle of the scene towards the camera: a three-quarter view from above, as product pictures have it.
+/// Direction from the scene's centre to the camera: a three-quarter view from above, as in product images.
 const TOWARDS_CAMERA: Vec3 = Vec3::new(0.55, 0.45, 1.0);
-/// From the middle of the scene towards the key light: above, and to the camera's left, so that shadows fall to the
-/// right and are not hidden behind what casts them.
+/// Direction from the scene's centre to the key light: above, and to the camera's left, so that shadows fall to the
+/// right and are not hidden behind their casters.
 const TOWARDS_LIGHT: Vec3 = Vec3::new(-0.55, 1.0, 0.4);
-/// The key light stands this many diagonals from the middle: outside the box, whose corners are half a diagonal away.
+/// Distance of the key light from the centre, in diagonals: outside the box, whose corners are half a diagonal away.
 const LIGHT_DISTANCE_DIAGONALS: f32 = 0.9;
 /// Side of the key light over the diagonal: soft enough to see, small enough that contact shadows stay sharp.
 const LIGHT_SIDE_DIAGONALS: f32 = 1.0 / 12.0;
-/// Room around the scene's box in the picture.
+/// Factor for the margin around the scene's box in the image.
 const MARGIN: f32 = 1.05;
 
-/// A sphere about the scene that an f32 can resolve, wherever it is.
+/// Bounding sphere of the scene, large enough that an f32 resolves it at its position.
 fn sphere(bounds: Aabb) -> (Vec3, f32) {
     if bounds.is_empty() {
         return (Vec3::ZERO, 1.0);
     }
     let center = bounds.center();
-    // Far from the origin neighbouring f32 numbers lie 1e-7 of the distance apart; a hundred of them are the least
-    // that a view direction can be made of. The other bound keeps squares from vanishing.
+    // Far from the origin, neighbouring f32 numbers are 1e-7 of the distance apart. A view direction needs at least a
+    // hundred such steps. The other bound keeps squares from vanishing.
     let smallest = (1e-5 * center.length()).max(1e-9);
     (center, (0.5 * bounds.diagonal()).max(smallest))
 }
 
-/// What a picture is of.
+/// Subject of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Subject {
-    /// What fills the picture.
+    /// Bounding box that fills the image.
     pub(super) bounds: Aabb,
-    /// The scene, which may go on around it.
+    /// Bounding box of the scene, which may extend beyond the subject.
     pub(super) all: Aabb,
-    /// It stands alone: shadows on the ground that it will be put on belong to it.
+    /// Whether the shadow on the ground belongs to the subject, because it stands alone and will be put on a ground.
     pub(super) has_shadow: bool,
 }
 
-/// A triangle is small where its box is so much smaller than the scene's, diagonal over diagonal.
+/// Largest diagonal of a small triangle's bounding box, over the diagonal of the subject's.
 const SMALL: f32 = 1.0 / 8.0;
-/// What is large is a ground where all small triangles lie together within such a part of the scene, and none of it rises above their
-/// middle.
+/// Largest diagonal of the box of all small triangles, over the subject's, at which the large triangles are a ground. No large triangle
+/// may rise above that box's centre.
 const SPECK: f32 = 1.0 / 3.0;
 
 impl Subject {
-    /// The scene, or what of it is no more than a speck on its ground.
+    /// Returns the subject: the whole scene, or its small triangles if they are no more than a speck on its ground.
     ///
-    /// A ground of two triangles, kilometres wide, says nothing of what the scene shows. Large triangles about things, or above them, are
-    /// walls and roofs, and belong to it.
+    /// A ground of two triangles, kilometres wide, must not determine the framing. Large triangles around or above objects are walls and
+    /// roofs, and belong to the subject.
     pub(super) fn of(scene: &Scene) -> Self {
         let all = scene.bounds();
         let mut bounds = all;
-        // Each turn leaves a third at most: a few are enough for any scene of floats.
+        // Each iteration leaves at most a third, so a few are enough for any scene of floats.
         for _ in 0..8 {
             let small_m = SMALL * bounds.diagonal();
             let (mut speck, mut top_of_large_m) = (Aabb::EMPTY, f32::NEG_INFINITY);
@@ -63,7 +63,7 @@ impl Subject {
                 let one = Aabb::of(triangle.positions);
                 match one.diagonal() <= small_m {
                     true => speck = speck.union(one),
-                    // What was left out before is not looked at again.
+                    // Triangles that an earlier iteration left out are ignored.
                     false if one.diagonal() <= bounds.diagonal() => top_of_large_m = top_of_large_m.max(one.max.y),
                     false => {}
                 }
@@ -77,10 +77,10 @@ impl Subject {
         Self { bounds, all, has_shadow: scene.stands_on_nothing() }
     }
 
-    /// The corners that are to be in the picture: of the box, and of the shadow of its lower half, where that belongs to it. (Of the
-    /// upper half shadows are as long as one likes.)
+    /// Points that must be in the image: the corners of the box and, with `has_shadow`, of the shadow of its lower half. (Shadows of the
+    /// upper half may have any length.)
     fn corners(&self) -> Vec<Vec3> {
-        // A box of nothing has no corners.
+        // An empty box has no corners.
         if self.bounds.is_empty() {
             return vec![Vec3::ZERO];
         }
@@ -96,7 +96,7 @@ impl Subject {
     }
 }
 
-/// A camera whose picture, of that width over its height, is filled by a subject.
+/// Returns a camera whose image a subject fills; `aspect` is width over height.
 pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
     let (center, radius) = sphere(subject.bounds);
     let fov_y_rad = (FOV_Y_DEGREES as f32).to_radians();
@@ -116,13 +116,13 @@ pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
     }
 }
 
-/// Where a camera looks, across its view, and how far it stands from there, at `least_m` or farther, so that corners fill its picture.
+/// Returns the target's offset across the view and the camera's distance from it, at least `least_m`, so that the corners fill the image.
 /// `towards` is the unit direction towards the camera, `slope_y` the tangent of half its vertical field of view.
 fn place_filled_by(corners: &[Vec3], towards: Vec3, up: Vec3, slope_y: f32, aspect: f32, least_m: f32) -> (Vec3, f32) {
     let right = up.cross(towards).normalize();
     let up = towards.cross(right);
-    // A corner at (x, z) across the picture and towards the camera lies within it where |x − e| ≤ slope · (distance − z), with the eye
-    // at (e, distance). All of them do where max (x + slope · z) − slope · distance ≤ e ≤ min (x − slope · z) + slope · distance.
+    // A corner at (x, z), across the image and towards the camera, is visible if |x − e| ≤ slope · (distance − z), with the eye at
+    // (e, distance). All are visible if max (x + slope · z) − slope · distance ≤ e ≤ min (x − slope · z) + slope · distance.
     let limits = |across: Vec3, slope: f32| {
         let most = corners.iter().map(|c| c.dot(across) + slope * c.dot(towards)).fold(f32::NEG_INFINITY, f32::max);
         let least = corners.iter().map(|c| c.dot(across) - slope * c.dot(towards)).fold(f32::INFINITY, f32::min);
@@ -135,7 +135,7 @@ fn place_filled_by(corners: &[Vec3], towards: Vec3, up: Vec3, slope_y: f32, aspe
         (most - least) / (2.0 * slope)
     };
     let distance = axes.map(enough).into_iter().fold(least_m, f32::max);
-    // Of those e the one that leaves as much room on both sides of the picture, found by halving.
+    // Of these e, the one with equal margins on both sides of the image, found by bisection.
     let middle = |(across, slope): (Vec3, f32)| {
         let (most, least) = limits(across, slope);
         let (mut low, mut high) = (most - slope * distance, least + slope * distance);
@@ -152,7 +152,7 @@ fn place_filled_by(corners: &[Vec3], towards: Vec3, up: Vec3, slope_y: f32, aspe
 }
 
 impl Camera {
-    /// Moves the camera, which keeps its direction, to where a box fills its picture of this width over its height.
+    /// Moves the camera, without turning it, so that a box fills its image; `aspect` is width over height.
     pub fn frame(&mut self, bounds: Aabb, aspect: f32) {
         if bounds.is_empty() {
             return;
@@ -168,12 +168,12 @@ impl Camera {
     }
 }
 
-/// The place in a box at these fractions of its extent.
+/// Point in a box at these fractions of its extent.
 pub(super) fn place_within(bounds: Aabb, fractions: Vec3) -> Vec3 {
     bounds.min + fractions * (bounds.max - bounds.min)
 }
 
-/// One rectangle above and beside a box.
+/// Default key light: a rectangle above and beside a box.
 pub(super) fn key_light(bounds: Aabb) -> Light {
     let (center, radius) = sphere(bounds);
     let diagonal = 2.0 * radius;

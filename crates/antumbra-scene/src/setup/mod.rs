@@ -1,4 +1,4 @@
-//! A setup: where to look from and what the lights are, as TOML (`docs/formats.md`).
+//! Setup: camera and lights, as TOML (`docs/formats.md`).
 
 mod emission;
 mod framing;
@@ -15,47 +15,47 @@ use antumbra_light::Light;
 
 use crate::{Camera, Scene, SceneError};
 
-/// Defaults of a setup file's camera.
+/// Defaults of a setup file's camera: vertical field of view, degrees; near and far planes, metres.
 const FOV_Y_DEGREES: f64 = 45.0;
 const NEAR_M: f32 = 0.05;
 const FAR_M: f32 = 200.0;
 
-/// Where to look from and what the lights are.
+/// Camera and lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
-    /// Where to look from.
+    /// Camera.
     pub camera: Camera,
-    /// At least one light.
+    /// Lights; at least one.
     pub lights: Vec<Light>,
 }
 
-/// A setup that a scene does not bring whole.
+/// Setup of a scene, with defaults for the camera or lights that the scene lacks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assumed {
-    /// Itself.
+    /// The setup.
     pub setup: Setup,
-    /// What the scene does not say, for readers; `None` where it says all.
+    /// Message about the defaults that were assumed; `None` if there are none.
     pub line: Option<String>,
-    /// What makes such a camera for pictures of other formats, where the camera frames the scene from outside.
+    /// Cameras for other aspect ratios; `None` unless the camera is a default one that frames the scene from outside.
     pub framing: Option<Framing>,
 }
 
-/// A scene's place in pictures that it fills.
+/// Framing of a scene: gives cameras whose images the scene fills.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Framing(framing::Subject);
 
 impl Framing {
-    /// A camera whose picture, of this width over its height, the scene fills.
+    /// Returns a camera whose image the scene fills; `aspect` is width over height.
     pub fn camera(&self, aspect: f32) -> Camera {
         framing::camera(&self.0, aspect)
     }
 }
 
 impl Setup {
-    /// Reads a setup from TOML; `origin` names the text in messages and is the file beside which textures lie.
+    /// Reads a setup from TOML. `origin` is the text's file: messages name it, and textures lie beside it.
     ///
     /// # Errors
-    /// One line: file, line, key, and what would be right.
+    /// One line: file, line, key, and remedy.
     pub fn from_toml(text: &str, origin: &Path) -> Result<Self, SceneError> {
         read::setup(text, origin)
     }
@@ -70,25 +70,25 @@ impl Setup {
         Self::from_toml(&text, path)
     }
 
-    /// The setup as TOML from which [`Self::from_toml`] makes the same setup, textures inside it as data URIs.
+    /// Writes the setup as TOML that [`Self::from_toml`] reads back as the same setup, with textures as data URIs.
     pub fn to_toml(&self) -> String {
         write::toml(self)
     }
 
-    /// The setup that a scene implies: its first camera and its lights. Where it has no camera one frames what fills it, or,
-    /// where faces enclose its middle, stands inside; where it has no lights one rectangle shines from above, or from below
-    /// the ceiling.
+    /// Setup that a scene implies: its first camera and its lights. By default, the camera frames the scene's subject, or stands
+    /// inside if faces enclose the scene's centre; the light is a rectangle above, or below the ceiling if the camera stands
+    /// inside.
     pub fn for_scene(scene: &Scene) -> Self {
         Self::assumed(scene).setup
     }
 
-    /// [`Self::for_scene`], and what of it the scene does not say. A camera that frames the scene shows it in pictures of any
-    /// format down to a square.
+    /// [`Self::for_scene`], with a message about assumed defaults. A default camera that frames the scene does so in images of any
+    /// aspect ratio of at least 1.
     pub fn assumed(scene: &Scene) -> Assumed {
         Self::assumed_for(scene, 1.0)
     }
 
-    /// [`Self::assumed`], with a camera that frames the scene in pictures of this width over their height.
+    /// [`Self::assumed`], with a default camera that frames the scene in images of this aspect ratio (width over height).
     pub fn assumed_for(scene: &Scene, aspect: f32) -> Assumed {
         let camera = scene.cameras.first().copied();
         let has_lights = !scene.lights.is_empty();
@@ -120,12 +120,12 @@ impl Setup {
     }
 }
 
-/// Whether a scene is seen from inside; see [`room`].
+/// Whether a scene is a room, which is viewed from inside; see [`room`].
 pub(crate) fn is_room(scene: &Scene) -> bool {
     room::inside(scene).is_some()
 }
 
-/// Whether a camera makes a picture; the message names the setup file's key.
+/// Checks that a camera can make an image; the error names the setup file's key.
 pub(crate) fn check_camera(camera: &Camera) -> Result<(), String> {
     let Camera { eye, target, up, fov_y_rad, near_m, far_m, shadow_distance } = *camera;
     for (key, value) in [("eye", eye), ("target", target), ("up", up)] {
@@ -137,7 +137,7 @@ pub(crate) fn check_camera(camera: &Camera) -> Result<(), String> {
     if forward == glam::Vec3::ZERO {
         return Err(format!("`eye` and `target` are both {eye}, and must differ"));
     }
-    /// Sine of the smallest angle between view and up at which the picture's horizon is well defined in an f32.
+    /// Sine of the smallest angle between view and up at which the image's horizon is well defined in an f32.
     const PARALLEL: f32 = 1e-5;
     if forward.cross(up.normalize_or_zero()).length() < PARALLEL {
         return Err(format!("`up` is {up}, and must be neither zero nor parallel to the view"));

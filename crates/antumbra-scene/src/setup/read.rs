@@ -1,4 +1,4 @@
-//! Setup files read key by key, so that every message can name line, key and the nearest right one.
+//! Reading of setup files key by key, so that every message can name the line, the key and the nearest valid one.
 
 use std::cmp::Reverse;
 use std::path::Path;
@@ -15,12 +15,12 @@ const SHAPES: &[&str] = &["rectangle", "disk", "sphere", "ellipsoid", "sun", "po
 const CAMERA_KEYS: &[&str] = &["eye", "target", "up", "fov_y", "near", "far", "shadow_distance", "shadow_fade"];
 /// Keys of every light; each shape adds its own.
 const LIGHT_KEYS: &[&str] = &["name", "shape", "center", "target", "up", "fov", "cone", "color", "intensity"];
-/// The sun's diameter seen from the earth, degrees.
+/// Angular diameter of the sun seen from the earth, degrees.
 const SUN_DEGREES: f64 = 0.53;
-/// Where a light stands that does not say: above the origin, metres.
+/// Default position of a light: above the origin, metres.
 const CENTER_M: Vec3 = Vec3::new(0.0, 5.0, 0.0);
 
-/// The name that a shape has in files.
+/// Name of a shape in files.
 pub(super) fn shape_name(shape: &LightShape) -> &'static str {
     match shape {
         LightShape::Rectangle { .. } => "rectangle",
@@ -32,7 +32,7 @@ pub(super) fn shape_name(shape: &LightShape) -> &'static str {
     }
 }
 
-/// The keys that a shape has for itself.
+/// Keys that a shape adds to those of every light.
 fn own_keys(shape: &str) -> &'static [&'static str] {
     match shape {
         "rectangle" => &["size", "texture", "candela"],
@@ -90,7 +90,7 @@ fn camera(file: &File, value: &Spanned<DeValue>) -> Result<Camera> {
         shadow_distance: shadow_distance(file, &section)?,
     };
     check_camera(&camera).map_err(|problem| {
-        // The message begins with the key it is about.
+        // The message begins with the key.
         let key = problem.split('`').nth(1).unwrap_or_default();
         file.error(section.start_of(key), format!("[camera]: {problem}"), "correct the key")
     })?;
@@ -133,11 +133,11 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
     };
     let center = section.vec3("center")?.unwrap_or(default_center.as_dvec3());
     let target = target.unwrap_or(DVec3::ZERO);
-    // From the centre as the light has it, rounded to f32, so that what was written from a light reads back as it; but
-    // what is equal in the file has no direction between.
+    // Computed from the centre rounded to f32, so that a light that was written reads back unchanged. Points that are equal
+    // in the file define no direction.
     let towards_target = if target == center { DVec3::ZERO } else { target - center.as_vec3().as_dvec3() };
     let axis = unit(direction.unwrap_or(towards_target));
-    // Each is a key of the shapes that it means something for.
+    // Each of the two is a key only of the shapes for which it is defined.
     let given = section.number("candela")?.or(section.number("lux")?);
     let light = Light {
         name: section.string("name")?.map_or_else(|| default_name(index), str::to_owned),
@@ -163,7 +163,7 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
     Ok(light)
 }
 
-/// The picture that a light emits, where it has one.
+/// Emission texture of a light; `None` if it has none.
 fn emission_of(file: &File, section: &Section<'_>, title: &str, folder: &Path) -> Result<Option<EmissionTexture>> {
     let Some(texture) = section.string("texture")? else { return Ok(None) };
     let read = emission::read(texture, folder).map_err(|why| {
@@ -177,7 +177,7 @@ fn emission_of(file: &File, section: &Section<'_>, title: &str, folder: &Path) -
     read.map(Some)
 }
 
-/// A light's shape by the keys of its kind, which is one of [`SHAPES`].
+/// Reads a light's shape from the keys of its kind, which is one of [`SHAPES`].
 fn light_shape(section: &Section<'_>, shape: &str) -> Result<LightShape> {
     let need = |key: &'static str, what: &str| section.missing(key, what);
     Ok(match shape {
@@ -203,24 +203,24 @@ fn light_shape(section: &Section<'_>, shape: &str) -> Result<LightShape> {
     })
 }
 
-/// The first light of a scene is its key light.
+/// Default name of a light; the first light is the key light.
 fn default_name(index: usize) -> String {
     if index == 0 { "key".into() } else { format!("light {}", index + 1) }
 }
 
-/// In double precision; zero where there is no direction.
+/// Normalizes in double precision; zero if there is no direction.
 fn unit(v: DVec3) -> Vec3 {
     v.try_normalize().unwrap_or(DVec3::ZERO).as_vec3()
 }
 
-/// The text being read, for messages.
+/// Text being read and its origin for messages.
 struct File<'t> {
     text: &'t str,
     origin: String,
 }
 
 impl File<'_> {
-    /// The line of a byte, from 1.
+    /// Line of a byte, from 1.
     fn line(&self, at: usize) -> usize {
         let before = &self.text.as_bytes()[..at.min(self.text.len())];
         1 + before.iter().filter(|b| **b == b'\n').count()
@@ -261,12 +261,12 @@ impl<'t> Section<'t> {
         self.table.iter().find(|(k, _)| k.get_ref() == key).map(|(_, v)| v)
     }
 
-    /// Where a key's value begins; where the section begins if it has no such key.
+    /// Start of a key's value, a byte; start of the section if it has no such key.
     fn start_of(&self, key: &str) -> usize {
         self.get(key).map_or(self.start, |v| v.span().start)
     }
 
-    /// Refuses keys outside `allowed`; `whose` says to what the keys belong.
+    /// Refuses keys outside `allowed`; `whose` names the owner of the keys in messages.
     fn only(&self, allowed: &[&[&str]], whose: &str) -> Result<()> {
         let allowed: Vec<&str> = allowed.iter().copied().flatten().copied().collect();
         // In the order of the file, so that the first mistake is the one reported.
@@ -347,11 +347,11 @@ fn one_of(names: &[&str]) -> String {
     names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// The right name that looks most like a wrong one, or all of them where none does.
+/// Valid name that is most similar to a wrong one, or all of them if none is similar.
 fn suggestion(wrong: &str, right: &[&str]) -> String {
-    // Up to this many wrong letters are taken for a slip of the finger; longer words are allowed more.
+    // Number of wrong letters up to which a name counts as mistyped; longer names are allowed more.
     let slips = |name: &str| 1 + name.len() / 3;
-    // What is much too long is no slip, and comparing it would take long.
+    // A much longer name is not mistyped, and comparing it would take long.
     let candidates = right.iter().filter(|name| wrong.len() <= 2 * name.len());
     let shared_start = |name: &str| name.bytes().zip(wrong.bytes()).take_while(|(a, b)| a == b).count();
     let nearest = candidates.map(|name| (strsim::levenshtein(wrong, name), Reverse(shared_start(name)), *name)).min();

@@ -1,8 +1,8 @@
-//! Rooms: scenes that are seen from inside, since from outside one sees their walls alone.
+//! Rooms: scenes that are viewed from inside, because only their walls are visible from outside.
 //!
-//! A room is where faces look at one from nearly everywhere. From within a solid one sees the backs of its faces, from a
-//! street the sky; a hall without a roof has walls and floor enough. Rays are cast against every triangle, of which there
-//! are so few rays that no tree would pay.
+//! A scene is a room if rays from its inside meet front faces in nearly all directions. Inside a solid they meet back faces,
+//! in a street the sky; a hall without a roof has enough walls and floor. Rays are tested against every triangle: there are
+//! so few rays that a tree would not pay.
 
 use std::f32::consts::TAU;
 
@@ -12,34 +12,34 @@ use glam::{Vec2, Vec3};
 use super::framing::place_within;
 use crate::{Camera, Scene};
 
-/// A point is enclosed where so much of what is around it looks at it: a hall without its roof is, a street is not.
+/// Smallest fraction of rays from an enclosed point that meet front faces: true in a hall without a roof, not in a street.
 const ENCLOSED: f32 = 0.8;
-/// Of the points that are asked, a room encloses so many.
+/// Smallest number of enclosed test points in a room.
 const LEAST_ENCLOSED: usize = 3;
-/// Directions from a point, evenly over the sphere.
+/// Number of rays from a point, evenly distributed over the sphere.
 const DIRECTIONS: u32 = 32;
-/// One stands in no room that is lower, metres.
+/// Smallest height of a room, metres.
 const LEAST_HEIGHT_M: f32 = 1.5;
-/// Eyes of someone who stands, metres above the floor, where the room is high enough.
+/// Eye height above the floor, metres, if the room is high enough.
 const EYE_HEIGHT_M: f32 = 1.6;
-/// More triangles than these times the rays would be seconds of work.
+/// Largest number of triangles that are tested: with more, the rays would take seconds.
 const MOST_TRIANGLES: usize = 2_000_000;
-/// Vertical: wide, as rooms are drawn.
+/// Vertical field of view, degrees: wide, as is usual for rooms.
 const FOV_Y_DEGREES: f32 = 65.0;
-/// How far up from the eye towards the ceiling the lamp hangs.
+/// Height of the lamp, as a fraction of the way from the eye to the ceiling.
 const LAMP_HEIGHT: f32 = 0.85;
-/// The lamp's side over the height above the eye.
+/// Side of the lamp over the ceiling's height above the eye.
 const LAMP_SIDE: f32 = 0.2;
 
-/// What a ray met first.
+/// First intersection of a ray.
 #[derive(Clone, Copy, Debug)]
 struct Hit {
     distance_m: f32,
-    /// The face looks at the ray's origin.
+    /// Whether the triangle's front faces the ray's origin.
     is_front: bool,
 }
 
-/// The camera and the lamp for a room; `None` where the scene is none.
+/// Returns a room's default camera and lamp; `None` if the scene is no room.
 pub(super) fn inside(scene: &Scene) -> Option<(Camera, Light)> {
     if scene.triangle_count() > MOST_TRIANGLES {
         return None;
@@ -54,7 +54,7 @@ pub(super) fn inside(scene: &Scene) -> Option<(Camera, Light)> {
     }
     let view = longest_view(&faces, bounds)?;
     let ahead = view.eye + 0.4 * view.length_m * view.direction;
-    // Under open sky the scene's own height is the room's.
+    // Without a ceiling, the scene's height is the room's.
     let above = cast(&faces, &[(ahead, Vec3::Y)])[0].map_or(bounds.max.y - ahead.y, |hit| hit.distance_m);
     let center = ahead + LAMP_HEIGHT * above * Vec3::Y;
     let lamp = Light::new(LightShape::Rectangle { size_m: Vec2::splat(LAMP_SIDE * above) }, center, center - Vec3::Y);
@@ -70,22 +70,22 @@ pub(super) fn inside(scene: &Scene) -> Option<(Camera, Light)> {
     (above > 0.0).then_some((camera, lamp))
 }
 
-/// A place to stand and a way to look.
+/// Eye position and view direction.
 #[derive(Clone, Copy, Debug)]
 struct View {
     eye: Vec3,
-    /// Unit, level.
+    /// Unit view direction, horizontal.
     direction: Vec3,
-    /// Until something is in the way, metres.
+    /// Distance to the first intersection, metres.
     length_m: f32,
 }
 
-/// Where one stands on a floor and sees farthest with most room around: the greatest product of the way that is looked and
-/// the nearest thing at eye's height, so that a hall comes before the passage behind its wall.
+/// Returns the best view from above a floor: the greatest product of the view's length and the distance to the nearest
+/// surface at eye height. This prefers a hall to the passage behind its wall.
 fn longest_view(faces: &[[Vec3; 3]], bounds: Aabb) -> Option<View> {
     const STEPS: [f32; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
     const WAYS: u32 = 12;
-    /// What is longer by so much than it is wide to either side shows no more for it.
+    /// Largest view length that counts, as a multiple of the distance to the nearest surface.
     const PASSAGE: f32 = 8.0;
     let places: Vec<Vec3> =
         STEPS.iter().flat_map(|x| STEPS.map(|z| place_within(bounds, Vec3::new(*x, 0.4, z)))).collect();
@@ -114,9 +114,9 @@ fn longest_view(faces: &[[Vec3; 3]], bounds: Aabb) -> Option<View> {
     views.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(view, _)| view)
 }
 
-/// Whether faces look at a place from nearly everywhere.
+/// Whether rays from a place meet front faces in nearly all directions.
 fn is_enclosed(faces: &[[Vec3; 3]], place: Vec3) -> bool {
-    /// 2π (1 − 1/φ): turns by it fill the circle evenly (Vogel 1979).
+    /// Golden angle, 2π (1 − 1/φ), radians: turns by it fill the circle evenly (Vogel 1979).
     const GOLDEN_ANGLE: f32 = 2.399_963;
     let direction = |k: u32| {
         let y = 1.0 - 2.0 * (k as f32 + 0.5) / DIRECTIONS as f32;
@@ -139,7 +139,7 @@ fn faces(scene: &Scene) -> Vec<[Vec3; 3]> {
     scene.world_triangles().map(front).collect()
 }
 
-/// What each ray, of an origin and a direction, meets first (Möller and Trumbore 1997).
+/// First intersection of each ray, given by origin and direction (Möller and Trumbore 1997).
 fn cast(faces: &[[Vec3; 3]], rays: &[(Vec3, Vec3)]) -> Vec<Option<Hit>> {
     let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
     for [a, b, c] in faces {
@@ -153,7 +153,7 @@ fn cast(faces: &[[Vec3; 3]], rays: &[(Vec3, Vec3)]) -> Vec<Option<Hit>> {
             let q = from_a.cross(ab);
             let v = direction.dot(q) * inverse;
             let distance_m = ac.dot(q) * inverse;
-            // A ray in the face's plane divides by nothing, and what comes of that compares as false.
+            // For a ray in the triangle's plane the determinant is 0; the NaN or infinity that results fails the comparison.
             let meets = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance_m > 0.0;
             if meets && hit.is_none_or(|nearest| distance_m < nearest.distance_m) {
                 *hit = Some(Hit { distance_m, is_front: determinant > 0.0 });

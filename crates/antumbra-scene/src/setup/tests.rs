@@ -1,4 +1,4 @@
-//! Setup files: what they mean, what they say when wrong, and that they survive being written and read.
+//! Setup files: meaning, messages about faults, and round trips through writing and reading.
 
 use std::path::Path;
 
@@ -91,7 +91,7 @@ fn mistakes_are_named_with_line_and_remedy() {
     }
 }
 
-/// Equal, axes to within the last bit or two that normalising costs.
+/// Asserts that setups are equal, axes to within the last bit or two that normalizing changes.
 fn close(a: &Setup, b: &Setup) {
     assert_eq!(a.camera, b.camera);
     assert_eq!(a.lights.len(), b.lights.len());
@@ -174,7 +174,7 @@ fn a_texture_is_luminance_with_its_first_row_on_top() {
     assert!((emission.luminance_at(Vec2::new(0.75, 0.75)) - 1.0).abs() < 1e-5);
     assert!((emission.luminance_at(Vec2::new(0.25, 0.25)) - 0.7152).abs() < 1e-5);
     assert_eq!(emission.luminance_at(Vec2::new(0.25, 0.75)), 0.0);
-    // Its colours are kept beside, through a file too.
+    // Its colours are kept as well, also through a file.
     let written = read(&setup.to_toml()).unwrap();
     for emission in [emission, written.lights[0].emission.as_ref().unwrap()] {
         assert!(emission.color_at(Vec2::new(0.25, 0.25)).abs_diff_eq(Vec3::Y, 1e-4), "{emission:?}");
@@ -214,7 +214,7 @@ fn framing_shows_every_corner_at_every_scale() {
     super::check_camera(&super::framing::camera(&alone(Aabb::EMPTY), 1.0)).unwrap();
 }
 
-/// A box and nothing else.
+/// Subject that is only a box.
 fn alone(bounds: Aabb) -> Subject {
     Subject { bounds, all: bounds, has_shadow: false }
 }
@@ -272,7 +272,7 @@ fn what_a_scene_says_is_not_assumed() {
     assert!(line.is_some_and(|line| line.contains("no lights") && !line.contains("no camera")));
 }
 
-/// Corners are near opposite edges of the picture, and nothing is beyond them, whatever the picture's format.
+/// Corners are near opposite edges of the image and none lies outside, for any aspect ratio.
 #[test]
 fn an_object_fills_the_frame() {
     for size in [Vec3::splat(0.1), Vec3::new(0.1, 1.0, 0.1), Vec3::new(3.0, 0.1, 3.0), Vec3::new(100.0, 15.0, 100.0)] {
@@ -285,13 +285,13 @@ fn an_object_fills_the_frame() {
             let least = places.into_iter().fold(Vec2::MAX, Vec2::min);
             let reach = most.max(-least).max_element();
             assert!((0.9..=1.0).contains(&reach), "{size}, {px}: {reach}");
-            // With as much room on either side.
+            // The margins are equal.
             assert!((most + least).abs().max_element() < 0.01, "{size}, {px}: {least} to {most}");
         }
     }
 }
 
-/// Kilometres of ground are not what a picture is of; the walls of a hall with small things in it are.
+/// Kilometres of ground do not belong to the subject of an image; the walls of a hall with small objects in it do.
 #[test]
 fn grounds_do_not_make_specks_of_what_stands_on_them() {
     let mut village = hollow(Vec3::new(10.0, 6.0, 10.0), false);
@@ -310,7 +310,7 @@ fn grounds_do_not_make_specks_of_what_stands_on_them() {
     let subject = Subject::of(&village);
     assert_eq!(subject.bounds, houses);
     assert!(subject.all.diagonal() > 30.0 * houses.diagonal());
-    // What is seen goes on behind it.
+    // The far plane lies behind the ground.
     assert!(super::framing::camera(&subject, 1.0).far_m > subject.all.diagonal());
 
     let mut hall = hollow(Vec3::new(10.0, 6.0, 10.0), false);
@@ -321,7 +321,7 @@ fn grounds_do_not_make_specks_of_what_stands_on_them() {
     assert_eq!(Subject::of(&hall).bounds, hall.bounds());
 }
 
-/// An object that is put on a ground is seen with a good part of its shadow.
+/// The image of an object that is put on a ground includes a good part of its shadow.
 #[test]
 fn shadows_on_the_ground_are_in_the_picture() {
     let bounds = Aabb { min: Vec3::ZERO, max: Vec3::new(5.0, 2.5, 2.5) };

@@ -1,4 +1,4 @@
-//! A setup as TOML, such that reading it gives the same numbers.
+//! Writing of setups as TOML, such that reading gives the same numbers.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 use super::{Setup, emission};
 
-/// Up to here a metre from the centre is a direction to all digits of an f32, written in the sixteen of an f64.
+/// Largest distance of a centre, metres, at which a target one metre from it gives the axis to all digits of an f32.
 const DISTANT_M: f64 = 1e6;
 
 pub(super) fn toml(setup: &Setup) -> String {
@@ -41,7 +41,7 @@ fn light(light: &Light) -> String {
     line("center", vector(light.center));
     match &light.shape {
         LightShape::Sun { .. } => line("direction", vector(light.axis)),
-        // In double precision, and farther away from a distant centre, so that the direction keeps its digits.
+        // In double precision, and with a farther target if the centre is distant, so that the direction keeps its digits.
         _ => {
             let center = light.center.as_dvec3();
             let distance = if center.length() < DISTANT_M { 1.0 } else { center.length() };
@@ -76,7 +76,7 @@ fn light(light: &Light) -> String {
     out
 }
 
-/// The shortest decimal that reads back as the same f32; TOML wants a point or an exponent in a float.
+/// Formats the shortest decimal that reads back as the same f32; a float in TOML needs a point or an exponent.
 fn number(v: f32) -> String {
     format!("{v:?}")
 }
@@ -86,11 +86,11 @@ fn vector(v: Vec3) -> String {
 }
 
 fn exact_vector(v: DVec3) -> String {
-    // Seven digits are an f32's; as many again hold a difference of two.
+    // An f32 has seven digits; a difference of two needs as many again.
     format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
 }
 
-/// Degrees that read back as the same radians: short where that suffices.
+/// Formats degrees that read back as the same radians, with few digits if they suffice.
 fn degrees(rad: f32) -> String {
     let exact = f64::from(rad).to_degrees();
     let short = exact as f32;

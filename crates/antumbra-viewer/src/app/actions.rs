@@ -1,11 +1,11 @@
-//! Actions: what keys, panels and dialogs ask for, done.
+//! Actions that keys, panels and dialogs request.
 
 use super::App;
 use crate::loader::{Wanted, read_setup, write_setup};
 use crate::state::command_line;
 use crate::ui::Action;
 
-/// Each goes to the view that was kept as its number.
+/// Keys of the bookmarked views, in order.
 const BOOKMARK_KEYS: [egui::Key; 9] = [
     egui::Key::Num1,
     egui::Key::Num2,
@@ -78,7 +78,7 @@ impl App {
             if input.consume_key(egui::Modifiers::COMMAND, egui::Key::O) {
                 self.panels.open.is_open = true;
             }
-            // The one with more keys first: consuming ignores a Shift that is not asked for.
+            // The combination with more modifiers comes first, because `consume_key` ignores an extra Shift.
             let (with_shift, command) = (egui::Modifiers::COMMAND | egui::Modifiers::SHIFT, egui::Modifiers::COMMAND);
             if input.consume_key(with_shift, egui::Key::Z) || input.consume_key(command, egui::Key::Y) {
                 actions.push(Action::Redo);

@@ -1,5 +1,5 @@
-//! The whole application, fed with a hand's events and without a window: what would be on the screen is laid out and drawn, but
-//! shown nowhere. For tests, and for [random input](super::random_input).
+//! The whole application without a window, fed with input events: the screen's content is laid out and drawn but not
+//! presented. For tests, and for [random input](super::random_input).
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,23 +19,23 @@ use crate::message::one_line;
 use crate::options::ViewerOptions;
 use crate::state::{Show, Side};
 
-/// Until then everything stands still that ever will. Software devices compile some techniques for a minute.
+/// Time limit for the application to become idle. Software devices compile some techniques for a minute.
 const MOST_WAIT: Duration = Duration::from_secs(300);
 
-/// A window that is not there.
+/// A window without a screen.
 pub struct Window {
     pub ctx: egui::Context,
     pub app: App,
     pub size: egui::Vec2,
-    /// Pixels of the display for a point of the size.
+    /// Physical pixels per point of `size`.
     pub pixels_per_point: f32,
     pub device: wgpu::Device,
-    /// What the device has complained about.
+    /// Uncaptured errors of the device.
     pub complaints: Arc<Mutex<Vec<String>>>,
     pub outcome: Outcome,
 }
 
-/// A file that is dropped on it.
+/// A file dropped on the window.
 #[derive(Debug)]
 struct Dropped(PathBuf);
 
@@ -49,21 +49,21 @@ impl egui::DroppedFile for Dropped {
     }
 }
 
-/// Why there is no window.
+/// Reason why the application cannot run without a window.
 #[derive(Debug, thiserror::Error)]
 pub enum HeadlessError {
     /// This machine has no adapter.
     #[error("no graphics adapter answers; a software one will do, such as Mesa's")]
     NoAdapter,
-    /// It has one that gives no device.
+    /// The adapter gives no device.
     #[error("the adapter gives no device: {0}")]
     NoDevice(String),
-    /// What is saved has no folder to go to.
+    /// The folder for saved files cannot be created.
     #[error("{0}: cannot be made: {1}")]
     NoFolder(PathBuf, std::io::Error),
 }
 
-/// A device for a window, as the system gives it.
+/// Creates the render state of a window on the system's default adapter.
 fn render_state() -> Result<RenderState, HeadlessError> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
@@ -83,7 +83,7 @@ fn render_state() -> Result<RenderState, HeadlessError> {
     })
 }
 
-/// A scene under `hard`, as software devices draw it soon.
+/// Options that show a scene under `hard` at `fast` quality, which software devices draw quickly.
 pub fn options(scene: &str) -> ViewerOptions {
     let mut side = Side::new(TechniqueKind::Hard);
     side.set_quality(Quality::Fast);
@@ -114,19 +114,19 @@ impl Window {
         app.file_dialog = FileDialog::absent();
         let complaints = Arc::new(Mutex::new(Vec::new()));
         let told = complaints.clone();
-        // After the renderer's own, which it takes the place of.
+        // This replaces the renderer's own handler.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             told.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
         }));
         Ok(Self { ctx, app, size: egui::vec2(640.0, 400.0), pixels_per_point: 1.0, device, complaints, outcome })
     }
 
-    /// One frame with these events.
+    /// Runs one frame with these events.
     pub fn frame(&mut self, events: Vec<egui::Event>) {
         self.frame_of(egui::RawInput { events, ..egui::RawInput::default() });
     }
 
-    /// One frame in which these files are dropped.
+    /// Runs one frame in which these files are dropped.
     pub fn drop_files(&mut self, paths: &[&str]) {
         let dropped = |path: &&str| Arc::new(Dropped(path.into())) as egui::DroppedFileHandle;
         let dropped_files = paths.iter().map(dropped).collect();
@@ -138,14 +138,14 @@ impl Window {
         let screen_rect = Some(egui::Rect::from_min_size(egui::Pos2::ZERO, self.size));
         let app = &mut self.app;
         let mut output = self.ctx.run_ui(egui::RawInput { screen_rect, ..input }, |ui| app.show(ui));
-        // Nobody draws it. A window that is there waits for the screen, and is never far ahead of its device; without that a slow
-        // one would be given frames faster than it draws them. One that is lost says so by the next frame.
+        // The output is discarded. A real window waits for the screen, so it never runs far ahead of its device; without a wait here a
+        // slow device would receive frames faster than it draws them. A lost device is reported by the next frame.
         output.textures_delta.clear();
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
         assert_eq!(*self.complaints.lock().unwrap_or_else(PoisonError::into_inner), Vec::<String>::new());
     }
 
-    /// Frames until nothing is left to do. Whether that came to be before `most` had gone by.
+    /// Runs frames until the application is idle. Returns whether that happened within `most`.
     pub fn wait(&mut self, most: Duration) -> bool {
         let (began, mut still) = (Instant::now(), 0);
         while began.elapsed() < most {
@@ -160,14 +160,14 @@ impl Window {
         false
     }
 
-    /// Frames until nothing is left to do.
+    /// Runs frames until the application is idle; panics after `MOST_WAIT`.
     pub fn settle(&mut self) {
         let is_still = self.wait(MOST_WAIT);
         let compiling = self.app.renderer.sides.each_ref().map(|side| side.compiling());
         assert!(is_still, "it never stands still: {:?}, compiling {compiling:?}", self.app.message);
     }
 
-    /// Whether it has closed by itself.
+    /// Whether the window has closed by itself.
     pub fn has_closed(&self) -> bool {
         self.outcome.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }

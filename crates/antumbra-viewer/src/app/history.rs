@@ -1,15 +1,15 @@
-//! Undo and redo of what a hand edits: lights and techniques. Looking around is no edit.
+//! Undo and redo of the user's edits: lights and techniques. Camera motion is not an edit.
 
 use antumbra_light::Light;
 use egui::util::undoer::Undoer;
 
 use crate::state::{Side, State};
 
-/// What can be undone.
+/// The part of the state that undo restores.
 #[derive(Clone, Debug, PartialEq)]
 struct Edited {
     lights: Vec<Light>,
-    /// Which light is chosen.
+    /// Index of the selected light.
     light: usize,
     sides: [Side; 2],
     is_split: bool,
@@ -32,17 +32,17 @@ impl Edited {
     }
 }
 
-/// The edits of the scene that is open, oldest first.
+/// Edits of the open scene, oldest first.
 #[derive(Debug, Default)]
 pub struct History {
     edits: Undoer<Edited>,
-    /// The opening that they belong to.
+    /// Generation of the open scene to which the edits belong.
     generation: Option<u64>,
 }
 
 impl History {
-    /// Notes the state of a frame. One step are all edits between two rests of a second. What moves by itself is no edit: it is noted when it
-    /// stops.
+    /// Records the state of a frame. All edits between two pauses of a second form one step. Animation is not an edit: its
+    /// result is recorded when it stops.
     pub fn note(&mut self, state: &State, time_s: f64) {
         let generation = state.scene.as_ref().map(|open| open.generation);
         if generation != self.generation {
@@ -53,19 +53,19 @@ impl History {
         }
     }
 
-    /// Takes back the newest edit; whether there was one.
+    /// Undoes the newest edit. Returns whether there was one.
     pub fn undo(&mut self, state: &mut State) -> bool {
         let edited = self.edits.undo(&Edited::of(state)).cloned();
         edited.map(|edited| edited.give_to(state)).is_some()
     }
 
-    /// Does again what was taken back last; whether there was something.
+    /// Redoes the edit that was undone last. Returns whether there was one.
     pub fn redo(&mut self, state: &mut State) -> bool {
         let edited = self.edits.redo(&Edited::of(state)).cloned();
         edited.map(|edited| edited.give_to(state)).is_some()
     }
 
-    /// Whether there is something to undo, and to redo.
+    /// Whether an edit can be undone, and whether one can be redone.
     pub fn can_undo_and_redo(&self, state: &State) -> [bool; 2] {
         let edited = Edited::of(state);
         [self.edits.has_undo(&edited), self.edits.has_redo(&edited)]
@@ -85,7 +85,7 @@ mod tests {
         state
     }
 
-    /// The state rests for two seconds from a time on.
+    /// Records an unchanged state for two seconds from a time on.
     fn rest(history: &mut History, state: &State, from_s: f64) {
         for step in 0..3 {
             history.note(state, from_s + f64::from(step));
@@ -126,7 +126,7 @@ mod tests {
         state.open("builtin:overlap", &load("builtin:overlap", &LoadOptions::default()).unwrap(), None);
         rest(&mut history, &state, 20.0);
         assert!(!history.undo(&mut state));
-        // A turntable is no edit, and what it did is one when it stops.
+        // A turntable is no edit while it turns; its result is one when it stops.
         state.light_turn_rad_s = 1.0;
         state.advance(0.5);
         rest(&mut history, &state, 30.0);

@@ -1,4 +1,4 @@
-//! Opening of scenes and setups: what was loaded, chosen or dropped, and an animated scene's pose.
+//! Opening of scenes and setups that were loaded, chosen or dropped, and poses of animated scenes.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::ui;
 use crate::ui::Action;
 
 impl App {
-    /// Takes in what has loaded, or why it has not.
+    /// Opens a scene or setup that has finished loading, or reports its error.
     pub(super) fn take_loaded(&mut self, ctx: &egui::Context) {
         match self.loader.take() {
             None => {}
@@ -56,13 +56,13 @@ impl App {
         self.scene = Some(scene);
     }
 
-    /// Shows an animated scene at the time that is wanted, once it is posed.
+    /// Shows an animated scene at the requested time, once its pose is computed.
     pub(super) fn pose(&mut self) {
         let (Some(poser), Some(scene)) = (&mut self.poser, &mut self.scene) else { return };
         match poser.take() {
             None => {}
             Some(Ok(mut posed)) => {
-                // Whoever traces the scene holds it as it was.
+                // A tracer may hold the scene in its previous pose; its images cannot be moved then.
                 posed.images = match Arc::get_mut(scene) {
                     Some(own) => std::mem::take(&mut own.images),
                     None => scene.images.clone(),
@@ -80,7 +80,7 @@ impl App {
         poser.want(self.state.play.time_s, &self.wake);
     }
 
-    /// Whether an animated scene is shown at another time than is wanted.
+    /// Whether an animated scene shows another time than the requested one.
     pub(super) fn is_posing(&self) -> bool {
         self.poser.as_ref().is_some_and(|poser| poser.is_behind(self.state.play.time_s))
     }
@@ -93,7 +93,7 @@ impl App {
         self.state.setup_file = Some((path, setup));
     }
 
-    /// Opens what was chosen in the system's dialog, or says that nothing was.
+    /// Opens or saves the file chosen in the system's dialog, or reports that none was chosen.
     pub(super) fn take_chosen(&mut self, ctx: &egui::Context) {
         match self.file_dialog.take() {
             None => {}
@@ -115,7 +115,7 @@ impl App {
         self.loader.load_bytes(chosen.path.display().to_string(), chosen.bytes, self.wake.clone());
     }
 
-    /// Opens what was dropped.
+    /// Opens a dropped file.
     pub(super) fn take_dropped(&mut self, file: egui::DroppedFileHandle, _actions: &mut Vec<Action>) {
         #[cfg(not(target_arch = "wasm32"))]
         _actions.push(ui::action_for(&file.path().display().to_string()));
@@ -124,7 +124,7 @@ impl App {
     }
 }
 
-/// ` (and 2 more)`, or nothing.
+/// ` (and 2 more)` for a count of 3; empty for a count of 1 or 0.
 fn more(count: usize) -> String {
     if count > 1 { format!(" (and {} more)", count - 1) } else { String::new() }
 }

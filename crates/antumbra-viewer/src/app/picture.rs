@@ -1,4 +1,4 @@
-//! The picture in the window: the state drawn at its size, the truth beside it, and what is said over it.
+//! The image in the window: the state drawn at the window's size, the ground truth, and the text over it.
 
 use std::time::Duration;
 
@@ -9,11 +9,11 @@ use crate::state::Show;
 use crate::truth::Job;
 use crate::ui;
 
-/// How soon to look again for what the GPU has finished.
+/// Interval at which unfinished GPU work is polled.
 const SOON: Duration = Duration::from_millis(15);
 
 impl App {
-    /// Draws the state at the size of what is left of the window.
+    /// Draws the state at the size of the space that the panels leave.
     pub(super) fn draw(&mut self, ui: &egui::Ui) {
         let points = ui.available_size();
         let pixels = points * ui.ctx().pixels_per_point();
@@ -36,7 +36,7 @@ impl App {
         self.read_masks();
         self.save_picture();
         self.advance_screenshot(ui.ctx(), drawn.is_unfinished || self.is_posing());
-        // Panels were laid out before this frame was drawn: once more after the last, so that they tell of it.
+        // Panels were laid out before this frame was drawn, so one more frame after the last one updates them.
         let was_unfinished = std::mem::replace(&mut self.was_unfinished, drawn.is_unfinished);
         if self.state.is_moving() {
             ui.ctx().request_repaint();
@@ -45,7 +45,7 @@ impl App {
         }
     }
 
-    /// The picture, and what is said over it.
+    /// Shows the image and the text over it.
     pub(super) fn show_picture(&mut self, ui: &mut egui::Ui) {
         let texture = self.texture.as_ref().map(|(_, id)| *id);
         let map_line = |side: usize| {
@@ -61,7 +61,7 @@ impl App {
         let pixel = |unit: glam::Vec2| (unit * self.size_px.as_vec2()).as_uvec2().min(self.size_px - 1);
         let asked = pointer.map(|pointer| pixel(pointer.unit));
         if asked != self.asked_px {
-            // The next frame reads it.
+            // The next frame reads this pixel.
             ui.ctx().request_repaint();
         }
         self.asked_px = asked;
@@ -73,7 +73,7 @@ impl App {
         }
     }
 
-    /// Gives egui the renderer's output, where that is another texture than before.
+    /// Registers the renderer's output with egui if its texture has changed.
     fn take_output(&mut self) {
         let Some(view) = self.renderer.output() else { return };
         if self.texture.as_ref().is_some_and(|(held, _)| held == view) {
@@ -92,7 +92,7 @@ impl App {
         self.state.show.needs_truth() || self.panels.is_inspecting
     }
 
-    /// Rays are traced while they are shown and nothing moves.
+    /// Requests the ground truth while it is shown and nothing moves.
     fn ask_for_truth(&mut self) {
         let scene = self.scene.as_ref().filter(|_| self.wants_truth() && !self.state.is_moving() && !self.is_posing());
         let job = scene.map(|scene| Job {
@@ -107,7 +107,7 @@ impl App {
         }
     }
 
-    /// Reads the masks that are held against the truth, once for each that is drawn.
+    /// Reads the masks that are compared with the ground truth, once per drawn version.
     fn read_masks(&mut self) {
         if !self.state.show.needs_truth() {
             self.masks = [None, None];

@@ -1,8 +1,8 @@
-//! A hand that does anything, for as long as one likes: opens and drops files, good ones and broken ones, resizes and minimises
-//! the window, chooses techniques, qualities, parameters, views and lights, plays, clicks and presses keys.
+//! Random input to the whole application: opens and drops valid and broken files, resizes and minimises the window, chooses
+//! techniques, qualities, parameters, views and lights, plays animations, clicks and presses keys.
 //!
-//! What goes wrong is a panic: the application's own, or one that repeats what the device complains about.
-//! `examples/random_input.rs` runs it by the minute, and a test in three short rounds.
+//! Every failure is a panic: the application's own, or one that repeats an error of the device. `examples/random_input.rs`
+//! runs it for minutes, and a test in three short rounds.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -16,14 +16,14 @@ use super::headless::{Window, options};
 use crate::state::{SPEEDS, ShapeKind, Show, Side, State};
 use crate::ui::{self, Action, Panels};
 
-/// What is open at first, and whenever what is held is counted.
+/// Scene that is open at first and whenever objects are counted.
 const HOME: &str = "builtin:overlap";
-/// How large the window is then, points: small, since software devices draw it.
+/// Window size for [`HOME`], points. It is small because software devices draw it.
 const HOME_SIZE: [f32; 2] = [480.0, 160.0];
-/// How long a hand watches before it does the next thing.
+/// Time limit of a step that only waits.
 const MOST_WATCHING: Duration = Duration::from_secs(1);
 
-/// Numbers that look random, the same ones for a seed (Marsaglia, "Xorshift RNGs", 2003).
+/// Xorshift generator; a seed determines its numbers (Marsaglia, "Xorshift RNGs", 2003).
 struct Random(u64);
 
 impl Random {
@@ -39,35 +39,35 @@ impl Random {
     }
 }
 
-/// Objects that the device holds.
+/// Number of objects that the device holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceObjects {
     /// Buffers.
     pub buffers: usize,
     /// Textures.
     pub textures: usize,
-    /// Groups of bindings.
+    /// Bind groups.
     pub bind_groups: usize,
-    /// Pipelines, which programs keep for whoever wants them again: as many as there are kinds of them, and no more.
+    /// Pipelines. They stay cached, so their number is bounded by the number of pipeline keys.
     pub pipelines: usize,
 }
 
-/// The application under such a hand.
+/// The application with a generator of random input.
 pub struct RandomInput {
     window: Window,
     random: Random,
     things: Vec<String>,
     kinds: Vec<TechniqueKind>,
-    /// Whatever is saved goes here, and goes when this value does.
+    /// Temporary folder for saved files; removed on drop.
     folder: PathBuf,
     opened: u64,
 }
 
 impl RandomInput {
-    /// The application, to be given the steps of a seed that is not zero; it opens `things` and chooses among `kinds`.
+    /// Creates the application and a generator with a seed other than zero. It opens `things` and chooses among `kinds`.
     ///
     /// # Errors
-    /// Where this machine gives no device, or no folder for what is saved.
+    /// Fails if this machine gives no device, or the folder for saved files cannot be created.
     pub fn new(seed: u64, things: Vec<String>, kinds: Vec<TechniqueKind>) -> Result<Self, HeadlessError> {
         let folder = std::env::temp_dir().join(format!("antumbra-viewer-random-{}", std::process::id()));
         std::fs::create_dir_all(&folder).map_err(|error| HeadlessError::NoFolder(folder.clone(), error))?;
@@ -77,17 +77,17 @@ impl RandomInput {
         Ok(input)
     }
 
-    /// The steps of this seed from now on.
+    /// Restarts the generator with this seed.
     pub fn begin_anew(&mut self, seed: u64) {
         self.random = Random(seed);
     }
 
-    /// How often something was opened.
+    /// Number of opened scenes and setups.
     pub fn opened(&self) -> u64 {
         self.opened
     }
 
-    /// The adapter that draws.
+    /// Name of the adapter.
     pub fn adapter(&self) -> &str {
         &self.window.app.adapter
     }
@@ -97,10 +97,10 @@ impl RandomInput {
         &mut self.window
     }
 
-    /// One step, and the frame after it.
+    /// Applies one random input and runs the frame after it.
     pub fn step(&mut self) {
         let Self { window, random, things, kinds, .. } = self;
-        // Whatever is clicked, nothing is written elsewhere.
+        // All files are written to the temporary folder, whatever is clicked.
         window.app.panels.setup_path = self.folder.join("setup.toml").display().to_string();
         window.app.panels.picture_path = self.folder.join("picture.png").display().to_string();
         match random.below(8) {
@@ -111,7 +111,7 @@ impl RandomInput {
             5 => play(window, random),
             6 => touch(window, random),
             _ => {
-                // What moves by itself never stands still.
+                // A playing animation never becomes idle.
                 window.wait(MOST_WATCHING);
             }
         }
@@ -120,14 +120,14 @@ impl RandomInput {
         self.opened += u64::from(self.window.app.loader.pending().is_some());
     }
 
-    /// Back to where everything began; what the device holds there.
+    /// Returns to the initial state and counts the device's objects there.
     pub fn come_home(&mut self) -> DeviceObjects {
         let window = &mut self.window;
         window.size = HOME_SIZE.into();
         window.app.panels = Panels::default();
         window.app.act(&window.ctx.clone(), Action::Open(HOME.into()));
-        // At home nothing plays while it loads. A technique's state keeps what the parts of an earlier light took, six faces or
-        // seven slices at the most; it goes with the state, when another technique is chosen, and that one again.
+        // Nothing plays while this scene loads. A technique's state keeps the textures of an earlier light's parts, up to
+        // six faces or seven cascades, until another technique is chosen. Swapping the sides forces that.
         window.app.state = at_home(&window.app.state);
         window.app.state.sides.swap(0, 1);
         window.settle();
@@ -139,15 +139,15 @@ impl RandomInput {
 
 impl Drop for RandomInput {
     fn drop(&mut self) {
-        // What is left of it is in the folder for what is temporary.
+        // The folder is temporary, so leftovers are harmless.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }
 
-/// What is open, as a window shows it that has just opened.
+/// The initial state of a window that shows the open scene.
 fn at_home(state: &State) -> State {
     let mut home = State::new(TechniqueKind::Hard, TechniqueKind::Pcf);
-    // Else the right side would keep what it drew last.
+    // Without the split the right side would keep its last image.
     home.is_split = true;
     home.sides.iter_mut().for_each(|side| side.set_quality(Quality::Fast));
     home.setup = state.setup.clone();
@@ -155,7 +155,7 @@ fn at_home(state: &State) -> State {
     home
 }
 
-/// Opens one thing as from the list, or drops it on the window, or two at once.
+/// Opens one file from the list, or drops one or two on the window.
 fn open(window: &mut Window, random: &mut Random, things: &[String]) {
     let thing = random.pick(things);
     match random.below(3) {
@@ -165,7 +165,7 @@ fn open(window: &mut Window, random: &mut Random, things: &[String]) {
     }
 }
 
-/// Another size, down to a point, and as a minimised window none at all.
+/// Resizes the window, down to one point, or to zero as a minimised window.
 fn resize(window: &mut Window, random: &mut Random) {
     window.size = match random.below(4) {
         0 => egui::Vec2::ZERO,
@@ -173,7 +173,7 @@ fn resize(window: &mut Window, random: &mut Random) {
     };
 }
 
-/// Another technique, quality, parameter or view.
+/// Chooses another technique, quality, parameter or view.
 fn choose(window: &mut Window, random: &mut Random, kinds: &[TechniqueKind]) {
     let state = &mut window.app.state;
     let side = &mut state.sides[random.below(2)];
@@ -182,7 +182,7 @@ fn choose(window: &mut Window, random: &mut Random, kinds: &[TechniqueKind]) {
             side.set_kind(random.pick(kinds));
             side.set_quality(Quality::Fast);
         }
-        // Finer ones take software devices seconds a frame.
+        // Higher qualities take software devices seconds per frame.
         2 => side.set_quality(random.pick(&[Quality::Fast, Quality::Balanced])),
         3 => turn_parameter(side, random),
         4 => {
@@ -196,8 +196,8 @@ fn choose(window: &mut Window, random: &mut Random, kinds: &[TechniqueKind]) {
     }
 }
 
-/// A parameter goes to its low end or back, is switched, or is given what it refuses. High ends, which take software devices
-/// long, have a test of their own.
+/// Sets a parameter to its low end, its default, its other choice or an invalid value. Another test covers high ends, which
+/// are slow on software devices.
 fn turn_parameter(side: &mut Side, random: &mut Random) {
     let specs = side.kind().param_specs();
     if specs.is_empty() {
@@ -215,7 +215,7 @@ fn turn_parameter(side: &mut Side, random: &mut Random) {
     side.set(spec.key, &value);
 }
 
-/// Lights come, go, and are other ones.
+/// Adds, removes, selects or changes a light.
 fn light(window: &mut Window, random: &mut Random) {
     let state = &mut window.app.state;
     match random.below(5) {
@@ -228,7 +228,7 @@ fn light(window: &mut Window, random: &mut Random) {
     }
 }
 
-/// Time goes by, another way than before.
+/// Changes the animation's time, speed or state.
 fn play(window: &mut Window, random: &mut Random) {
     let state = &mut window.app.state;
     match random.below(4) {
@@ -243,7 +243,7 @@ fn play(window: &mut Window, random: &mut Random) {
     }
 }
 
-/// A key, a click, or the pointer and the camera somewhere else.
+/// Presses a key, clicks, or moves the pointer and the camera.
 fn touch(window: &mut Window, random: &mut Random) {
     let keys = [
         egui::Key::F,
@@ -276,10 +276,10 @@ fn touch(window: &mut Window, random: &mut Random) {
     }
 }
 
-/// What the device holds. What the process has in memory says less: on Mesa 22.3's software device it grows by half a megabyte
-/// with each frame of `hard`, whoever draws it, and these do not.
+/// Counts the device's objects. Process memory is a weaker measure: on Mesa 22.3's software device it grows by half a
+/// megabyte per frame of `hard`, with any program, while these counts do not.
 fn objects(window: &Window) -> DeviceObjects {
-    // A device that is lost says so by the next frame.
+    // A lost device is reported by the next frame.
     let _ = window.device.poll(wgpu::PollType::wait_indefinitely());
     let report = window.app.render_state.instance.generate_report().expect("there is one but in browsers");
     let hub = report.hub;
@@ -291,10 +291,10 @@ fn objects(window: &Window) -> DeviceObjects {
     }
 }
 
-/// What there is to open: built-in scenes, what is not there, and what is in a folder.
+/// Names to open: built-in scenes, missing files, and the files of a folder.
 ///
 /// # Errors
-/// Where the folder cannot be read.
+/// Fails if the folder cannot be read.
 pub fn things_to_open(folder: Option<&Path>) -> std::io::Result<Vec<String>> {
     let always = [HOME, "builtin:knot?triangles=500", "builtin:stained-glass", "no-such.glb", "no-such.toml"];
     let mut things: Vec<String> = always.map(str::to_owned).to_vec();

@@ -1,4 +1,4 @@
-//! Screenshots: the picture or the window as a PNG.
+//! Screenshots: the image or the whole window as a PNG file.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,12 +10,12 @@ use super::App;
 use crate::loader::write_whole;
 use crate::message::one_line;
 
-/// A picture of the window waits for so many light points a pixel, where truth is shown.
+/// Minimum number of light samples per pixel for a window screenshot that shows the ground truth.
 const SCREENSHOT_POINTS: u32 = 256;
-/// And for so many frames in which nothing is left to do.
+/// Number of consecutive idle frames before a window screenshot.
 const SCREENSHOT_STILL_FRAMES: u32 = 8;
 
-/// A picture of the window that is asked for.
+/// A requested screenshot of the window.
 pub(super) struct Screenshot {
     pub(super) path: PathBuf,
     pub(super) still_frames: u32,
@@ -24,7 +24,7 @@ pub(super) struct Screenshot {
 }
 
 impl App {
-    /// Writes the picture that was asked for, once it is back.
+    /// Writes the requested image, once it has been read back.
     pub(super) fn save_picture(&mut self) {
         let Some(texels) = self.renderer.take_output() else { return };
         let Some(path) = self.saving.take() else { return };
@@ -38,7 +38,7 @@ impl App {
         }
     }
 
-    /// Writes the window's picture once nothing is left to do, and ends.
+    /// Writes the window's screenshot once the application is idle, and ends.
     pub(super) fn advance_screenshot(&mut self, ctx: &egui::Context, is_unfinished: bool) {
         let points = self.truth.estimate().map_or(0, |estimate| estimate.points);
         let lacks_truth = self.state.show.needs_truth() && points < SCREENSHOT_POINTS;
@@ -64,7 +64,7 @@ impl App {
     }
 }
 
-/// Writes an opaque PNG, whole or not at all.
+/// Writes an opaque PNG file atomically.
 fn write_png(path: &Path, image: image::RgbaImage) -> Result<(), String> {
     let opaque = image::DynamicImage::ImageRgba8(image).into_rgb8();
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! The whole application, fed with a hand's events and without a window.
+//! Tests of the whole application without a window, fed with input events.
 
 use antumbra::TechniqueKind;
 
@@ -8,7 +8,7 @@ use super::*;
 use crate::file_dialog::Purpose;
 use crate::ui::Action;
 
-/// What is there, or `None` and a word where this machine has no adapter and none is required.
+/// Unwraps a result; `None` and a message if this machine has no adapter and none is required.
 fn or_skip<T>(made: Result<T, HeadlessError>) -> Option<T> {
     match made {
         Ok(made) => Some(made),
@@ -29,7 +29,7 @@ impl Window {
     }
 }
 
-/// A figure that walks, where this machine has the folder of test scenes.
+/// Animated scene of a walking figure; `None` without the folder of test scenes.
 fn walker() -> Option<String> {
     let path = antumbra_testing::scenes_folder()?.join("cesium-man.glb");
     path.exists().then(|| path.display().to_string())
@@ -53,14 +53,14 @@ fn a_scene_plays_stands_still_and_is_what_it_is_when_opened_then() {
     assert!(times.windows(2).all(|pair| pair[0] <= pair[1]));
     window.key(egui::Key::Space);
     assert!(!window.app.state.play.is_playing && window.app.state.play.time_s > 0.3);
-    // Paused, nothing is drawn.
+    // While paused, nothing is drawn.
     window.settle();
     let version = window.app.renderer.version();
     for _ in 0..5 {
         window.frame(Vec::new());
     }
     assert_eq!(window.app.renderer.version(), version);
-    // The same moment, opened.
+    // A scene opened at that time looks the same.
     window.app.act(&window.ctx.clone(), Action::Expose);
     let (posed, time_s) = (window.pictured(), window.app.state.play.time_s);
     assert_ne!(posed, first, "nothing moves");
@@ -73,7 +73,7 @@ fn a_scene_plays_stands_still_and_is_what_it_is_when_opened_then() {
     assert!(other.pictured() == posed, "at {time_s} s");
 }
 
-/// Whatever digits a number has: what is shown of it is rounded, and itself it is not.
+/// Panels round numbers for display only; showing them does not change the state.
 #[test]
 fn looking_changes_nothing() {
     let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
@@ -101,21 +101,21 @@ fn a_dense_display_gets_all_its_pixels() {
     window.pixels_per_point = 2.0;
     window.settle();
     let dense = window.app.size_px;
-    // Panels are laid out to whole pixels.
+    // Panels are laid out in whole pixels.
     assert!((dense.as_ivec2() - 2 * plain.as_ivec2()).abs().max_element() <= 2, "{dense} after {plain}");
     assert_eq!(window.pictured().len(), 4 * dense.element_product() as usize);
-    // What is under the pointer is counted in pixels of the display.
+    // The inspected pixel is counted in pixels of the display.
     window.key(egui::Key::I);
     window.frame(vec![egui::Event::PointerMoved(egui::pos2(100.0, 250.0))]);
     window.settle();
     assert!(window.app.renderer.inspected().is_some_and(|inspected| inspected.pixel.x == 200));
 }
 
-/// Without a pointer: Tab goes to every control in turn, Enter presses it, arrows move what slides.
+/// Keyboard access without a pointer: Tab reaches every control in turn, Enter presses it, arrow keys move sliders.
 #[test]
 fn the_keyboard_reaches_every_control() {
     let Some(mut window) = or_skip(Window::open(options("builtin:overlap"))) else { return };
-    // All of the panel, and few pixels of the picture.
+    // The window is tall enough for the whole panel, with few pixels of the image.
     window.size = egui::vec2(900.0, 1600.0);
     window.pixels_per_point = 0.5;
     window.settle();
@@ -134,13 +134,13 @@ fn the_keyboard_reaches_every_control() {
         if before != after {
             moved.push(focused);
         }
-        // Focus may have gone to a neighbour instead.
+        // The arrow key may have moved the focus to a neighbour.
         window.ctx.memory_mut(|memory| memory.request_focus(focused));
     }
     println!("{} controls, of which arrows move {}", reached.len(), moved.len());
     assert!(reached.len() > 30, "{} controls", reached.len());
     assert!(moved.len() >= 4, "arrows move {} of them", moved.len());
-    // The first of them opens scenes.
+    // The first control opens scenes.
     window.ctx.memory_mut(|memory| memory.request_focus(reached[0]));
     window.frame(Vec::new());
     window.key(egui::Key::Enter);
@@ -156,7 +156,7 @@ fn keys_undo_and_redo() {
         let event = |pressed| egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
         window.frame(vec![event(true), event(false)]);
     };
-    // An edit is a step when a second has gone by without another, of 1/60 of a second a frame.
+    // An edit becomes a step after a second without another; a frame counts as 1/60 s.
     let rest = |window: &mut Window| (0..90).for_each(|_| window.frame(Vec::new()));
     rest(&mut window);
     let first = window.app.state.sides[0].kind();
@@ -208,7 +208,7 @@ fn another_window_goes_on_where_a_device_was_lost() {
     let of_kept = |ctx: &egui::Context, render_state, outcome| App::kept(ctx, render_state, *kept, outcome);
     let Some(mut other) = or_skip(Window::of(of_kept)) else { return };
     assert!(!other.app.panels.is_side_shown);
-    // What was exposed for another view is exposed for this one.
+    // The new window is exposed for the moved camera, so the images differ slightly.
     other.settle();
     let after = other.pictured();
     assert_eq!(after.len(), before.len());
@@ -228,8 +228,7 @@ fn a_system_without_a_dialog_is_told_of() {
     assert_eq!(window.app.state.scene, before);
 }
 
-/// The same random input over and over: nothing panics, the device has no complaint, and once all that it asks for was made
-/// once, nothing piles up on the device.
+/// Repeated random input causes no panic, no device error and, after the first round, no growth of the device's objects.
 #[test]
 fn random_input_leaves_it_whole() {
     random_input(20);
@@ -247,7 +246,7 @@ fn random_input(steps: usize) {
     let broken = antumbra_testing::scenes_folder().map(|folder| folder.join("broken"));
     let mut things = things_to_open(broken.as_deref()).unwrap();
     things.extend(walker());
-    // Of what differs most; all of them go to both ends of their parameters elsewhere.
+    // A selection of different families; another test takes all techniques to both ends of their parameters.
     let kinds =
         [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Vsm, TechniqueKind::Vssm, TechniqueKind::AliasFree];
     let Some(mut input) = or_skip(RandomInput::new(SEED, things, kinds.to_vec())) else { return };
@@ -258,12 +257,12 @@ fn random_input(steps: usize) {
             input.step();
         }
         assert!(input.opened() >= round as u64, "nothing was opened");
-        // Each round begins where the one before did.
+        // Each round begins in the same state.
         after.push(input.come_home());
     }
     let picture = input.window().pictured();
     assert!(picture.chunks_exact(4).any(|texel| texel[..3] != picture[..3]), "nothing is shown any more");
-    // Rounds do not end in the same frame to the last buffer: what is on its way back differs.
+    // Readbacks in flight differ between rounds, so the counts may differ slightly.
     let is_no_more = |last: usize, second: usize| last <= second + second / 8;
     let (second, last) = (after[ROUNDS - 2], after[ROUNDS - 1]);
     let is_flat = is_no_more(last.buffers, second.buffers)

@@ -1,9 +1,9 @@
-//! Antialiasing of a picture that stands still.
+//! Antialiasing of a static image.
 //!
-//! Masks have one sample a pixel. A picture that changes is shaded at the pixels' centres; once it stands still, each frame adds what is
-//! seen at another place within every pixel, and after [`OFFSETS_PX`] it is smooth. As in the laboratory's pictures, a place that shows
-//! the surface at its pixel's centre has the centre's colour, so that a mask's noise and steps are neither blurred nor hidden; one
-//! that shows another surface is shaded anew, by the sample of a neighbour that shows the same.
+//! Masks have one sample per pixel. An image that changes is shaded at pixel centres; once it is static, each frame adds a
+//! subpixel offset, and after all [`OFFSETS_PX`] the image is antialiased. As in the laboratory's images, a sample on the
+//! surface of its pixel's centre takes the centre's colour, so that noise and steps of a mask are neither blurred nor
+//! hidden. A sample on another surface is shaded with the mask value of a neighbour on that surface.
 
 use antumbra::{Gpu, Mask, MaskChannels, programs};
 use antumbra_light::Light;
@@ -16,10 +16,10 @@ use antumbra_scene::Camera;
 use glam::{UVec2, Vec2, Vec3};
 use wgpu::util::DeviceExt;
 
-/// Sums of shares: a format that every adapter can blend.
+/// Format of the accumulated images; every adapter can blend it.
 const SUM_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// Storage `samples` of the shader.
+/// Storage buffer `samples` of the shader.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct SamplesUniform {
@@ -33,7 +33,7 @@ struct SamplesUniform {
     padding: f32,
 }
 
-/// Pipelines, made once for a device.
+/// Pipelines of a device.
 #[derive(Debug)]
 pub struct Antialiasing {
     samples_layout: wgpu::BindGroupLayout,
@@ -42,19 +42,19 @@ pub struct Antialiasing {
     add: wgpu::RenderPipeline,
 }
 
-/// Images of a picture's size, made when it first stands still.
+/// Textures of the image's size, created when the image first becomes static.
 #[derive(Debug)]
 pub struct Smoothed {
     shifted: ReceiverImages,
     behind: Option<ReceiverImages>,
     targets: PictureTargets,
-    /// Of the left side, or the only one, and of the right side.
+    /// Accumulated images: the left or only side's, and the right side's.
     sums: [wgpu::Texture; 2],
-    /// What the sums are of, and how many places they hold.
+    /// Version of the accumulated images and the number of offsets that they contain.
     progress: Option<(u64, usize)>,
 }
 
-/// What is drawn anew at each place.
+/// Inputs that are redrawn for each offset.
 #[derive(Clone, Copy, Debug)]
 pub struct Still<'a> {
     pub receivers: &'a ReceiverPass,
@@ -65,11 +65,11 @@ pub struct Still<'a> {
     pub camera: &'a Camera,
     pub lights: &'a [Light],
     pub exposure: &'a [Vec3],
-    /// A number that is another one whenever any of these or the sides' masks are.
+    /// Version number, different whenever any input or a side's mask differs.
     pub version: u64,
 }
 
-/// A side's masks, one for each light, and its picture at the pixels' centres.
+/// A side's masks, one per light, and its image sampled at pixel centres.
 #[derive(Clone, Copy, Debug)]
 pub struct StillSide<'a> {
     pub masks: &'a [Mask],
@@ -77,7 +77,7 @@ pub struct StillSide<'a> {
 }
 
 impl Smoothed {
-    /// Nothing yet, for pictures of `size_px`.
+    /// Creates empty textures for images of `size_px`.
     pub fn new(gpu: &Gpu, camera: &Camera, size_px: UVec2, has_layer_behind: bool) -> Self {
         let device = gpu.device();
         let sum = || drawn_texture(device, "viewer: antialiased", SUM_FORMAT, size_px);
@@ -91,14 +91,14 @@ impl Smoothed {
         }
     }
 
-    /// A side's antialiased picture, once it is complete for what stands still by this number.
+    /// A side's antialiased image; `None` until it is complete for `version`.
     pub fn picture(&self, side: usize, version: u64) -> Option<&wgpu::Texture> {
         (self.progress == Some((version, OFFSETS_PX.len()))).then(|| &self.sums[side])
     }
 }
 
 impl Antialiasing {
-    /// Makes the pipelines.
+    /// Creates the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
         let float = wgpu::TextureSampleType::Float { filterable: false };
         let depth = wgpu::TextureSampleType::Depth;
@@ -140,7 +140,7 @@ impl Antialiasing {
         }
     }
 
-    /// Adds one place more to what stands still; `false` where all of them are there.
+    /// Adds the next offset; returns `false` if all have been added.
     pub fn record(
         &self,
         gpu: &Gpu,
@@ -173,7 +173,7 @@ impl Antialiasing {
         true
     }
 
-    /// A mask as the shifted image has it, and whether it has three channels.
+    /// Resamples a mask at the shifted image's samples. Also returns whether the mask has three channels.
     fn gather(
         &self,
         gpu: &Gpu,
@@ -238,10 +238,10 @@ impl Antialiasing {
     }
 }
 
-/// Of the viewer's masks of one channel and of three.
+/// Formats of the viewer's masks of one channel and of three.
 const MASK_FORMATS: [wgpu::TextureFormat; 2] = [mask_format(MaskChannels::One), mask_format(MaskChannels::Three)];
 
-/// Format of the viewer's masks: of three channels all in one texel, so that shading reads them at once.
+/// Format of the viewer's masks. Three channels share a texel, so that shading reads them at once.
 pub const fn mask_format(channels: MaskChannels) -> wgpu::TextureFormat {
     match channels {
         MaskChannels::One => Mask::FORMAT,
@@ -253,7 +253,7 @@ fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Draws over all of a target, which begins as nothing where it `is_first`.
+/// Draws a full-screen pass; a first pass clears the target.
 fn draw(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,

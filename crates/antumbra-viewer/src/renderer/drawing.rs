@@ -1,4 +1,4 @@
-//! Drawing of a frame, step by step: receivers, the sides, antialiasing, the window's picture.
+//! Drawing of a frame in steps: receivers, sides, antialiasing, output image.
 
 use antumbra::WarmUp;
 use antumbra_render::drawn_texture;
@@ -15,13 +15,13 @@ use super::{DrawnFrom, Renderer, View};
 use crate::state::{Show, Side, State};
 use crate::truth::Estimate;
 
-/// Frames that are drawn after the last change: one that runs out of room, one that learns of it, one that has it.
+/// Frames drawn after a change: one that may overflow, one that reads the overflow back, one with enough room.
 pub(super) const SETTLING_FRAMES: u32 = 3;
-/// And so many more at most, until one of them was timed that others had warmed up for.
+/// Maximum number of further frames until a warmed-up frame has been timed.
 const WARMING_FRAMES: u32 = 8;
 
 impl Renderer {
-    /// Images of the right size.
+    /// Creates the images for a new size.
     pub(super) fn fit_size(&mut self, state: &State, size_px: UVec2) {
         if self.view.as_ref().is_some_and(|view| view.images.size_px == size_px) {
             return;
@@ -73,7 +73,7 @@ impl Renderer {
         self.gpu.queue().submit([encoder.finish()]);
     }
 
-    /// Takes in what has come back: what the camera sees, compiled techniques, times.
+    /// Collects completed readbacks, compiled techniques and times.
     pub(super) fn collect(&mut self, state: &State) {
         if let (Some(scene), Some(view)) = (&mut self.scene, &mut self.view)
             && let Some(texels) = view.depth_reader.take()
@@ -98,14 +98,14 @@ impl Renderer {
         }
     }
 
-    /// The sides as they are drawn: with ratio masks in *shaded* while no pixel is inspected, with visibility otherwise.
+    /// Returns the sides with the parameters for drawing: ratio masks in *shaded* while no pixel is inspected, visibility otherwise.
     fn drawn_sides(&self, state: &State) -> Vec<Side> {
         let is_picture = state.show == Show::Shaded && self.pointer_px.is_none();
         let drawn = |side: &Side| if is_picture { side.for_shading() } else { side.clone() };
         state.shown_sides().iter().map(drawn).collect()
     }
 
-    /// Draws the sides, where anything that they are drawn from has changed or has not settled.
+    /// Draws the sides if any of their inputs has changed or their feedback has not settled.
     pub(super) fn draw_sides(&mut self, encoder: &mut wgpu::CommandEncoder, state: &State) -> bool {
         let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return false };
         let from = DrawnFrom {
@@ -134,13 +134,13 @@ impl Renderer {
             work.draw(&self.gpu, encoder, side, &frame);
         }
         self.version += 1;
-        // What cannot be drawn will not be by trying again.
+        // Another attempt would fail, too.
         let is_refused = self.sides.iter().any(|work| work.problem().is_some());
         self.drawn = Some((from, if is_refused { SETTLING_FRAMES + WARMING_FRAMES } else { frames + 1 }));
         true
     }
 
-    /// Adds to the antialiased pictures, where pictures are shown that stand still, until they are complete.
+    /// Adds to the antialiased images while *shaded* is shown and static, until they are complete.
     pub(super) fn smooth(&mut self, encoder: &mut wgpu::CommandEncoder, state: &State) -> bool {
         let wanted = self.wanted_frames();
         let is_still = self.drawn.as_ref().is_some_and(|(_, frames)| *frames >= wanted);
@@ -169,13 +169,13 @@ impl Renderer {
         self.antialiasing.record(&self.gpu, encoder, smoothed, &still, &sides)
     }
 
-    /// Frames to draw after a change.
+    /// Number of frames to draw after a change.
     pub(super) fn wanted_frames(&self) -> u32 {
         let is_cold = self.sides.iter().any(|side| side.kind().is_some() && side.times.counts().0 == 0);
         SETTLING_FRAMES + if is_cold { WARMING_FRAMES } else { 0 }
     }
 
-    /// Prepares and records the left side's masks, and drops them; why that cannot be.
+    /// Prepares and records the left side's masks without submitting them. Returns the reason if that fails.
     #[cfg(test)]
     pub(super) fn record_only(&mut self, state: &State) -> Result<(), String> {
         let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return Err("nothing is open".into()) };
@@ -185,7 +185,7 @@ impl Renderer {
         self.sides[0].masks_commands(&self.gpu, &state.sides[0], &frame).map(drop)
     }
 
-    /// Draws the window's picture, where a side or the view has changed.
+    /// Draws the output image if a side or the view has changed.
     pub(super) fn draw_output(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,4 +1,4 @@
-//! What is at one pixel: asked for with one frame, there some frames later.
+//! Asynchronous readback of one pixel: requested in one frame, available some frames later.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -9,36 +9,36 @@ use glam::{UVec2, Vec3, Vec4};
 
 use super::texture_reader::f32_from_positive_half;
 
-/// What is at a pixel.
+/// Values of a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inspected {
-    /// From the picture's top left.
+    /// Pixel coordinates from the image's top left.
     pub pixel: UVec2,
-    /// The surface there; `None` where there is none.
+    /// Surface at the pixel's centre; `None` for the background.
     pub surface: Option<InspectedSurface>,
-    /// The chosen light's visibility by the left side and by the right, the mean of its channels.
+    /// Visibility of the selected light on the left and right side, averaged over channels.
     pub visibilities: [Option<f32>; 2],
 }
 
 /// A surface at a pixel's centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InspectedSurface {
-    /// World space, counted from the scene's anchor, metres; `None` until depths have come back.
+    /// Position relative to the scene's anchor, metres; `None` until depths have been read back.
     pub position: Option<Vec3>,
-    /// The triangle's own, unit, world space, on the camera's side.
+    /// Geometric unit normal in world space, on the camera's side.
     pub normal: Vec3,
-    /// Linear red, green and blue, and opacity; as exact as eight bits are.
+    /// Linear red, green and blue, and opacity, at 8-bit precision.
     pub base_color: Vec4,
-    /// 0 to 1.
+    /// Range 0 to 1.
     pub metallic: f32,
-    /// 0 to 1.
+    /// Range 0 to 1.
     pub roughness: f32,
 }
 
-/// What a reading is of: a pixel, the masks' version, and how often there was another camera.
+/// Key of a reading: pixel, version of the masks with the light's index, and version of the camera.
 pub type Asked = (UVec2, u64, u64);
 
-/// Reads one pixel at a time.
+/// Reader of one pixel at a time.
 #[derive(Debug, Default)]
 pub struct PixelReader {
     pending: Option<Pending>,
@@ -48,7 +48,7 @@ pub struct PixelReader {
 struct Pending {
     asked: Asked,
     buffer: wgpu::Buffer,
-    /// Of the masks.
+    /// Channels of the masks.
     channels: [Option<MaskChannels>; 2],
     outcome: Arc<AtomicU8>,
 }
@@ -57,16 +57,16 @@ const WAITING: u8 = 0;
 const MAPPED: u8 = 1;
 const FAILED: u8 = 2;
 
-/// Bytes from one texture's texel to the next one's: enough for any format.
+/// Bytes between the texels of successive textures: enough for any format.
 const SLOT_BYTES: u64 = 256;
 
 impl PixelReader {
-    /// Whether something is on its way, and not there yet.
+    /// Whether a reading is in flight.
     pub fn is_waiting(&self) -> bool {
         self.pending.as_ref().is_some_and(|pending| pending.outcome.load(Ordering::Acquire) == WAITING)
     }
 
-    /// What is on its way or there, and not taken yet.
+    /// Key of the reading that is in flight or not yet taken.
     pub fn asked(&self) -> Option<Asked> {
         self.pending.as_ref().map(|pending| pending.asked)
     }
@@ -115,7 +115,7 @@ impl PixelReader {
         self.pending = Some(Pending { asked, buffer, channels: masks.map(|mask| mask.map(Mask::channels)), outcome });
     }
 
-    /// The reading, once it is there, without the surface's position.
+    /// Returns the completed reading, without the surface's position.
     pub fn take(&mut self) -> Option<(Asked, Inspected)> {
         let outcome = self.pending.as_ref()?.outcome.load(Ordering::Acquire);
         if outcome == WAITING {
@@ -140,7 +140,7 @@ impl PixelReader {
     }
 }
 
-/// See `pack_surface` of the receivers' shader.
+/// Unpacks a surface; the inverse of `pack_surface` in the receivers' shader.
 fn surface(normal: Vec3, packed: [u32; 4]) -> InspectedSurface {
     let unorm4 = |word: u32| Vec4::from(word.to_le_bytes().map(|byte| f32::from(byte) / 255.0));
     let (roots, shine) = (unorm4(packed[0]), unorm4(packed[3]));

@@ -1,5 +1,4 @@
-//! The view of the light: the depth maps that a side's technique has drawn of it, layers behind them and levels made of them, as
-//! grey levels.
+//! The shadow map view: the depth maps of a side's technique, their peeled layers and derived levels, in grey.
 
 use antumbra::contract::{LevelTexels, MapLevel};
 use antumbra::{DrawnMap, Gpu, programs};
@@ -9,9 +8,9 @@ use wgpu::util::DeviceExt;
 
 use super::present::{NOT_JUDGED_COLOR, OUTPUT_FORMAT};
 
-/// Between maps, and around them, pixels.
+/// Margin between and around maps, pixels.
 const MARGIN_PX: f32 = 6.0;
-/// The grey of the farthest place that a map has room for, of 1; the nearest's is 1.
+/// Grey value of the farthest depth that a map can store, 0 to 1; the nearest depth is 1.
 #[cfg(test)]
 pub const DARKEST: f32 = 0.08;
 
@@ -35,26 +34,26 @@ struct LightMapUniform {
     empty_color: [f32; 4],
 }
 
-/// Where the least and the greatest value of a filtered map's level are bound while they are sought, and once they are known.
+/// Bindings of a filtered level's minimum and maximum: while they are computed, and when they are read.
 const SOUGHT_ENDS: u32 = 5;
 const KNOWN_ENDS: u32 = 6;
 
 /// Threads along each side of a workgroup.
 const TILE: u32 = 8;
 
-/// What there is to choose from in a view of maps or lists: none where it is less than two.
+/// Numbers of choices in a view of maps or lists; a choice is offered if there are at least two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MapChoices {
-    /// Levels, the map itself one of them.
+    /// Number of levels, including the map itself.
     pub levels: usize,
-    /// Layers of casters, the map itself one of them.
+    /// Number of peeled layers, including the map itself.
     pub layers: usize,
-    /// Maps of the light's points.
+    /// Number of light samples with maps.
     pub points: usize,
 }
 
 impl MapChoices {
-    /// Of a light's maps.
+    /// Returns the choices of a light's maps.
     pub fn of(maps: &[DrawnMap]) -> Self {
         let most = |count: fn(&DrawnMap) -> usize| maps.iter().map(|map| count(map) + 1).max().unwrap_or(0);
         Self {
@@ -64,7 +63,7 @@ impl MapChoices {
         }
     }
 
-    /// What either of two sides has.
+    /// Returns the larger of both numbers, choice by choice.
     pub fn or_more(self, other: Self) -> Self {
         Self {
             levels: self.levels.max(other.levels),
@@ -74,14 +73,14 @@ impl MapChoices {
     }
 }
 
-/// The light's points that have maps of their own.
+/// Indices of the light samples that have maps of their own.
 fn points_of(maps: &[DrawnMap]) -> Vec<u32> {
     let mut points: Vec<u32> = maps.iter().filter_map(|map| map.light_point).collect();
     points.dedup();
     points
 }
 
-/// The maps of one of the light's points, or the last one that has any; all of maps that are not of points.
+/// Returns the maps of one light sample, or of the last one if there are fewer; all maps if they do not belong to samples.
 pub fn of_point(mut maps: Vec<DrawnMap>, wanted: usize) -> Vec<DrawnMap> {
     let points = points_of(&maps);
     if let Some(last) = points.len().checked_sub(1) {
@@ -90,26 +89,26 @@ pub fn of_point(mut maps: Vec<DrawnMap>, wanted: usize) -> Vec<DrawnMap> {
     maps
 }
 
-/// What is shown of a map.
+/// A level or layer of a map to show.
 #[derive(Clone, Debug)]
 pub struct ShownMap {
     /// The map.
     pub map: DrawnMap,
-    /// The texture.
+    /// View of the level's or layer's texture.
     pub view: wgpu::TextureView,
-    /// Its corner in the texture, and its width and height, texels.
+    /// Origin of the level in the texture, texels.
     pub origin_px: UVec2,
-    /// See [`origin_px`](Self::origin_px).
+    /// Size of the level in the texture, texels.
     pub size_px: UVec2,
-    /// `None` of depths.
+    /// Content of the level's texels; `None` for depths.
     texels: Option<LevelTexels>,
-    /// Counted from the map itself.
+    /// Index of the level; 0 is the map itself.
     level: usize,
     layer: usize,
 }
 
 impl ShownMap {
-    /// A layer of casters, or of the first a level: the last one where there are fewer.
+    /// Selects a peeled layer, or a level of the first layer; the last one if there are fewer.
     pub fn of(map: DrawnMap, level: usize, layer: usize) -> Self {
         let layer = layer.min(map.layers_behind.len());
         let level = if layer > 0 { 0 } else { level.min(map.levels.len()) };
@@ -121,17 +120,17 @@ impl ShownMap {
         Self { map, view, origin_px, size_px, texels, level, layer }
     }
 
-    /// Whether it was made of the map.
+    /// Whether this is a level derived from the map.
     pub fn is_level(&self) -> bool {
         self.texels.is_some()
     }
 
-    /// Whether it holds channels and not depths.
+    /// Whether the texels hold filtered channels instead of depths.
     pub fn is_filtered(&self) -> bool {
         self.texels.is_some_and(|texels| texels != LevelTexels::Extremes)
     }
 
-    /// Which one of several it is, in words that follow upon its size.
+    /// Describes the selection, as text that follows the size.
     pub fn which(&self, choices: MapChoices) -> String {
         let MapChoices { levels, layers, .. } = choices;
         if self.layer > 0 {
@@ -149,23 +148,23 @@ impl ShownMap {
     }
 }
 
-/// A pipeline for textures of one kind.
+/// A pipeline for one kind of texture.
 #[derive(Debug)]
 struct Program {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::RenderPipeline,
-    /// Of the texture.
+    /// Binding of the texture.
     binding: u32,
 }
 
-/// What seeks the least and the greatest value.
+/// Pipeline that computes a level's minimum and maximum.
 #[derive(Debug)]
 struct Seek {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
 }
 
-/// The pass.
+/// The pass that draws maps.
 #[derive(Debug)]
 pub struct LightMapPass {
     single: Program,
@@ -175,19 +174,19 @@ pub struct LightMapPass {
     seek: Seek,
 }
 
-/// A map, and where it goes.
+/// A map with its place in the image.
 #[derive(Debug)]
 struct Placed<'a> {
     program: &'a Program,
     group: wgpu::BindGroup,
-    /// Of what seeks a filtered level's ends, with the level's size.
+    /// Bind group for the minimum and maximum of a filtered level, with the level's size.
     seek: Option<(wgpu::BindGroup, UVec2)>,
     corner_px: UVec2,
     side_px: u32,
 }
 
 impl LightMapPass {
-    /// Makes the pipelines.
+    /// Creates the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
         let module = programs::create_shader_module(device, "light map", include_str!("light_map.wgsl").into());
         let depth = |multisampled| wgpu::BindingType::Texture {
@@ -212,7 +211,7 @@ impl LightMapPass {
         }
     }
 
-    /// Records the maps of both sides over `output`, the left ones left of the divider. A side without maps stays empty.
+    /// Records the maps of both sides over `output`, the left side's left of the divider. A side without maps stays empty.
     pub fn record(
         &self,
         gpu: &Gpu,
@@ -281,7 +280,7 @@ impl LightMapPass {
         let ends = shown.is_filtered().then(|| {
             gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("light map's ends"),
-                // Words in the order of floats.
+                // The initial minimum and maximum; unsigned words that sort as the floats do.
                 contents: bytemuck::bytes_of(&[u32::MAX, 0]),
                 usage: wgpu::BufferUsages::STORAGE,
             })
@@ -298,7 +297,7 @@ impl LightMapPass {
     }
 }
 
-/// The corners of so many squares in a room, and their side, all as large as they can be and whole pixels.
+/// Corners and side of `count` equal squares in a rectangle, as large as possible, in whole pixels.
 pub(super) fn places(count: usize, room: Vec2) -> (Vec<Vec2>, f32) {
     let side = |columns: usize| {
         let rows = count.div_ceil(columns);
@@ -382,7 +381,7 @@ impl Seek {
     }
 }
 
-/// How the shader reads the first channel of a word.
+/// Returns the shader's code for the format of a texel's first channel.
 fn packing_of(texels: Option<LevelTexels>) -> u32 {
     match texels {
         None | Some(LevelTexels::Extremes | LevelTexels::Float32) => 0,
@@ -395,7 +394,7 @@ fn packing_of(texels: Option<LevelTexels>) -> u32 {
 fn uniform_of(gpu: &Gpu, shown: &ShownMap, corner: Vec2, side_px: f32) -> wgpu::Buffer {
     let empty = NOT_JUDGED_COLOR.map(|v| f32::from(v) / 255.0);
     let map = &shown.map;
-    // What was made of the map is free of its warp.
+    // Derived levels do not contain the map's depth warp.
     let [constant, by_u, by_v] = if shown.is_level() { [1.0, 0.0, 0.0] } else { map.depth_warp };
     let uniform = LightMapUniform {
         corner_px: corner.to_array(),
@@ -434,7 +433,7 @@ mod tests {
                 assert!(corners[..i].iter().all(|other| (*corner - *other).abs().max_element() > side));
             }
         }
-        // A room without space takes none.
+        // A rectangle that is too narrow holds no squares.
         assert_eq!(places(1, Vec2::new(3.0, 200.0)).1, 0.0);
         assert_eq!(places(0, Vec2::ONE).0, []);
     }

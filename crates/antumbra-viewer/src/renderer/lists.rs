@@ -1,4 +1,4 @@
-//! The view of the lists: how long those are that a side's technique keeps for each texel of the light's map, as colours.
+//! The list view: lengths of the lists that a side's technique keeps per texel of the light's map, as colours.
 
 use antumbra::contract::{ListLengths, ListLevel, ListOrder};
 use antumbra::{DrawnLists, Gpu, programs};
@@ -12,11 +12,11 @@ use super::present::{NOT_JUDGED_COLOR, OUTPUT_FORMAT};
 /// Threads along each side of a workgroup.
 const TILE: u32 = 8;
 
-/// Where the totals are bound while they are counted, and once they are.
+/// Bindings of the totals: while they are computed, and when they are read.
 const COUNT_TOTALS: u32 = 2;
 const DRAW_TOTALS: u32 = 3;
 
-/// Bytes of `Totals` of the shader.
+/// Size of the shader's `Totals`, bytes.
 const TOTALS_BYTES: u64 = 8;
 
 /// Uniform `Lists` of the shader.
@@ -34,7 +34,7 @@ struct ListsUniform {
     empty_color: [f32; 4],
 }
 
-/// The passes.
+/// The passes that count and draw lists.
 #[derive(Debug)]
 pub struct ListsPass {
     count_layout: wgpu::BindGroupLayout,
@@ -43,7 +43,7 @@ pub struct ListsPass {
     draw: wgpu::RenderPipeline,
 }
 
-/// A map of lists, and where it goes.
+/// A map of lists with its place in the image.
 #[derive(Debug)]
 struct Placed {
     count: wgpu::BindGroup,
@@ -53,15 +53,14 @@ struct Placed {
     size_texels: UVec2,
 }
 
-/// The level of `lists` that is shown where level `wanted` is asked for, counted from the finest: the coarsest where there
-/// are fewer.
+/// Selects a level of `lists` by its index from the finest; the coarsest level if there are fewer.
 pub fn level_of(lists: &DrawnLists, wanted: usize) -> Option<(usize, ListLevel)> {
     let index = wanted.min(lists.levels.len().checked_sub(1)?);
     Some((index, lists.levels[index]))
 }
 
 impl ListsPass {
-    /// Makes the pipelines.
+    /// Creates the pipelines.
     pub fn new(device: &wgpu::Device) -> Self {
         let module = programs::create_shader_module(device, "lists", include_str!("lists.wgsl").into());
         let layout = |visibility, totals_binding, is_counting: bool| {
@@ -109,9 +108,9 @@ impl ListsPass {
         Self { count_layout, count, draw_layout, draw }
     }
 
-    /// Records level `level` of both sides' lists over `output`, the left ones left of the divider, a colour for each length
-    /// up to the side's longest. A side without lists stays empty. Returns each side's totals: two words, how long its longest
-    /// list is and how much is listed in all, once the commands have run.
+    /// Records level `level` of both sides' lists over `output`, the left side's left of the divider. Colours range up to
+    /// the side's longest list. A side without lists stays empty. Returns a buffer of totals per side, valid once the
+    /// commands have run: the length of the longest list and the sum of all lengths.
     pub fn record(
         &self,
         gpu: &Gpu,
@@ -157,7 +156,7 @@ impl ListsPass {
         placed.map(|(totals, maps)| (!maps.is_empty()).then_some(totals))
     }
 
-    /// A side's maps in its room, with what they are counted into.
+    /// Places a side's maps in its half of the image; also returns the buffer of their totals.
     fn place(
         &self,
         gpu: &Gpu,
@@ -175,7 +174,7 @@ impl ListsPass {
         let (corners, side_px) = places(lists.len(), room_px.as_vec2());
         let place = |(lists, corner): (&DrawnLists, Vec2)| {
             let (_, level) = level_of(lists, level)?;
-            // As wide as high where the map is.
+            // The image keeps the map's aspect ratio.
             let size = level.size_texels.as_vec2();
             let extent = (side_px * size / size.max_element()).floor();
             let corner = (corner + 0.5 * (side_px - extent)).floor() + Vec2::X * left_px as f32;

@@ -1,4 +1,4 @@
-//! The open scene on the GPU: opened, posed at another time, exposed.
+//! The open scene on the GPU: loading, posing, exposure.
 
 use antumbra::WarmUp;
 use antumbra_render::gpu_scene::GpuScene;
@@ -8,25 +8,25 @@ use glam::Vec3;
 
 use super::Renderer;
 
-/// Points of the scene that lights are exposed to before it is known what the camera sees.
+/// Number of scene points that determine the exposure until the visible surfaces have been read back.
 pub(super) const EXPOSURE_POINTS: usize = 2048;
 
-/// A scene and how it is shown.
+/// A scene and its state on the GPU.
 #[derive(Debug)]
 pub(super) struct LoadedScene {
     pub(super) generation: u64,
-    /// Counts the times at which it was shown.
+    /// Number of pose changes.
     pub(super) pose: u64,
     pub(super) scene: GpuScene,
     pub(super) groups: DrawGroups,
     pub(super) what: WarmUp,
-    /// Where lights are exposed to: what the camera saw when the scene was opened, or else points of its surfaces.
+    /// Points that determine the exposure: visible surfaces when the scene was opened or exposed, or else samples of all surfaces.
     pub(super) exposure: Vec<Vec3>,
     pub(super) is_exposed: bool,
 }
 
 impl Renderer {
-    /// Takes in a scene, which the state has opened as `generation`.
+    /// Uploads a scene, which the state has opened as `generation`.
     pub fn open(&mut self, scene: &Scene, generation: u64) {
         let uploaded = GpuScene::upload(&self.gpu, scene);
         let groups = self.receivers.draw_groups(&self.gpu, &uploaded);
@@ -46,12 +46,11 @@ impl Renderer {
         self.view = None;
     }
 
-    /// Shows the open scene as it is at another time: `before` is what is shown, `after` the same scene then. Nothing else
-    /// changes, exposure neither.
+    /// Shows the open scene at another time: `before` is the shown pose, `after` the new one. The exposure does not change.
     pub fn pose(&mut self, before: &Scene, after: &Scene) {
         let Some(open) = &mut self.scene else { return };
         if !open.scene.repose(&self.gpu, before, after) {
-            // Something has come or gone.
+            // An instance was added or removed.
             open.scene = GpuScene::upload(&self.gpu, after);
             open.groups = self.receivers.draw_groups(&self.gpu, &open.scene);
             open.what.tinted |= has_tint(&open.scene);
@@ -65,7 +64,7 @@ impl Renderer {
         }
     }
 
-    /// Exposes the lights anew, to what the camera sees now.
+    /// Recomputes the exposure from the visible surfaces.
     pub fn expose(&mut self) {
         if let (Some(scene), Some(view)) = (&mut self.scene, &mut self.view) {
             scene.is_exposed = false;
@@ -74,12 +73,12 @@ impl Renderer {
     }
 }
 
-/// Whether any caster changes light's colour.
+/// Whether any caster is tinted.
 fn has_tint(scene: &GpuScene) -> bool {
     scene.casters().iter().any(|caster| caster.opacity.tints())
 }
 
-/// Some points of the scene's surfaces, whoever sees them.
+/// Returns about [`EXPOSURE_POINTS`] points of the scene's surfaces, visible or not.
 fn some_points(scene: &Scene) -> Vec<Vec3> {
     let every = scene.triangle_count().div_ceil(EXPOSURE_POINTS).max(1);
     scene.world_triangles().step_by(every).map(|triangle| triangle.positions.iter().sum::<Vec3>() / 3.0).collect()

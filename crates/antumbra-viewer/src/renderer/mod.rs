@@ -1,8 +1,7 @@
-//! The picture of a [`State`], drawn on someone's device: receivers once, each side's masks and shading, then the window's
-//! picture of the two.
+//! Draws the image of a [`State`] on a given device: receivers once, each side's masks and shading, then the output image.
 //!
-//! Nothing is drawn that has not changed: each step knows what it was last drawn from. After a change a few frames more are
-//! drawn, because techniques that ran out of room learn of it a frame later.
+//! Each step remembers its inputs and runs only if they have changed. A few more frames follow each change, because a
+//! technique learns of an overflow one frame later.
 
 mod antialiasing;
 mod drawing;
@@ -47,12 +46,12 @@ use loaded_scene::LoadedScene;
 use present::{Present, Shown, upload_f32};
 use texture_reader::TextureReader;
 
-/// When a technique's programs are compiled.
+/// Policy for compiling a technique's shaders.
 #[derive(Clone)]
 pub enum Compile {
-    /// Before the call returns.
+    /// Compile before the call returns.
     AtOnce,
-    /// Aside, on a thread where there are any; then whoever draws is woken.
+    /// Compile in the background, on a thread if there are threads; then call the callback.
     Aside(Wake),
 }
 
@@ -65,7 +64,7 @@ impl fmt::Debug for Compile {
     }
 }
 
-/// Draws.
+/// Renderer of the viewer's image.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -78,18 +77,18 @@ pub struct Renderer {
     lists: ListsPass,
     scene: Option<LoadedScene>,
     view: Option<View>,
-    /// The left side, or the only one, and the right side.
+    /// The left or only side, and the right side.
     pub sides: [SideWork; 2],
-    /// What the truth texture holds: which tracing, after how many points.
+    /// Content of the truth texture: the tracing job and its number of light samples.
     truth: Option<(u64, u32)>,
     truth_view: wgpu::TextureView,
-    /// What the sides were last drawn from, and how many frames of it there were.
+    /// Inputs of the last drawn sides, and the number of frames drawn from them.
     drawn: Option<(DrawnFrom, u32)>,
     shown: Option<(Shown, [u64; 5])>,
-    /// Counts what the sides drew.
+    /// Version of the masks.
     version: u64,
     output_reader: TextureReader,
-    /// The pixel that is asked about, and what was there when it was last read.
+    /// The inspected pixel; `inspected` is the last reading.
     pointer_px: Option<UVec2>,
     pixel_reader: PixelReader,
     inspected: Option<(Asked, Inspected)>,
@@ -97,30 +96,30 @@ pub struct Renderer {
     lost: Arc<Mutex<Option<String>>>,
 }
 
-/// What a device has complained about.
+/// Uncaptured errors of a device.
 pub type DeviceErrors = Arc<Mutex<Vec<String>>>;
 
-/// What depends on the picture's size.
+/// Resources that depend on the image's size.
 #[derive(Debug)]
 struct View {
     images: ReceiverImages,
     behind: Option<ReceiverImages>,
-    /// Made when the picture first stands still.
+    /// Created when the image first becomes static.
     smoothed: Option<Smoothed>,
     output: wgpu::Texture,
     output_view: wgpu::TextureView,
-    /// The camera that the images were drawn from.
+    /// Camera of the images.
     camera: Option<Camera>,
-    /// How often the camera has been another one.
+    /// Number of camera changes.
     camera_version: u64,
-    /// The camera by which it is known what is seen.
+    /// Camera version of `depths`.
     seen_version: Option<u64>,
-    /// Of what is seen, by pixel; of the camera whose version is `seen_version`.
+    /// Depths of visible surfaces by pixel, for camera version `seen_version`.
     depths: Vec<f32>,
     depth_reader: TextureReader,
 }
 
-/// What masks and pictures are drawn from.
+/// Inputs of masks and images.
 #[derive(Clone, Debug, PartialEq)]
 struct DrawnFrom {
     generation: u64,
@@ -134,17 +133,18 @@ struct DrawnFrom {
     ready: u64,
 }
 
-/// What drawing came to.
+/// Result of drawing a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Drawn {
-    /// The output holds another picture than before.
+    /// Whether the output has changed.
     pub is_new: bool,
-    /// More is to come without any change: draw again soon.
+    /// Whether work is left although the state is unchanged: the caller should draw again soon.
     pub is_unfinished: bool,
 }
 
 impl Renderer {
-    /// Makes what every scene needs. Errors of the device are kept from now on, see [`take_error`](Self::take_error).
+    /// Creates the pipelines that every scene needs. Uncaptured errors of the device are collected for
+    /// [`take_error`](Self::take_error).
     pub fn new(gpu: &Gpu, compile: Compile) -> Self {
         let errors = DeviceErrors::default();
         let kept = errors.clone();
@@ -183,45 +183,45 @@ impl Renderer {
         }
     }
 
-    /// The first of what the device has complained about since the last call, and how much more there was.
+    /// Returns the first device error since the last call, with the number of further ones.
     pub fn take_error(&self) -> Option<String> {
         let errors = std::mem::take(&mut *self.errors.lock().unwrap_or_else(PoisonError::into_inner));
         let first = errors.first()?.split_whitespace().collect::<Vec<_>>().join(" ");
         Some(if errors.len() > 1 { format!("{first} (and {} more)", errors.len() - 1) } else { first })
     }
 
-    /// Why the device is no more, once that is known: nothing can be drawn with it.
+    /// Reason for the loss of the device, if it is lost: nothing can be drawn with it.
     pub fn lost(&self) -> Option<String> {
-        // Callbacks come by this.
+        // Polling runs the callbacks.
         let polled = self.gpu.device().poll(wgpu::PollType::Poll);
         let why = self.lost.lock().unwrap_or_else(PoisonError::into_inner).clone();
         debug_assert!(polled.is_ok() || why.is_some(), "{polled:?}");
         why
     }
 
-    /// The window's picture, of [`OUTPUT_FORMAT`]; `None` before the first.
+    /// View of the output image, in [`OUTPUT_FORMAT`]; `None` before the first frame.
     pub fn output(&self) -> Option<&wgpu::TextureView> {
         self.view.as_ref().map(|view| &view.output_view)
     }
 
-    /// The texture behind [`output`](Self::output).
+    /// Texture of [`output`](Self::output).
     pub fn output_texture(&self) -> Option<&wgpu::Texture> {
         self.view.as_ref().map(|view| &view.output)
     }
 
-    /// Bytes of GPU memory that the scene takes.
+    /// GPU memory of the scene, bytes.
     pub fn scene_memory_bytes(&self) -> u64 {
         self.scene.as_ref().map_or(0, |scene| scene.scene.memory_bytes)
     }
 
-    /// Counts up whenever masks are drawn.
+    /// Version of the masks; it increases whenever masks are drawn.
     pub fn version(&self) -> u64 {
         self.version
     }
 
-    /// Draws what has changed of `state`, in a picture of `size_px`, and submits it.
+    /// Draws the changes of `state` into an image of `size_px` and submits them.
     pub fn draw(&mut self, state: &State, size_px: UVec2, truth: Option<&Estimate>) -> Drawn {
-        // Nobody else need wait for anything, so callbacks come only by this.
+        // Nothing else polls the device, so this call runs its callbacks.
         if self.lost().is_some() {
             return Drawn::default();
         }

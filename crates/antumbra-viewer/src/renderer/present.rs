@@ -1,4 +1,4 @@
-//! The pass that makes the window's picture of the two sides, and the colours of its error view.
+//! The pass that composes the output image from the two sides, and the colours of the error view.
 
 use antumbra::{Gpu, Mask, MaskChannels, programs};
 use antumbra_render::{buffer_entry, screen_pipeline, texture_entry};
@@ -7,14 +7,14 @@ use wgpu::util::DeviceExt;
 
 use crate::state::Show;
 
-/// The format that egui takes textures in: its values are what the display shows.
+/// Texture format that egui samples: values are display values.
 pub const OUTPUT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// The error at either end of the map.
+/// Absolute error at either end of the colour map.
 pub const ERROR_RANGE: f32 = 0.5;
 
-/// ColorBrewer's *RdBu* of eleven classes (Brewer 2002), reversed: blue is too dark, white right, red too bright, as in the
-/// laboratory's reports.
+/// ColorBrewer's *RdBu* of eleven classes (Brewer 2002), reversed, as in the laboratory's reports: blue is too dark, white
+/// exact, red too bright.
 pub const ERROR_RAMP: [[u8; 3]; 11] = [
     [5, 48, 97],
     [33, 102, 172],
@@ -29,7 +29,7 @@ pub const ERROR_RAMP: [[u8; 3]; 11] = [
     [103, 0, 31],
 ];
 
-/// Pixels that are not judged: background, or turned away from the light.
+/// Colour of pixels that are not judged: background, or turned away from the light.
 pub const NOT_JUDGED_COLOR: [u8; 3] = [52, 55, 60];
 
 /// Uniform `Present` of the shader.
@@ -44,25 +44,25 @@ struct PresentUniform {
     error_range: f32,
 }
 
-/// What is shown of the sides.
+/// View and layout of the output image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
-    /// Columns from here on show the right side.
+    /// First column of the right side.
     pub divider_px: u32,
-    /// Which image.
+    /// The view.
     pub show: Show,
 }
 
-/// One side's images.
+/// Images of one side.
 #[derive(Clone, Copy, Debug)]
 pub struct SideImages<'a> {
-    /// The picture, linear display values.
+    /// Shaded image, linear display values.
     pub picture: &'a wgpu::Texture,
-    /// The chosen light's mask.
+    /// Mask of the selected light.
     pub mask: &'a Mask,
 }
 
-/// The pass.
+/// The pass that composes the output image.
 #[derive(Debug)]
 pub struct Present {
     layout: wgpu::BindGroupLayout,
@@ -70,7 +70,7 @@ pub struct Present {
 }
 
 impl Present {
-    /// Makes the pipeline.
+    /// Creates the pipeline.
     pub fn new(device: &wgpu::Device) -> Self {
         let texture = |binding| texture_entry(binding, wgpu::TextureSampleType::Float { filterable: false });
         let uniform = buffer_entry(0, wgpu::ShaderStages::FRAGMENT, wgpu::BufferBindingType::Uniform);
@@ -86,7 +86,7 @@ impl Present {
         Self { layout, pipeline }
     }
 
-    /// Records the pass to `output`, of the sides' size.
+    /// Records the pass to `output`, which has the sides' size.
     pub fn record(
         &self,
         gpu: &Gpu,
@@ -146,7 +146,7 @@ impl Present {
     }
 }
 
-/// A texture of one 32-bit float a pixel, from values by pixel.
+/// Uploads values by pixel as a texture of 32-bit floats.
 pub fn upload_f32(gpu: &Gpu, label: &str, size_px: UVec2, values: &[f32]) -> wgpu::TextureView {
     let texture = gpu.device().create_texture_with_data(
         gpu.queue(),

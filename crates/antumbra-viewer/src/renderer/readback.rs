@@ -1,4 +1,4 @@
-//! Readback: depths, the inspected pixel, the window's picture and masks, asked for and taken once they are there.
+//! Readback of depths, the inspected pixel, the output image and masks.
 
 use antumbra::contract::MaskChannels;
 use glam::UVec2;
@@ -9,8 +9,8 @@ use super::texture_reader::Texels;
 use crate::state::State;
 
 impl Renderer {
-    /// Whether something is still to be read. Depths are taken by the next frame, which then draws anew; masks are the
-    /// caller's, and change nothing once they are there.
+    /// Whether a readback that this module handles is in flight. Depths trigger another frame once they are taken. Masks
+    /// belong to the caller and change nothing.
     pub(super) fn is_reading(&self) -> bool {
         self.view.as_ref().is_some_and(|view| view.depth_reader.is_pending())
             || self.output_reader.is_waiting()
@@ -18,12 +18,12 @@ impl Renderer {
             || self.sides.iter().any(|side| side.mask_reader.is_waiting() || side.are_list_totals_awaited())
     }
 
-    /// Asks what is at a pixel from now on, to be had by [`inspected`](Self::inspected); `None` asks nothing.
+    /// Selects the pixel to inspect; `None` ends inspection. [`inspected`](Self::inspected) returns its values.
     pub fn inspect(&mut self, pixel: Option<UVec2>) {
         self.pointer_px = pixel;
     }
 
-    /// What is at the pixel that is asked about, as it was when it was last read.
+    /// Values of the inspected pixel, as last read.
     pub fn inspected(&self) -> Option<Inspected> {
         let ((pixel, _, camera_version), inspected) = self.inspected.as_ref()?;
         let view = self.view.as_ref().filter(|_| self.pointer_px == Some(*pixel))?;
@@ -37,7 +37,7 @@ impl Renderer {
         Some(inspected)
     }
 
-    /// Reads the pixel that is asked about, where it or anything drawn is another one than before.
+    /// Reads the inspected pixel if it or the drawn images have changed.
     pub(super) fn read_pixel(&mut self, encoder: &mut wgpu::CommandEncoder, state: &State) {
         if let Some(read) = self.pixel_reader.take() {
             self.inspected = Some(read);
@@ -53,7 +53,7 @@ impl Renderer {
         self.pixel_reader.record(&self.gpu, encoder, asked, &view.images, masks);
     }
 
-    /// Asks what the camera sees, once it stands still.
+    /// Reads back the visible depths once the camera is static.
     pub(super) fn read_seen(&mut self, encoder: &mut wgpu::CommandEncoder) {
         let is_still = self.drawn.as_ref().is_some_and(|(_, frames)| *frames > 1);
         let Some(view) = &mut self.view else { return };
@@ -63,7 +63,7 @@ impl Renderer {
         }
     }
 
-    /// Asks for the window's picture, to be had by [`take_output`](Self::take_output). `None` before there is one.
+    /// Starts the readback of the output image for [`take_output`](Self::take_output). `None` before there is one.
     pub fn read_output(&mut self) -> Option<()> {
         let texture = self.output_texture()?.clone();
         let mut encoder = self
@@ -75,12 +75,12 @@ impl Renderer {
         Some(())
     }
 
-    /// The window's picture that has come back: four bytes a pixel, sRGB.
+    /// Returns the output image once it is read back: four bytes per pixel, sRGB.
     pub fn take_output(&mut self) -> Option<Texels> {
         self.output_reader.take()
     }
 
-    /// Asks for the sides' masks of the chosen light, to be had by [`take_mask`](Self::take_mask).
+    /// Starts the readback of the sides' masks of the selected light for [`take_mask`](Self::take_mask).
     pub fn read_masks(&mut self, state: &State) {
         let mut encoder =
             self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("viewer: masks") });
@@ -92,7 +92,7 @@ impl Renderer {
         self.gpu.queue().submit([encoder.finish()]);
     }
 
-    /// A side's mask that has come back, with the version that it is of: visibility by pixel, the mean of its channels.
+    /// Returns a side's mask once it is read back, with its version: visibility by pixel, averaged over channels.
     pub fn take_mask(&mut self, side: usize, light: usize) -> Option<(u64, Vec<f32>)> {
         let channels = self.sides[side].mask(light)?.channels();
         let texels = self.sides[side].mask_reader.take()?;

@@ -1,4 +1,4 @@
-//! What the device refuses of some work: known at once natively, some frames later in a browser.
+//! Device errors of a piece of work: available at once natively, some frames later in a browser.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -6,7 +6,7 @@ use antumbra::Gpu;
 
 use crate::message::one_line;
 
-/// Refusals that come late.
+/// Device errors that arrive later.
 #[derive(Clone, Debug, Default)]
 pub struct Refusals {
     late: Arc<Mutex<Late>>,
@@ -14,19 +14,19 @@ pub struct Refusals {
 
 #[derive(Debug, Default)]
 struct Late {
-    /// Pieces of work of which it is not known yet.
+    /// Number of pieces of work whose errors are not known yet.
     pending: u32,
-    /// The last refusal.
+    /// The last error.
     why: Option<String>,
 }
 
 impl Refusals {
-    /// The last refusal that came after its work was done, since the last call.
+    /// Returns the last error that arrived after its work was recorded, since the last call.
     pub fn take(&self) -> Option<String> {
         self.late().why.take()
     }
 
-    /// Whether it is not known of some work whether the device refuses it.
+    /// Whether errors of some work are not known yet.
     pub fn is_pending(&self) -> bool {
         let late = self.late();
         late.pending > 0 || late.why.is_some()
@@ -36,11 +36,10 @@ impl Refusals {
         self.late.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does work on the device; what the device refuses of it is the work's error, in one line, or in a browser what
-    /// [`take`](Self::take) has later.
+    /// Runs work on the device. A device error becomes the work's error, in one line; in a browser [`take`](Self::take) returns it later.
     ///
     /// # Errors
-    /// The work's own, and where the device tells at once what the device refuses.
+    /// Fails if the work fails, or if the device reports an error at once.
     pub fn watch<T>(&self, gpu: &Gpu, work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
         let out_of_memory = gpu.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let invalid = gpu.device().push_error_scope(wgpu::ErrorFilter::Validation);

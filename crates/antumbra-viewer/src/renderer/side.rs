@@ -1,4 +1,4 @@
-//! One side of the picture on the GPU: a technique's state for every light, its masks, its picture, its times.
+//! One side of the image on the GPU: a technique's state for every light, masks, shaded image, times.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -24,38 +24,38 @@ use super::{Compile, Wake};
 use crate::aside::aside;
 use crate::state::{Show, Side};
 
-/// Techniques that a side has compiled at a time: the chosen one, and one that was chosen before it. Each takes memory, on
-/// software devices hundreds of megabytes, and a minute where they are slow.
+/// Maximum number of techniques that a side compiles at a time: the chosen one and a former choice. On software devices
+/// each takes hundreds of megabytes, and a slow one takes a minute.
 const MOST_COMPILERS: usize = 2;
 
 /// A side's state on the GPU.
 #[derive(Debug)]
 pub struct SideWork {
-    /// One for each light; empty before the first technique is ready.
+    /// State of the technique, one per light; empty until the first technique is ready.
     shadows: Vec<AnyShadow>,
-    /// What is being compiled, and where it comes from.
+    /// The technique that is being compiled.
     compiling: Option<Compiling>,
-    /// Held by everything that compiles, also what nobody waits for any longer.
+    /// Reference held by every compilation, including abandoned ones.
     compilers: Arc<()>,
     masks: Vec<Mask>,
     targets: PictureTargets,
     clock: FrameClock,
     /// Times of the last frames.
     pub times: Times,
-    /// The technique that could not be made, and why.
+    /// Technique that could not be created, and the reason.
     refused: Option<(TechniqueKind, String)>,
-    /// Why the technique could not draw the last frame.
+    /// Reason why the technique could not draw the last frame.
     failed: Option<String>,
-    /// What the device refuses of the side's work.
+    /// Device errors of the side's work.
     refusals: Refusals,
-    /// What the last frame lacked room for.
+    /// Overflow of the last frame, as text.
     pub overflow: Option<String>,
     /// Texels along a side of each map whose size was chosen for the last frame.
     auto_map_sizes: Vec<u32>,
-    /// Reads the chosen light's mask.
+    /// Reader of the selected light's mask.
     pub mask_reader: TextureReader,
     list_reader: TextureReader,
-    /// Of the lists that were shown last: how long the longest is, and how much is listed in all.
+    /// Of the shown lists: length of the longest list, and sum of all lengths.
     list_totals: Option<[u32; 2]>,
 }
 
@@ -65,21 +65,21 @@ struct Compiling {
     result: Receiver<Result<AnyShadow, String>>,
 }
 
-/// What a side draws from.
+/// Inputs of a side.
 #[derive(Clone, Copy, Debug)]
 pub struct SideFrame<'a> {
-    /// What casts.
+    /// Casters.
     pub scene: &'a GpuScene,
-    /// What receives.
+    /// Receivers.
     pub images: &'a ReceiverImages,
-    /// How it is lit.
+    /// Shading of the receivers by the lights.
     pub shading: &'a Shading,
     /// The lights.
     pub lights: &'a [Light],
 }
 
 impl SideWork {
-    /// Nothing yet, of a size.
+    /// Creates a side without a technique, for images of `size_px`.
     pub fn new(gpu: &Gpu, size_px: UVec2) -> Self {
         Self {
             shadows: Vec::new(),
@@ -100,14 +100,14 @@ impl SideWork {
         }
     }
 
-    /// Another size: pictures and masks are to be drawn again.
+    /// Resizes the images; images and masks must be drawn again.
     pub fn resize(&mut self, gpu: &Gpu, size_px: UVec2) {
         self.targets = PictureTargets::new(gpu.device(), size_px);
         self.masks.clear();
         self.mask_reader = TextureReader::default();
     }
 
-    /// The technique that draws, where one is ready.
+    /// The technique that draws; `None` before one is ready.
     pub fn kind(&self) -> Option<TechniqueKind> {
         self.shadows.first().map(AnyShadow::kind)
     }
@@ -117,18 +117,18 @@ impl SideWork {
         self.compiling.as_ref().map(|compiling| compiling.kind)
     }
 
-    /// How many techniques are being compiled, those that nobody waits for among them.
+    /// Number of techniques that are being compiled, including abandoned ones.
     #[cfg(test)]
     pub(super) fn compilers(&self) -> usize {
         Arc::strong_count(&self.compilers) - 1
     }
 
-    /// Why the side's technique does not draw; the picture is the last that could be drawn.
+    /// Reason why the side's technique does not draw. The image then shows the last success.
     pub fn problem(&self) -> Option<&str> {
         self.refused.as_ref().map(|(_, why)| why.as_str()).or(self.failed.as_deref())
     }
 
-    /// What is measured of the side, with its error against the truth.
+    /// Measurements of the side, with its error against the ground truth.
     pub(crate) fn readings(&self, rmse: Option<f64>) -> SideReadings<'_> {
         SideReadings {
             compiling: self.compiling(),
@@ -146,28 +146,28 @@ impl SideWork {
         self.shadows.iter().map(AnyShadow::memory_bytes).sum()
     }
 
-    /// The picture, linear display values.
+    /// Shaded image, linear display values.
     pub fn picture(&self) -> &wgpu::Texture {
         &self.targets.picture
     }
 
-    /// Every light's mask and the picture, where a technique has drawn them.
+    /// Every light's mask and the shaded image; `None` before a technique has drawn them.
     pub(super) fn still(&self) -> Option<StillSide<'_>> {
         let are_drawn = !self.shadows.is_empty() && !self.masks.is_empty();
         are_drawn.then_some(StillSide { masks: &self.masks, picture: &self.targets.picture })
     }
 
-    /// A light's mask, once one was drawn.
+    /// A light's mask; `None` before it is drawn.
     pub fn mask(&self, light: usize) -> Option<&Mask> {
         self.masks.get(light)
     }
 
-    /// The depth maps that were drawn of a light; none of techniques that keep something else.
+    /// Depth maps drawn for a light; empty if the technique has none.
     pub fn drawn_maps(&self, light: usize) -> Vec<DrawnMap> {
         self.shadows.get(light).map(AnyShadow::drawn_maps).unwrap_or_default()
     }
 
-    /// What there is to choose from in a view of a light's maps or lists.
+    /// Numbers of choices in a view of a light's maps or lists.
     pub fn map_choices(&self, show: Show, light: usize) -> MapChoices {
         match show {
             Show::LightMap => MapChoices::of(&self.drawn_maps(light)),
@@ -176,12 +176,12 @@ impl SideWork {
         }
     }
 
-    /// A level and a layer of a light's maps; of those that the light's points have, of one point alone.
+    /// Returns a level and a layer of a light's maps. If light samples have maps, `layer` selects the sample.
     pub fn shown_maps(&self, light: usize, level: usize, layer: usize) -> Vec<ShownMap> {
         of_point(self.drawn_maps(light), layer).into_iter().map(|map| ShownMap::of(map, level, layer)).collect()
     }
 
-    /// What the depth maps of a light are, in a line.
+    /// Describes a light's depth maps in one line.
     pub fn map_line(&self, light: usize, level: usize, layer: usize) -> Option<String> {
         let kind = self.kind()?;
         let choices = MapChoices::of(&self.drawn_maps(light));
@@ -202,7 +202,7 @@ impl SideWork {
             count if count > 1 && !first.is_level() => format!(" of {count} samples"),
             _ => String::new(),
         };
-        // Their maps of points have no texture to be shown.
+        // These techniques keep the light samples' maps in a buffer.
         let made = if matches!(kind, TechniqueKind::Reprojection | TechniqueKind::ReprojectionLayered) {
             " from the light's middle; the maps that its points have are words of a buffer"
         } else {
@@ -216,17 +216,17 @@ impl SideWork {
         ))
     }
 
-    /// The lists per texel that were made for a light; none of techniques that keep something else.
+    /// Lists per texel of a light; empty if the technique has none.
     pub fn drawn_lists(&self, light: usize) -> Vec<DrawnLists> {
         self.shadows.get(light).map(AnyShadow::drawn_lists).unwrap_or_default()
     }
 
-    /// How many levels a light's lists have.
+    /// Number of levels of a light's lists.
     pub fn list_levels(&self, light: usize) -> usize {
         self.drawn_lists(light).iter().map(|lists| lists.levels.len()).max().unwrap_or(0)
     }
 
-    /// Has the totals of lists read that the encoder's commands count; `None` where there are no lists.
+    /// Starts the readback of the lists' totals that the encoder's commands compute; `None` without lists.
     pub(super) fn read_list_totals(
         &mut self,
         gpu: &Gpu,
@@ -240,17 +240,17 @@ impl SideWork {
         }
     }
 
-    /// Whether totals of lists are on their way, or there and not taken in yet.
+    /// Whether totals of lists are in flight or not yet taken.
     pub(super) fn are_list_totals_awaited(&self) -> bool {
         self.list_reader.is_pending()
     }
 
-    /// How long the longest of the lists that were shown last is, and how much is listed in all, once that is known.
+    /// Of the lists shown last: length of the longest list and sum of all lengths; `None` until they are read back.
     pub fn list_totals(&self) -> Option<[u32; 2]> {
         self.list_totals
     }
 
-    /// What a level of a light's lists is, in a line.
+    /// Describes a level of a light's lists in one line.
     pub fn lists_line(&self, light: usize, level: usize) -> Option<String> {
         let kind = self.kind()?;
         let lists = self.drawn_lists(light);
@@ -268,13 +268,13 @@ impl SideWork {
         Some(format!("{kind}: {count}{x} × {y} lists of {}{level}{totals}", first.listed))
     }
 
-    /// Whether something is on its way back.
+    /// Whether a readback, a compilation or a device error is pending.
     pub fn is_busy(&self) -> bool {
         let is_reading = self.clock.is_busy() || self.mask_reader.is_waiting();
         is_reading || self.compiling.is_some() || self.refusals.is_pending()
     }
 
-    /// Takes in what has come back. Whether the side is to be drawn again.
+    /// Collects completed readbacks and compilations. Returns whether the side must be drawn again.
     pub fn collect(&mut self, gpu: &Gpu) -> bool {
         if let Some(late) = self.refusals.take() {
             self.begin_anew(gpu);
@@ -305,7 +305,7 @@ impl SideWork {
         true
     }
 
-    /// Sees to it that the side's technique is made or being made.
+    /// Starts compiling the side's technique unless it is ready or being compiled.
     pub fn request(&mut self, gpu: &Gpu, side: &Side, what: WarmUp, compile: &Compile) {
         let wanted = side.kind();
         if self.refused.as_ref().is_some_and(|(kind, _)| *kind == wanted) {
@@ -316,8 +316,8 @@ impl SideWork {
         if coming == Some(wanted) {
             return;
         }
-        // A driver that is compiling cannot be stopped: whoever goes through the list of techniques leaves some behind, and
-        // waits here until one of them is done.
+        // Drivers cannot cancel a compilation. A user who scrolls through the techniques leaves some behind; the next one
+        // waits until one is done.
         if Arc::strong_count(&self.compilers) > MOST_COMPILERS {
             return;
         }
@@ -337,7 +337,7 @@ impl SideWork {
         self.compiling = Some(Compiling { kind: wanted, result });
         match compile {
             Compile::AtOnce => {
-                // The receiver is held by `self`.
+                // Sending succeeds, because `self` holds the receiver.
                 let _ = sender.send(make());
                 self.collect(&for_collect);
             }
@@ -345,9 +345,9 @@ impl SideWork {
                 let wake: Wake = wake.clone();
                 aside(move || {
                     let made = make();
-                    // Before it is known: whoever takes it may start another.
+                    // This drop precedes the send, because the recipient may start another compilation.
                     drop(compiler);
-                    // Nobody waits any longer where another technique was chosen meanwhile.
+                    // The receiver is gone if another technique was chosen meanwhile.
                     let _ = sender.send(made);
                     wake();
                 });
@@ -355,8 +355,8 @@ impl SideWork {
         }
     }
 
-    /// Draws masks, submits them, and records the picture. What cannot be drawn leaves both as they were, and
-    /// [`problem`](Self::problem) says why.
+    /// Draws and submits masks, and records the shaded image. On failure both stay unchanged and [`problem`](Self::problem)
+    /// returns the reason.
     pub fn draw(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, side: &Side, frame: &SideFrame<'_>) {
         match self.masks_commands(gpu, side, frame) {
             Ok(commands) => gpu.queue().submit([commands]),
@@ -368,8 +368,7 @@ impl SideWork {
         frame.shading.record(gpu, encoder, frame.images, &sources, &self.targets);
     }
 
-    /// The commands that draw every light's mask, in an encoder of their own, so that what the device refuses spoils
-    /// nothing else.
+    /// Returns the commands that draw every light's mask, in an encoder of their own, so that a device error affects nothing else.
     pub(super) fn masks_commands(
         &mut self,
         gpu: &Gpu,
@@ -391,7 +390,7 @@ impl SideWork {
         result
     }
 
-    /// What the device refused may be half made: begin anew, which costs little, since programs stay.
+    /// Recreates the technique's state after a device error, which may have left it incomplete. Pipelines stay cached, so this is cheap.
     fn begin_anew(&mut self, gpu: &Gpu) {
         if let Some(kind) = self.kind() {
             self.shadows = self.shadows.iter().filter_map(|_| kind.create(gpu).ok()).collect();
@@ -399,14 +398,14 @@ impl SideWork {
         }
     }
 
-    /// A state for each light, with the side's parameters.
+    /// Creates the state for each light and sets the side's parameters.
     fn fit_shadows(&mut self, gpu: &Gpu, side: &Side, frame: &SideFrame<'_>) -> Result<(), String> {
         let Some(kind) = self.kind() else { return Ok(()) };
         while self.shadows.len() < frame.lights.len() {
             self.shadows.push(kind.create(gpu).map_err(|error| error.to_string())?);
         }
         self.shadows.truncate(frame.lights.len());
-        // The technique before the chosen one, while that compiles, keeps its parameters.
+        // While the chosen technique compiles, the former one keeps its parameters.
         if kind == side.kind() {
             for shadow in &mut self.shadows {
                 set_params(shadow, side);
@@ -415,7 +414,7 @@ impl SideWork {
         Ok(())
     }
 
-    /// Masks of the right size and number of channels, one for each light.
+    /// Creates masks of the right size and number of channels, one per light.
     fn fit_masks(&mut self, gpu: &Gpu, side: &Side, frame: &SideFrame<'_>) {
         let is_colored = side.params().any(|(spec, value)| spec.colors_mask(value));
         let casters = frame.scene.casters();
@@ -461,20 +460,20 @@ impl SideWork {
             self.clock.record(encoder, frame.clone());
         }
         if !self.clock.is_busy() {
-            // No timestamps here: the processor's time is what there is.
+            // Without timestamps only the CPU's time is known.
             self.times.push(frame);
         } else if !is_timed && has_made {
-            // Nobody times it, and frames before it were of something else.
+            // This frame is not timed on the GPU, but earlier times are obsolete.
             self.times.push(frame);
         }
         Ok(())
     }
 }
 
-/// Gives a light's state the side's parameters, which the side has checked.
+/// Sets the side's parameters, which the side has validated.
 fn set_params(shadow: &mut AnyShadow, side: &Side) {
     for (spec, value) in side.params() {
-        // A side only takes values that the declaration allows.
+        // A side accepts valid values only.
         let set = shadow.set(spec.key, &value.to_string());
         debug_assert!(set.is_ok(), "{set:?}");
     }

@@ -1,17 +1,17 @@
-//! Readings of one side: compilation, faults, times, memory, error.
+//! Measurements of one side: compilation, errors, times, memory, RMSE.
 
 use antumbra::TechniqueKind;
 
 use super::times::Times;
 
-/// Readings of one side.
+/// Measurements of one side.
 #[derive(Clone, Copy, Debug)]
 pub struct SideReadings<'a> {
-    /// What is being compiled.
+    /// Technique that is being compiled.
     pub compiling: Option<TechniqueKind>,
-    /// Why it cannot draw.
+    /// Reason why the technique cannot draw.
     pub problem: Option<&'a str>,
-    /// What the last frame lacked room for.
+    /// Overflow of the last frame, as text.
     pub overflow: Option<&'a str>,
     /// Times of the last frames.
     pub times: &'a Times,
@@ -19,6 +19,6 @@ pub struct SideReadings<'a> {
     pub memory_bytes: u64,
     /// Texels along a side of each map whose size is chosen for each frame.
     pub auto_map_sizes: &'a [u32],
-    /// The error against the truth so far.
+    /// Root-mean-square error against the ground truth traced so far.
     pub rmse: Option<f64>,
 }

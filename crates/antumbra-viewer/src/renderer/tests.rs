@@ -1,4 +1,4 @@
-//! The renderer on whatever adapter there is, without a window.
+//! Tests of the renderer on the default adapter, without a window.
 
 use antumbra::contract::{MaskChannels, ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
@@ -14,7 +14,7 @@ use crate::state::{ShapeKind, Show};
 
 const SIZE: UVec2 = UVec2::new(64, 64);
 
-/// A device of its own, or `None` and a word where this machine has none and none is required.
+/// Creates a device; `None` and a message if this machine has no adapter and none is required.
 fn gpu_or_skip() -> Option<Gpu> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let Ok(adapter) = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default())) else {
@@ -25,7 +25,7 @@ fn gpu_or_skip() -> Option<Gpu> {
     Some(Gpu::new(&device, &queue))
 }
 
-/// A scene that is open, and a renderer that compiles at once.
+/// Creates a renderer with an open scene; it compiles before `draw` returns.
 fn fixture(spec: &str) -> Option<(Renderer, State)> {
     let gpu = gpu_or_skip()?;
     let scene = load(spec, &LoadOptions::default()).unwrap();
@@ -36,7 +36,7 @@ fn fixture(spec: &str) -> Option<(Renderer, State)> {
     Some((renderer, state))
 }
 
-/// Draws until nothing is left to do; how often that took.
+/// Draws until no work is left. Returns the number of frames.
 fn settle(renderer: &mut Renderer, state: &State) -> u32 {
     for frame in 1..200 {
         let drawn = renderer.draw(state, SIZE, None);
@@ -53,14 +53,14 @@ fn picture(renderer: &mut Renderer) -> Vec<u8> {
     read(renderer).bytes
 }
 
-/// The picture, waited for.
+/// Reads the output image and waits for it.
 fn read(renderer: &mut Renderer) -> Texels {
     renderer.read_output().unwrap();
     renderer.gpu.device().poll(wgpu::PollType::wait_indefinitely()).unwrap();
     renderer.take_output().unwrap()
 }
 
-/// The mean of the picture's red, green and blue, 0 to 255.
+/// Mean of the image's red, green and blue, 0 to 255.
 fn mean(bytes: &[u8]) -> f64 {
     let colors = bytes.chunks_exact(4).flat_map(|texel| &texel[..3]);
     colors.map(|v| f64::from(*v)).sum::<f64>() / (bytes.len() / 4 * 3) as f64
@@ -75,7 +75,7 @@ fn what_stands_still_is_not_drawn_again() {
         assert_eq!(renderer.draw(&state, SIZE, None), Drawn::default());
     }
     assert_eq!(renderer.version(), version);
-    // The divider moves without a shadow drawn, the light with it.
+    // Moving the divider draws no shadow; moving the light does.
     state.is_split = true;
     settle(&mut renderer, &state);
     let split = renderer.version();
@@ -87,8 +87,7 @@ fn what_stands_still_is_not_drawn_again() {
     assert!(renderer.version() > split);
 }
 
-/// A picture that stands still is antialiased: nearer to the means of a larger one's pixels than samples at the pixels' centres are, and
-/// the same as those within surfaces.
+/// A static image is antialiased: closer to the downsampled larger image than samples at pixel centres are, and unchanged within surfaces.
 #[test]
 fn what_stands_still_is_smooth() {
     const LARGER: u32 = 8;
@@ -138,7 +137,7 @@ fn views_and_sides_show_what_they_say() {
     let soft = picture(&mut renderer);
     assert!(soft.chunks_exact(4).all(|texel| texel[0] == texel[1] && texel[1] == texel[2]), "no greys");
     assert!(soft.chunks_exact(4).any(|texel| texel[0] == 0) && soft.chunks_exact(4).any(|texel| texel[0] == 255));
-    // Left of the divider is the one technique, right of it the other.
+    // The left half shows one technique, the right half the other.
     state.is_split = true;
     settle(&mut renderer, &state);
     let split = picture(&mut renderer);
@@ -151,7 +150,7 @@ fn views_and_sides_show_what_they_say() {
     assert!(half(&split, true).chunks_exact(4).all(|texel| texel[0] == 0 || texel[0] == 255), "not a hard shadow");
 }
 
-/// Pictures are shaded by the part of the irradiance that arrives; other views and the inspector get visibility.
+/// *Shaded* uses ratio masks; other views and the inspector use visibility.
 #[test]
 fn pictures_have_ratios_and_other_views_have_visibility() {
     let Some((mut renderer, mut state)) = fixture("builtin:hall") else { return };
@@ -169,7 +168,7 @@ fn pictures_have_ratios_and_other_views_have_visibility() {
     let visibility = mask_of(Show::Visibility, None);
     let apart = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(apart(&shaded, &visibility) > 0.02, "{}", apart(&shaded, &visibility));
-    // Masks of three channels are of half floats.
+    // Masks of three channels are half floats.
     assert!(apart(&mask_of(Show::Shaded, Some(UVec2::new(20, 30))), &visibility) < 1e-3);
     assert!(apart(&mask_of(Show::Shaded, None), &shaded) < 1e-6);
 }
@@ -211,7 +210,7 @@ fn lights_of_every_shape_and_another_size_are_drawn() {
     assert_eq!(renderer.take_error(), None);
 }
 
-/// What lies at either end of a parameter; a list is long, and then empty.
+/// Values at both ends of a parameter's range, and all choices; only the default of a list.
 fn ends(spec: &ParamSpec) -> Vec<String> {
     let numbers = spec.range.map(|(low, high)| [(low as f32).to_string(), (high as f32).to_string()]);
     let names = spec.choices.iter().map(|choice| (*choice).to_owned());
@@ -222,13 +221,13 @@ fn ends(spec: &ParamSpec) -> Vec<String> {
     }
 }
 
-/// On a device on which all is validated and nothing is drawn.
+/// Runs on a device that validates but does not draw.
 #[test]
 fn every_parameter_goes_to_both_ends() {
     set_parameters_to_both_ends(&Device::idle().gpu);
 }
 
-/// Each variant is compiled by the driver, too.
+/// Runs on an adapter, so the driver compiles each variant, too.
 #[test]
 #[ignore = "long"]
 fn every_parameter_goes_to_both_ends_on_an_adapter() {
@@ -236,9 +235,8 @@ fn every_parameter_goes_to_both_ends_on_an_adapter() {
     set_parameters_to_both_ends(&gpu);
 }
 
-/// Either end of every parameter of every technique is taken, or refused in words where this machine has no memory for
-/// it: nothing panics, and the device has no complaint. Frames are prepared and recorded; drawing them would take a
-/// software device hours.
+/// Both ends of every parameter of every technique are accepted, or refused with a message if memory is short: no panic, no
+/// device error. Frames are prepared and recorded but not drawn, which would take a software device hours.
 fn set_parameters_to_both_ends(gpu: &Gpu) {
     let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
     let (mut count, mut refused) = (0, 0);
@@ -266,14 +264,14 @@ fn set_parameters_to_both_ends(gpu: &Gpu) {
             }
             state.sides[0].reset();
         }
-        // What was refused is mended by going back.
+        // Resetting the parameters clears the error.
         renderer.draw(&state, SIZE, None);
         assert_eq!((renderer.sides[0].problem(), renderer.take_error()), (None, None), "{kind}");
     }
     assert!(count > 200 && refused < count / 10, "{refused} of {count} refused");
 }
 
-/// A built-in scene of which a corner rises and one thing goes aside.
+/// A built-in scene in which a vertex rises and an instance moves sideways over time.
 fn flapping(time_s: f32) -> Scene {
     let mut scene = load("builtin:overlap", &LoadOptions::default()).unwrap();
     scene.meshes[1].positions[0].y += 0.4 * time_s;
@@ -284,7 +282,7 @@ fn flapping(time_s: f32) -> Scene {
 #[test]
 fn a_scene_at_another_time_is_what_it_is_when_opened_then() {
     let Some(gpu) = gpu_or_skip() else { return };
-    // What keeps anything of the frames before: maps, lists of texels and of receivers, triangles.
+    // Techniques with data from earlier frames: maps, lists per texel and of receivers, triangles.
     for kind in [
         TechniqueKind::Pcss,
         TechniqueKind::MultiView,
@@ -309,7 +307,7 @@ fn a_scene_at_another_time_is_what_it_is_when_opened_then() {
         anew.open(&flapping(1.0), 1);
         settle(&mut anew, &state);
         assert_eq!(posed, picture(&mut anew), "{kind}");
-        // What stands still then is not drawn again.
+        // The posed scene is static, so it is not drawn again.
         let version = renderer.version();
         assert_eq!(renderer.draw(&state, SIZE, None), Drawn::default(), "{kind}");
         assert_eq!(renderer.version(), version, "{kind}");
@@ -331,7 +329,7 @@ fn what_comes_and_goes_is_made_anew() {
     assert_eq!(picture(&mut renderer), whole);
 }
 
-/// A board 1 m under a square light and a floor 3 m under it.
+/// A board 1 m below a square light, and a floor 3 m below it.
 fn board_over_floor() -> (Scene, Setup) {
     let square = |half_side: f32, y: f32| {
         let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
@@ -363,7 +361,7 @@ fn light_maps_are_seen_as_the_light_sees() {
     let Some(gpu) = gpu_or_skip() else { return };
     let (scene, setup) = board_over_floor();
     let mut with_map = 0;
-    // Of those with many maps, lists or layers one stands for all: they take long on software devices.
+    // One technique with many maps, lists or layers represents the others, which are slow on software devices.
     let others = ["multi_view", "reprojection", "reprojection_layered", "ray_traced", "alias_free", "sample_based"];
     for &kind in TechniqueKind::ALL.iter().filter(|kind| !others.contains(&kind.name())) {
         let mut state = State::new(kind, TechniqueKind::Hard);
@@ -373,7 +371,7 @@ fn light_maps_are_seen_as_the_light_sees() {
         state.show = Show::LightMap;
         let mut renderer = Renderer::new(&gpu, Compile::AtOnce);
         renderer.open(&scene, 1);
-        // Once is enough: what is drawn later is drawn from the same light.
+        // One frame suffices: later ones use the same light.
         renderer.draw(&state, SIZE, None);
         assert_eq!((renderer.take_error(), renderer.sides[0].problem()), (None, None), "{kind}");
         let maps = renderer.sides[0].drawn_maps(0);
@@ -395,7 +393,7 @@ fn light_maps_are_seen_as_the_light_sees() {
         let floors = bytes.chunks_exact(4).filter(|texel| texel[0].abs_diff(expected(3.0)) <= 1).count();
         assert!(floors > 200, "{kind}: {floors} texels of floor, {line}");
     }
-    // A lamp in the middle of things is cut into parts, with a map each.
+    // A light among the casters is split into parts, each with a map.
     let mut state = State::new(TechniqueKind::Hard, TechniqueKind::Hard);
     state.open("board", &scene, Some(setup.clone()));
     state.setup.lights[0].shape = LightShape::Sphere { radius_m: 0.1 };
@@ -411,7 +409,7 @@ fn light_maps_are_seen_as_the_light_sees() {
     assert_eq!(with_map, 19, "seven of one map, six that are filtered, six that are summed");
 }
 
-/// Whoever goes through the list of techniques gets the last one, and leaves few behind that compile.
+/// Scrolling through the techniques ends with the last one drawn, and few abandoned compilations.
 #[test]
 fn techniques_that_are_passed_by_do_not_pile_up() {
     let Some((renderer, mut state)) = fixture("builtin:overlap") else { return };
@@ -434,7 +432,7 @@ fn techniques_that_are_passed_by_do_not_pile_up() {
     assert_eq!((renderer.take_error(), renderer.sides[0].problem()), (None, None));
 }
 
-/// Shows the lists of a technique over the board and the floor.
+/// Shows the lists of a technique on the board and the floor.
 fn lists_of(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)], level: usize) -> (Renderer, State) {
     let (scene, setup) = board_over_floor();
     let mut state = State::new(kind, TechniqueKind::Hard);
@@ -452,13 +450,13 @@ fn lists_of(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)], level: us
     (renderer, state)
 }
 
-/// How much of the picture has this colour.
+/// Fraction of the image's pixels that have this colour.
 fn share_of(bytes: &[u8], color: [u8; 3]) -> f64 {
     let is_near = |texel: &&[u8]| texel.iter().zip(color).all(|(a, b)| a.abs_diff(b) <= 2);
     bytes.chunks_exact(4).map(|texel| &texel[..3]).filter(is_near).count() as f64 / (bytes.len() / 4) as f64
 }
 
-/// The colours of a list of one, and of the longest: both ends of the shader's ramp.
+/// Colours of a list of length 1 and of the longest: both ends of the shader's ramp.
 const LEAST: [u8; 3] = [51, 18, 107];
 const MOST: [u8; 3] = [255, 245, 158];
 
@@ -468,7 +466,7 @@ fn every_receiver_is_in_a_list() {
     let (scene, setup) = board_over_floor();
     let receivers = antumbra_reference::Tracer::new(&scene).unwrap().primary(&setup.camera, SIZE);
     let pixels = (0..SIZE.y).flat_map(|y| (0..SIZE.x).map(move |x| (x, y)));
-    // All that is seen faces the light.
+    // All visible surfaces face the light.
     let seen = pixels.filter(|(x, y)| receivers.at(*x, *y).is_some()).count() as u32;
     for (kind, traversal) in [
         (TechniqueKind::AliasFree, "groups"),
@@ -478,7 +476,7 @@ fn every_receiver_is_in_a_list() {
         let (mut renderer, _) = lists_of(&gpu, kind, &[("map_size", "32"), ("traversal", traversal)], 0);
         let [longest, sum] = renderer.sides[0].list_totals().expect("they were counted");
         let line = renderer.sides[0].lists_line(0, 0).unwrap();
-        // Where a ray meets an edge, and a pixel's centre does not.
+        // The tolerance is for pixels where a ray hits an edge and the rasteriser does not.
         assert!(seen > 1000 && sum.abs_diff(seen) <= 8, "{seen} receivers are seen; {line}");
         assert!(longest > 1 && line.contains("32 × 32 lists of receivers"), "{line}");
         assert!(!line.contains("level") && line.contains(&format!("at most {longest} in a list")), "{line}");
@@ -497,16 +495,16 @@ fn lists_are_as_long_as_the_light_sees_surfaces() {
     let line = renderer.sides[0].lists_line(0, 0).unwrap();
     assert!(levels > 1 && line.contains(&format!("lists of fragments, level 1 of {levels}")), "{line}");
     assert_eq!(longest, 2, "{line}");
-    // The board hides (0.2 / 1)² / (1 / 3)² of the floor: so much of what is seen at all is seen twice.
+    // The board hides (0.2 / 1)² / (1 / 3)² of the floor from the light: the fraction of lists with two entries.
     let bytes = picture(&mut renderer);
     let (once, twice) = (share_of(&bytes, LEAST), share_of(&bytes, MOST));
     let expected = 0.2f64.powi(2) * 9.0;
     assert!((twice / (once + twice) - expected).abs() < 0.03, "{once} once, {twice} twice; {line}");
-    // Lists along the edges hold slivers of both.
+    // Texels along the edges hold fragments of both surfaces.
     let lists = f64::from(sum) / (1.0 + expected);
     let texels = renderer.sides[0].drawn_lists(0)[0].levels[0].size_texels.as_dvec2();
     assert!(lists > 0.5 * texels.element_product() && lists < 1.02 * texels.element_product(), "{line}");
-    // The next level is merged of four lists each; one that is not there is the coarsest that is.
+    // Each list of the next level merges four lists; an index past the coarsest level selects that one.
     state.level = 1;
     settle(&mut renderer, &state);
     let [_, merged] = renderer.sides[0].list_totals().expect("they were counted");
@@ -517,7 +515,7 @@ fn lists_are_as_long_as_the_light_sees_surfaces() {
     settle(&mut renderer, &state);
     let line = renderer.sides[0].lists_line(0, 99).unwrap();
     assert!(line.contains(&format!("level {levels} of {levels}")), "{line}");
-    // Others keep none.
+    // Other techniques keep no lists.
     let (renderer, _) = lists_of(&gpu, TechniqueKind::Hard, &[], 0);
     assert_eq!((renderer.sides[0].list_totals(), renderer.sides[0].list_levels(0)), (None, 0));
     assert!(renderer.sides[0].lists_line(0, 0).unwrap().contains("keeps no lists"));
@@ -542,7 +540,7 @@ fn a_pixel_is_what_rays_find_there() {
         renderer.inspect(Some(pixel));
         assert_eq!(renderer.inspected(), None, "of another pixel");
         settle(&mut renderer, &state);
-        // Taken with the next frame.
+        // The next frame takes the reading.
         renderer.draw(&state, SIZE, None);
         let inspected = renderer.inspected().unwrap();
         let traced = receivers.at(pixel.x, pixel.y);
@@ -557,12 +555,12 @@ fn a_pixel_is_what_rays_find_there() {
         shades.insert((100.0 * masks[0][place]) as u32);
     }
     assert!(surfaces > 20 && shades.len() > 1, "{surfaces} surfaces, {shades:?}");
-    // Nothing is read where nothing is asked.
+    // Without an inspected pixel nothing is read.
     renderer.inspect(None);
     assert_eq!(renderer.inspected(), None);
 }
 
-/// A level of a slice of a texture, 32-bit words row after row.
+/// Reads a mip level of a texture's layer as 32-bit words, row by row, with its size.
 fn words_of(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, slice: u32) -> (Vec<u32>, UVec2) {
     let size = UVec2::new(texture.width() >> mip_level, texture.height() >> mip_level).max(UVec2::ONE);
     let texel_bytes = if texture.format() == wgpu::TextureFormat::Rg32Float { 8 } else { 4 };
@@ -586,7 +584,7 @@ fn words_of(gpu: &Gpu, texture: &wgpu::Texture, mip_level: u32, slice: u32) -> (
     (rows.chunks_exact(row_bytes as usize / 4).flat_map(|row| row[..row_words].to_vec()).collect(), size)
 }
 
-/// What commands copy into a buffer of so many bytes.
+/// Returns the words that commands copy into a buffer of `size` bytes.
 fn read_words(gpu: &Gpu, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::Buffer)) -> Vec<u32> {
     let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
         label: Some("read back"),
@@ -603,8 +601,7 @@ fn read_words(gpu: &Gpu, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder,
     bytemuck::pod_collect_to_vec(&mapped)
 }
 
-/// Holds the one map in the picture against what its texels are to look like. Where a pixel's centre lies between two texels
-/// either is right.
+/// Compares the map in the image with the expected colours of its texels. Either texel is right for a pixel on their border.
 fn assert_shown(bytes: &[u8], size: UVec2, what: &str, color: impl Fn(UVec2) -> [u8; 3]) {
     let (corners, side) = light_map::places(1, SIZE.as_vec2());
     let (corner, side) = (corners[0].as_uvec2(), side as u32);
@@ -621,7 +618,7 @@ fn assert_shown(bytes: &[u8], size: UVec2, what: &str, color: impl Fn(UVec2) -> 
     }
 }
 
-/// IEEE 754's sixteen bits, none of them beyond the finite.
+/// Converts a finite IEEE 754 binary16 number.
 fn float_from_half(bits: u32) -> f32 {
     let (exponent, fraction) = (bits >> 10 & 31, (bits & 1023) as f32);
     let size = if exponent == 0 {
@@ -638,14 +635,14 @@ fn shown_map_of(gpu: &Gpu, kind: TechniqueKind, settings: &[(&str, &str)]) -> (R
     (renderer, state)
 }
 
-/// The grey of a distance in a map.
+/// Grey value of a distance in a map.
 fn grey_of(map: &antumbra::DrawnMap, distance_m: f32) -> u8 {
     let [nearest_m, farthest_m] = map.range_m;
     let far = ((distance_m - nearest_m) / (farthest_m - nearest_m)).clamp(0.0, 1.0);
     (255.0 * (1.0 + (light_map::DARKEST - 1.0) * far)).round() as u8
 }
 
-/// The colour of a depth in a map without a warp.
+/// Colour of a depth in a map without a warp.
 fn color_of(map: &antumbra::DrawnMap, depth: f32) -> [u8; 3] {
     if depth == map.empty_depth {
         return NOT_JUDGED_COLOR;
@@ -659,11 +656,11 @@ fn a_level_of_a_map_that_is_shown_is_what_that_level_holds() {
     use antumbra::contract::LevelTexels;
     let Some(gpu) = gpu_or_skip() else { return };
     let mut held = Vec::new();
-    // A pyramid, and filtered maps of floats and of fractions.
+    // A pyramid, and filtered maps of floats and of normalised integers.
     for (name, count) in [("pcss", 9), ("vsm", 10), ("esm", 10), ("convolution", 10)] {
         let kind = TechniqueKind::from_name(name).unwrap();
         let (mut renderer, mut state) = shown_map_of(&gpu, kind, &[("map_size", "256")]);
-        // The board's edges lie at no texels' edges.
+        // The offset keeps the board's edges off the texels' edges.
         state.setup.lights[0].center += Vec3::new(0.17, 0.0, 0.07);
         settle(&mut renderer, &state);
         let maps = renderer.sides[0].drawn_maps(0);
@@ -676,7 +673,7 @@ fn a_level_of_a_map_that_is_shown_is_what_that_level_holds() {
             let line = renderer.sides[0].map_line(0, level, 0).unwrap();
             assert!(line.contains(&format!("level {} of {count}", level + 1)), "{line}");
             let shown = &map.levels[level - 1];
-            // Levels of a pyramid are its texture's, those of a filtered map lie beside each other.
+            // A pyramid's levels are mip levels; a filtered map's levels share one level of the texture.
             let texture = shown.view.texture();
             let (words, row) = words_of(&gpu, texture, (level as u32 - 1).min(texture.mip_level_count() - 1), 0);
             let size = shown.size_px;
@@ -703,7 +700,7 @@ fn a_level_of_a_map_that_is_shown_is_what_that_level_holds() {
             last = bytes;
             held.push(shown.texels);
         }
-        // Of two that differ by less than a pixel the pictures may be alike.
+        // Two levels that differ by less than a pixel may give equal images.
         assert!(pictures.len() > 4, "{name}: {} pictures of {count} levels", pictures.len());
         state.level = 99;
         settle(&mut renderer, &state);
@@ -751,7 +748,7 @@ fn maps_of_the_lights_points_are_chosen_from() {
         let maps = renderer.sides[0].shown_maps(0, 0, point);
         let [shown] = maps.as_slice() else { panic!("{} maps of one point", maps.len()) };
         let bytes = picture(&mut renderer);
-        // Also in a window that is warped.
+        // The distances are right in a warped map, too.
         for (distance_m, least) in [(1.0, 20), (3.0, 200)] {
             let expected = grey_of(&shown.map, distance_m);
             let count = bytes.chunks_exact(4).filter(|texel| texel[0].abs_diff(expected) <= 1).count();
@@ -760,7 +757,7 @@ fn maps_of_the_lights_points_are_chosen_from() {
         assert!(pictures.iter().all(|other| *other != bytes), "{line}: as from another point");
         pictures.push(bytes);
     }
-    // Those of reprojection are no textures, and the line says so; its own has the layers that are scattered.
+    // Maps of the reprojection techniques are buffers, as the line says; their central map has the layers to scatter.
     for (name, layers) in [("reprojection", 1), ("reprojection_layered", 2)] {
         let kind = TechniqueKind::from_name(name).unwrap();
         let (renderer, _) = shown_map_of(&gpu, kind, &[("samples", "4"), ("view_size", "64")]);
@@ -788,7 +785,7 @@ fn a_level_of_lists_that_is_shown_is_what_that_level_holds() {
         let all = (0..size.element_product()).map(|i| length(UVec2::new(i % size.x, i / size.x)));
         let (longest, sum) = (all.clone().max().unwrap(), all.sum::<u32>());
         assert_eq!(renderer.sides[0].list_totals(), Some([longest, sum]), "level {level}");
-        // The shader's ramp, by the logarithm.
+        // The shader's ramp over the logarithm of the length.
         let ramp = |part: f32| {
             let ends = if part < 0.5 {
                 [[0.20, 0.07, 0.42], [0.86, 0.30, 0.26]]

@@ -1,4 +1,4 @@
-//! Textures, and a few words of buffers, back on the CPU without waiting: asked for with one frame, there some frames later.
+//! Asynchronous readback of textures and of a few words of buffers: requested in one frame, available some frames later.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use antumbra::Gpu;
 use glam::UVec2;
 
-/// Reads one texture or buffer at a time.
+/// Reader of one texture or buffer at a time.
 #[derive(Debug, Default)]
 pub struct TextureReader {
     pending: Option<Pending>,
@@ -17,20 +17,20 @@ struct Pending {
     buffer: wgpu::Buffer,
     size_px: UVec2,
     texel_bytes: u32,
-    /// What the texture held, in the caller's count.
+    /// Version of the content, chosen by the caller.
     version: u64,
     outcome: Arc<AtomicU8>,
 }
 
-/// What has become of a mapping.
+/// States of a mapping.
 const WAITING: u8 = 0;
 const MAPPED: u8 = 1;
 const FAILED: u8 = 2;
 
-/// Texels that came back.
+/// Texels that were read back.
 #[derive(Debug)]
 pub struct Texels {
-    /// What the texture held, in the caller's count.
+    /// Version of the content, chosen by the caller.
     pub version: u64,
     /// Width and height.
     pub size_px: UVec2,
@@ -39,18 +39,18 @@ pub struct Texels {
 }
 
 impl TextureReader {
-    /// Whether something is on its way, and not there yet.
+    /// Whether a readback is in flight.
     pub fn is_waiting(&self) -> bool {
         self.pending.as_ref().is_some_and(|pending| pending.outcome.load(Ordering::Acquire) == WAITING)
     }
 
-    /// Whether something is on its way or there, and not taken yet.
+    /// Whether a readback is in flight or not yet taken.
     pub fn is_pending(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// Records the copy of the first level and layer of `texture`, which has usage `COPY_SRC`. It comes once the encoder's
-    /// commands have run. What was on its way before is forgotten.
+    /// Records the copy of the first level and layer of `texture`, which has usage `COPY_SRC`. It is available once the
+    /// encoder's commands have run. An earlier pending readback is dropped.
     pub fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture, version: u64) {
         let size_px = UVec2::new(texture.width(), texture.height());
         let texel_bytes = match texture.format() {
@@ -68,8 +68,7 @@ impl TextureReader {
         });
     }
 
-    /// Records the copy of a buffer's first words, as many as a row of texels would be of 32 bits each. The buffer has usage
-    /// `COPY_SRC`.
+    /// Records the copy of a buffer's first `count` words, as a row of 32-bit texels. The buffer has usage `COPY_SRC`.
     pub fn record_words(
         &mut self,
         gpu: &Gpu,
@@ -83,7 +82,7 @@ impl TextureReader {
         });
     }
 
-    /// Records a copy into a buffer of rows of so many bytes, and what becomes of it.
+    /// Records a copy into a mappable buffer of padded rows, and requests its mapping.
     fn expect(
         &mut self,
         gpu: &Gpu,
@@ -109,7 +108,7 @@ impl TextureReader {
         self.pending = Some(Pending { buffer, size_px, texel_bytes, version, outcome });
     }
 
-    /// The texels, once they are there.
+    /// Returns the texels once they are read back.
     pub fn take(&mut self) -> Option<Texels> {
         let outcome = self.pending.as_ref()?.outcome.load(Ordering::Acquire);
         if outcome == WAITING {
@@ -132,24 +131,24 @@ fn padded_row_bytes(width: u32, texel_bytes: u32) -> u32 {
 }
 
 impl Texels {
-    /// Texels of one 32-bit number.
+    /// Texels as 32-bit integers.
     pub fn u32s(&self) -> Vec<u32> {
         self.bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
     }
 
-    /// Texels of one 32-bit float.
+    /// Texels as 32-bit floats.
     pub fn f32s(&self) -> Vec<f32> {
         self.bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
     }
 
-    /// The mean of the first three components of texels of four 16-bit floats, none of them negative.
+    /// Mean of the first three components of texels of four non-negative 16-bit floats.
     pub fn mean_of_half_rgb(&self) -> Vec<f32> {
         let half = |b: &[u8]| f32_from_positive_half(u16::from_le_bytes([b[0], b[1]]));
         self.bytes.chunks_exact(8).map(|b| (half(&b[0..2]) + half(&b[2..4]) + half(&b[4..6])) / 3.0).collect()
     }
 }
 
-/// IEEE 754 binary16, sign ignored, infinities as large numbers.
+/// Converts IEEE 754 binary16; the sign is ignored, infinities become large numbers.
 pub(super) fn f32_from_positive_half(bits: u16) -> f32 {
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023) / 1024.0);
     if exponent == 0 { fraction * 2f32.powi(-14) } else { (1.0 + fraction) * 2f32.powi(exponent - 15) }

@@ -1,4 +1,4 @@
-//! What a side's frames cost: the time of every pass, and the processor's.
+//! Times of a side's frames: every pass on the GPU, and the CPU.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -6,43 +6,43 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use antumbra::{Gpu, PassTime, PassTimer};
 
-/// Frames that medians are over, and that a graph shows.
+/// Maximum number of frames in medians and in the graph.
 pub const FRAMES: usize = 120;
 
 /// One frame's times, milliseconds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameTimes {
-    /// By pass, in the order of recording; empty where the device has no timestamps.
+    /// GPU time by pass, in recording order; empty if the device has no timestamps.
     pub passes: Vec<PassTime>,
-    /// Preparing and recording, on the processor.
+    /// CPU time of preparing and recording.
     pub processor_ms: f64,
-    /// It made objects of the library's: programs for the driver to compile, maps of another size.
+    /// Whether the frame created wgpu resources: pipelines to compile, maps of another size.
     pub has_made: bool,
 }
 
 impl FrameTimes {
-    /// The passes' sum.
+    /// Sum over passes.
     pub fn gpu_ms(&self) -> f64 {
         self.passes.iter().map(|pass| pass.ms).sum()
     }
 }
 
-/// Frames that warm up after one that made something: drivers compile when a program first runs.
+/// Number of warm-up frames after one that created resources: drivers compile a pipeline at its first use.
 const WARM_UP: u32 = 1;
 
-/// The times of the last frames of one technique, as it is set.
+/// Times of the last frames of one technique with one set of parameters.
 #[derive(Debug, Default)]
 pub struct Times {
     frames: VecDeque<FrameTimes>,
-    /// Frames before those.
+    /// Number of earlier frames that do not count.
     warm_up: u32,
-    /// Frames that are still to warm up.
+    /// Number of remaining warm-up frames.
     cold: u32,
 }
 
 impl Times {
-    /// Takes a frame's times in. One that made something was of another technique, size or scene than those before it: they are
-    /// forgotten, and it and those that warm up behind it do not count.
+    /// Adds a frame's times. A frame that created resources discards the earlier frames, which had another technique, size
+    /// or scene; it and the warm-up frames after it do not count.
     pub fn push(&mut self, frame: FrameTimes) {
         if frame.has_made {
             self.clear();
@@ -59,29 +59,29 @@ impl Times {
         self.frames.push_back(frame);
     }
 
-    /// Forgets every frame: they were of something else.
+    /// Discards all frames.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
 
-    /// How many frames the medians are of, and how many were drawn before them that do not count.
+    /// Number of frames in the medians, and number of earlier frames that do not count.
     pub fn counts(&self) -> (usize, u32) {
         (self.frames.len(), self.warm_up)
     }
 
-    /// The last frames, oldest first.
+    /// Last frames, oldest first.
     pub fn frames(&self) -> impl Iterator<Item = &FrameTimes> {
         self.frames.iter()
     }
 
-    /// The median of a number over the frames; `None` without any.
+    /// Median of a number over the frames; `None` without frames.
     pub fn median(&self, number: impl Fn(&FrameTimes) -> f64) -> Option<f64> {
         let mut values: Vec<f64> = self.frames.iter().map(number).collect();
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).copied()
     }
 
-    /// Each pass of the newest frame with its median, milliseconds.
+    /// Median time of each pass of the newest frame, milliseconds.
     pub fn pass_medians(&self) -> Vec<(&'static str, f64)> {
         let labels = self.frames.back().map_or(&[][..], |frame| frame.passes.as_slice());
         let of = |frame: &FrameTimes, label| frame.passes.iter().find(|p| p.label == label).map_or(0.0, |p| p.ms);
@@ -89,7 +89,7 @@ impl Times {
     }
 }
 
-/// Times one frame at a time; frames between are not timed.
+/// Measures one frame at a time; frames in between are not measured.
 #[derive(Debug)]
 pub struct FrameClock {
     timer: Option<PassTimer>,
@@ -101,22 +101,22 @@ const MAPPED: u8 = 1;
 const FAILED: u8 = 2;
 
 impl FrameClock {
-    /// A clock on a device; where that has no timestamps, it only knows the processor's time.
+    /// Creates a clock; it measures only CPU time if the device has no timestamps.
     pub fn new(gpu: &Gpu) -> Self {
         Self { timer: PassTimer::new(gpu), pending: None }
     }
 
-    /// The timer to record with; `None` while a frame's times are on their way.
+    /// The timer to record with; `None` while a frame's times are in flight.
     pub fn timer(&mut self) -> Option<&mut PassTimer> {
         if self.pending.is_some() { None } else { self.timer.as_mut() }
     }
 
-    /// Whether a frame's times are on their way.
+    /// Whether a frame's times are in flight.
     pub fn is_busy(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// After a frame was recorded with [`timer`](Self::timer): records the way back of its passes' times, which `frame` lacks.
+    /// Records the readback of the pass times that complete `frame`, after it was recorded with [`timer`](Self::timer).
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder, frame: FrameTimes) {
         let Some(timer) = self.timer.as_ref().filter(|_| self.pending.is_none()) else { return };
         let bytes = timer.readback_bytes();
@@ -132,7 +132,7 @@ impl FrameClock {
         self.pending = Some((frame, outcome));
     }
 
-    /// The timed frame, once its times are there.
+    /// Returns the measured frame once its times are read back.
     pub fn take(&mut self) -> Option<FrameTimes> {
         let outcome = self.pending.as_ref()?.1.load(Ordering::Acquire);
         if outcome == WAITING {
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(times.pass_medians(), [("a", 1.0)]);
     }
 
-    /// What compiles is in no median, and what was before it is of something else.
+    /// Frames that create resources, and those before them, are in no median.
     #[test]
     fn frames_that_make_something_do_not_count() {
         let mut times = Times::default();

@@ -1,12 +1,12 @@
-//! The command line that draws again what is on screen.
+//! The command line that reproduces the image on screen.
 
 use glam::UVec2;
 
 use super::State;
 
-/// `antumbra render …` for one technique, `antumbra compare …` for two. `None` before there is a scene.
+/// Returns `antumbra render …` for one technique, `antumbra compare …` for two. `None` before a scene is open.
 ///
-/// What a setup file must hold and none does yet is named `setup.toml`: save it first.
+/// A setup that no file holds yet is named `setup.toml`: the user must save it first.
 pub fn command_line(state: &State, size_px: UVec2) -> Option<String> {
     let scene = state.scene.as_ref()?;
     let mut words = vec!["antumbra".to_owned()];
@@ -20,12 +20,12 @@ pub fn command_line(state: &State, size_px: UVec2) -> Option<String> {
     if state.play.time_s != 0.0 {
         words.extend(["--time".to_owned(), state.play.time_s.to_string()]);
     }
-    // Under a setup nothing is put on a ground unasked.
+    // With a setup file the commands add no ground unless asked.
     if scene.has_ground {
         words.push("--ground".to_owned());
     }
     if state.is_split {
-        // Twice the same technique is one row: its settings would be the left side's.
+        // `compare` prints one row for a technique that is listed twice, with the left side's settings.
         let mut names: Vec<String> = state.sides.iter().map(|side| side.name()).collect();
         names.dedup();
         words.extend(["--techniques".to_owned(), names.join(",")]);
@@ -48,7 +48,7 @@ pub fn command_line(state: &State, size_px: UVec2) -> Option<String> {
     Some(words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
 }
 
-/// A word as a POSIX shell reads it back.
+/// Quotes a word for a POSIX shell.
 pub fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./:,=+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

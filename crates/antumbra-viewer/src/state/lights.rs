@@ -1,9 +1,9 @@
-//! What one does with lights: another shape of about the same size, another direction, one more.
+//! Edits of lights: shape, direction, position, and adding and removing lights.
 
 use antumbra_light::{Light, LightShape};
 use glam::{Quat, Vec2, Vec3};
 
-/// The shapes of a list to choose from.
+/// Kinds of light shapes, for a list to choose from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeKind {
     /// [`LightShape::Rectangle`].
@@ -20,14 +20,14 @@ pub enum ShapeKind {
     Points,
 }
 
-/// The sun as seen from the Earth, degrees.
+/// Angular diameter of the sun as seen from the Earth, degrees.
 const SUN_DEGREES: f32 = 0.53;
 
 impl ShapeKind {
-    /// Every shape.
+    /// All kinds.
     pub const ALL: [Self; 6] = [Self::Rectangle, Self::Disk, Self::Sphere, Self::Ellipsoid, Self::Sun, Self::Points];
 
-    /// The shape's kind.
+    /// Returns the kind of a shape.
     pub fn of(shape: &LightShape) -> Self {
         match shape {
             LightShape::Rectangle { .. } => Self::Rectangle,
@@ -39,7 +39,7 @@ impl ShapeKind {
         }
     }
 
-    /// The name that setup files use.
+    /// Name in setup files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rectangle => "rectangle",
@@ -51,12 +51,12 @@ impl ShapeKind {
         }
     }
 
-    /// Gives `light` this shape, about as large as it is.
+    /// Gives `light` a shape of this kind and of about the same size.
     pub fn give_to(self, light: &mut Light) {
         if Self::of(&light.shape) == self {
             return;
         }
-        // A sun's and a point list's size is no length of a lamp's.
+        // The size of a sun or a point list is not the radius of a lamp.
         let radius_m = match light.shape {
             LightShape::Sun { .. } | LightShape::Points { .. } => 0.25,
             _ => light.bounding_radius(),
@@ -76,34 +76,34 @@ impl ShapeKind {
             }
         };
         light.emission = None;
-        // Candela are no lux.
+        // Candela cannot be converted to lux.
         if light.shape.photometric_unit() != unit {
             light.candela_or_lux = None;
         }
         if self == Self::Sun {
-            // A frustum or a cone about a sun's centre would cut what a lamp's did not.
+            // A frustum or cone at a sun's centre would cut off what it did not cut off at a lamp's.
             (light.fov_rad, light.cone) = (None, None);
         }
     }
 }
 
-/// Where a light comes from, as two angles.
+/// Direction towards a light, as two angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Angles {
-    /// Turn about +Y from +Z towards +X, radians.
+    /// Angle about +Y from +Z towards +X, radians.
     pub azimuth_rad: f32,
-    /// Height above the horizon, radians.
+    /// Angle above the horizon, radians.
     pub elevation_rad: f32,
 }
 
 impl Angles {
-    /// Where the light's rays come from, along its axis.
+    /// Returns the direction from which the light's rays come, along its axis.
     pub fn of(light: &Light) -> Self {
         let from = -light.axis;
         Self { azimuth_rad: from.x.atan2(from.z), elevation_rad: from.y.clamp(-1.0, 1.0).asin() }
     }
 
-    /// Turns the light to look along these angles.
+    /// Turns the light's axis to these angles.
     pub fn give_to(self, light: &mut Light) {
         let flat = self.elevation_rad.cos();
         let from = Vec3::new(flat * self.azimuth_rad.sin(), self.elevation_rad.sin(), flat * self.azimuth_rad.cos());
@@ -112,7 +112,7 @@ impl Angles {
     }
 }
 
-/// Moves a light, with the points that it may be of.
+/// Moves a light, including the positions of a point list.
 pub fn move_by(light: &mut Light, offset_m: Vec3) {
     light.center += offset_m;
     if let LightShape::Points { positions_m } = &mut light.shape {
@@ -122,7 +122,7 @@ pub fn move_by(light: &mut Light, offset_m: Vec3) {
     }
 }
 
-/// Turns a light about the vertical through `middle`.
+/// Rotates a light about the vertical axis through `middle`.
 pub(super) fn turn_about(light: &mut Light, middle: Vec3, angle_rad: f32) {
     let turn = Quat::from_rotation_y(angle_rad);
     let moved = |p: Vec3| middle + turn * (p - middle);
@@ -137,7 +137,7 @@ pub(super) fn turn_about(light: &mut Light, middle: Vec3, angle_rad: f32) {
 }
 
 impl super::State {
-    /// Adds a light like the chosen one, a little beside it, and chooses it.
+    /// Adds a copy of the selected light, beside it, and selects the copy.
     pub fn add_light(&mut self) {
         let mut light = self.setup.lights[self.light].clone();
         let beside = light.frame().right * (3.0 * light.bounding_radius()).max(0.5);
@@ -148,7 +148,7 @@ impl super::State {
         self.light = self.setup.lights.len() - 1;
     }
 
-    /// Removes the chosen light, but never the last.
+    /// Removes the selected light, unless it is the last.
     pub fn remove_light(&mut self) {
         if self.setup.lights.len() > 1 {
             self.setup.lights.remove(self.light);

@@ -1,4 +1,4 @@
-//! What the viewer shows and how: everything that a command line or a setup file can say, and nothing of windows or GPUs.
+//! State of the viewer: everything that a command line or a setup file can express, independent of windows and GPUs.
 
 mod command_line;
 mod lights;
@@ -16,29 +16,29 @@ pub use lights::{Angles, ShapeKind, move_by};
 pub use play::{Play, SPEEDS};
 pub use side::Side;
 
-/// Which image of a side is shown.
+/// View of a side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Show {
-    /// The picture.
+    /// The shaded image.
     #[default]
     Shaded,
-    /// The chosen light's visibility: white is lit, black is umbra.
+    /// Visibility of the selected light: white is lit, black is umbra.
     Visibility,
-    /// Visibility less the traced truth, as a colour.
+    /// Visibility minus the ground truth, as a colour.
     Error,
-    /// The traced truth itself.
+    /// The ground truth.
     Truth,
-    /// The depth maps that the techniques draw from the chosen light.
+    /// The depth maps that the techniques draw for the selected light.
     LightMap,
-    /// How long the lists are that techniques keep for each texel of the chosen light's map.
+    /// Lengths of the lists that techniques keep per texel of the selected light's map.
     Lists,
 }
 
 impl Show {
-    /// Every view.
+    /// All views.
     pub const ALL: [Self; 6] = [Self::Shaded, Self::Visibility, Self::Error, Self::Truth, Self::LightMap, Self::Lists];
 
-    /// The name that command lines and buttons use.
+    /// Name in command lines and on buttons.
     pub fn name(self) -> &'static str {
         match self {
             Self::Shaded => "shaded",
@@ -50,73 +50,72 @@ impl Show {
         }
     }
 
-    /// The view of this name.
+    /// Returns the view with this name, ignoring case.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|show| show.name().eq_ignore_ascii_case(name))
     }
 
-    /// Whether rays are traced for it.
+    /// Whether the view needs traced rays.
     pub fn needs_truth(self) -> bool {
         matches!(self, Self::Error | Self::Truth)
     }
 }
 
-/// One for each digit but zero.
+/// Maximum number of bookmarks: the digits without zero.
 const MOST_BOOKMARKS: usize = 9;
 
-/// The scene that is open, as it was named, and its size.
+/// The open scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenScene {
-    /// `builtin:street`, or a path.
+    /// Name of the scene: `builtin:street`, or a path.
     pub spec: String,
-    /// Which opening this is; another one for each.
+    /// Number of the opening, different for each.
     pub generation: u64,
-    /// The box of all triangles, counted from the anchor.
+    /// Bounding box of all triangles but an added ground's, relative to the anchor.
     pub bounds: Aabb,
-    /// Triangles as drawn.
+    /// Number of drawn triangles.
     pub triangle_count: usize,
-    /// It stands on a ground that was put there.
+    /// Whether a ground was added below the scene.
     pub has_ground: bool,
 }
 
-/// What is shown, and how.
+/// State of the viewer.
 #[derive(Clone, Debug)]
 pub struct State {
-    /// What is open; `None` before the first scene.
+    /// The open scene; `None` before the first.
     pub scene: Option<OpenScene>,
-    /// The world position that the scene, its bounds, camera and lights are counted from, while it is open.
+    /// World position that serves as origin of the scene, its bounds, camera and lights.
     pub anchor: Vec3,
-    /// Camera and lights, counted from the anchor.
+    /// Camera and lights, relative to the anchor.
     pub setup: Setup,
-    /// The setup file that was given or saved last, and the setup that it holds, counted from the anchor.
+    /// The setup file that was opened or saved last, with its content relative to the anchor.
     pub setup_file: Option<(PathBuf, Setup)>,
-    /// The left side, or the only one, and the right side.
+    /// The left or only side, and the right side.
     pub sides: [Side; 2],
-    /// Whether both are shown.
+    /// Whether both sides are shown.
     pub is_split: bool,
-    /// Where the divider stands, in widths of the picture from its left.
+    /// Position of the divider, in image widths from the left.
     pub divider: f32,
-    /// Which image is shown.
+    /// The view.
     pub show: Show,
-    /// Which level of lists or of a map is shown, counted from the finest; the coarsest where there are fewer.
+    /// Level of the shown lists or map, from the finest; the coarsest level if there are fewer.
     pub level: usize,
-    /// Which of a map's layers is shown, counted from the nearest, or which of the maps that the light's points have; the last
-    /// where there are fewer.
+    /// Peeled layer of the shown map, from the nearest, or index of the light sample with its own map; the last one if there are fewer.
     pub layer: usize,
-    /// The light that is chosen: edited, and judged against the truth.
+    /// Index of the selected light, which is edited and compared with the ground truth.
     pub light: usize,
-    /// Views to come back to, as many as there are digits to call them by.
+    /// Bookmarked cameras, at most nine.
     pub bookmarks: Vec<Camera>,
-    /// The time that is shown of an animated scene.
+    /// Time of an animated scene.
     pub play: Play,
-    /// Turns of the camera around its target, radians a second.
+    /// Angular speed of the camera around its target, radians per second.
     pub camera_turn_rad_s: f32,
-    /// Turns of the chosen light around the scene's middle, radians a second.
+    /// Angular speed of the selected light around the scene's centre, radians per second.
     pub light_turn_rad_s: f32,
 }
 
 impl State {
-    /// Nothing open yet: `left` and `right` are the techniques of the sides.
+    /// Creates a state without a scene; `left` and `right` are the techniques of the sides.
     pub fn new(left: TechniqueKind, right: TechniqueKind) -> Self {
         Self {
             scene: None,
@@ -137,7 +136,7 @@ impl State {
         }
     }
 
-    /// A scene was loaded: shows it under `setup`, or under its own.
+    /// Shows a loaded scene with `setup`, or with its own camera and lights.
     pub fn open(&mut self, spec: &str, scene: &Scene, setup: Option<Setup>) {
         let generation = self.scene.as_ref().map_or(0, |open| open.generation) + 1;
         self.scene = Some(OpenScene {
@@ -156,7 +155,7 @@ impl State {
         self.take_setup(setup.unwrap_or_else(|| Setup::for_scene(scene)));
     }
 
-    /// The scene stands on a ground that was put there, as its last instance: whoever sees all of it need not see that.
+    /// Records that the scene's last instance is an added ground, which the bounds exclude.
     pub fn note_ground(&mut self, scene: &Scene) {
         if let Some(open) = &mut self.scene {
             open.has_ground = true;
@@ -164,42 +163,42 @@ impl State {
         }
     }
 
-    /// Camera and lights as files have them.
+    /// Returns camera and lights in world space, as files store them.
     pub fn setup_in_world(&self) -> Setup {
         self.setup.counted_from(-self.anchor)
     }
 
-    /// Looks and lights as `setup` says, which is counted from the anchor.
+    /// Sets camera and lights to `setup`, which is relative to the anchor.
     pub fn take_setup(&mut self, setup: Setup) {
         self.setup = setup;
         self.light = 0;
     }
 
-    /// Keeps the view; the tenth and later take the last one's place.
+    /// Adds a bookmark of the camera. A tenth one replaces the ninth.
     pub fn add_bookmark(&mut self) {
         self.bookmarks.truncate(MOST_BOOKMARKS - 1);
         self.bookmarks.push(self.setup.camera);
     }
 
-    /// Comes back to a view that was kept, counted from 0.
+    /// Returns to a bookmark by its index from 0.
     pub fn go_to_bookmark(&mut self, index: usize) {
         if let Some(camera) = self.bookmarks.get(index) {
             self.setup.camera = *camera;
         }
     }
 
-    /// The sides that are shown.
+    /// Returns the visible sides.
     pub fn shown_sides(&self) -> &[Side] {
         if self.is_split { &self.sides } else { &self.sides[..1] }
     }
 
-    /// Whether something moves by itself.
+    /// Whether anything is animated.
     pub fn is_moving(&self) -> bool {
         self.camera_turn_rad_s != 0.0 || self.light_turn_rad_s != 0.0 || self.play.is_playing
     }
 
-    /// The scene is shown at another time: camera and lights that are still as the scene has them go with it, unless a setup
-    /// file says where they are.
+    /// Updates the state for another pose of the scene. Camera and lights follow the scene's own if they are unchanged,
+    /// unless a setup file defines them.
     pub fn follow(&mut self, before: &Scene, after: &Scene) {
         if let Some(open) = &mut self.scene {
             open.bounds = bounds_of(after, open.has_ground);
@@ -218,7 +217,7 @@ impl State {
         }
     }
 
-    /// Lets `seconds` go by: what plays goes on, turntables turn.
+    /// Advances playback and turntables by `seconds`.
     pub fn advance(&mut self, seconds: f32) {
         self.play.advance(seconds);
         if self.camera_turn_rad_s != 0.0 {
@@ -232,7 +231,7 @@ impl State {
     }
 }
 
-/// The box of what is looked at: all, but for a ground that was put under it.
+/// Bounding box of the scene without an added ground.
 fn bounds_of(scene: &Scene, has_ground: bool) -> Aabb {
     scene.bounds_of(&scene.instances[..scene.instances.len() - usize::from(has_ground)])
 }

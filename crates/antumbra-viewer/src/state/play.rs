@@ -1,18 +1,18 @@
-//! The time of an animated scene, and how it goes by.
+//! Playback of an animated scene.
 
-/// How fast a scene may be played, times as fast as it is.
+/// Range of playback speeds; 1 is real time.
 pub const SPEEDS: std::ops::RangeInclusive<f32> = 0.05..=4.0;
 
-/// The time at which a scene is shown, and how it goes by.
+/// Playback state of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Play {
-    /// First and last time of the scene's animations, seconds; `None` where nothing of it is animated.
+    /// First and last time of the scene's animations, seconds; `None` if nothing is animated.
     pub ends_s: Option<[f32; 2]>,
-    /// The time that is shown, seconds.
+    /// Current time, seconds.
     pub time_s: f32,
-    /// Whether time goes by.
+    /// Whether playback runs.
     pub is_playing: bool,
-    /// Seconds of the scene in a second, within [`SPEEDS`].
+    /// Speed, scene seconds per second, within [`SPEEDS`].
     pub speed: f32,
 }
 
@@ -23,18 +23,18 @@ impl Default for Play {
 }
 
 impl Play {
-    /// A scene that stands at `time_s`; times outside its animations are their ends.
+    /// Creates a paused state at `time_s`. A time other than 0 is clamped to the animations' range.
     pub fn at(ends_s: Option<[f32; 2]>, time_s: f32) -> Self {
-        // What is not animated has no time.
+        // Without animations the time is 0.
         let time_s = ends_s.map_or(0.0, |[first, last]| if time_s == 0.0 { 0.0 } else { time_s.clamp(first, last) });
         Self { ends_s, time_s, ..Self::default() }
     }
 
-    /// Lets `seconds` go by; behind the last time comes the first.
+    /// Advances by `seconds` of real time. Playback loops.
     pub fn advance(&mut self, seconds: f32) {
         let Some([first, last]) = self.ends_s.filter(|_| self.is_playing) else { return };
         let time_s = self.time_s.max(first) + self.speed * seconds;
-        // Of no length where all keys are of one time.
+        // The range is empty if all keys have the same time.
         self.time_s =
             if time_s <= last { time_s } else { first + (time_s - first) % (last - first).max(f32::MIN_POSITIVE) };
     }

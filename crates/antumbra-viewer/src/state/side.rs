@@ -1,25 +1,25 @@
-//! One side of the picture: a technique with its parameters, checked against their declarations as they are set.
+//! One side of the image: a technique with parameters that are validated as they are set.
 
 use antumbra::contract::{ParamSpec, ParamValue, SampleWeights};
 use antumbra::{Quality, TechniqueKind};
 
-/// A technique, how much it may spend, and the value of every parameter.
+/// A technique with its quality and the value of every parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Side {
     kind: TechniqueKind,
     quality: Quality,
     values: Vec<ParamValue>,
-    /// The key that was refused last, and why; until something is set that is not refused.
+    /// Key of the last invalid setting, and the reason; cleared by the next valid one.
     refused: Option<(&'static str, String)>,
 }
 
 impl Side {
-    /// A technique at its defaults.
+    /// Creates a side with a technique's defaults.
     pub fn new(kind: TechniqueKind) -> Self {
         Self { kind, quality: Quality::default(), values: values_of(kind, Quality::default()), refused: None }
     }
 
-    /// A technique by its name, and where a colon follows how much it may spend: `pcss`, `pcss:fast`.
+    /// Parses a technique's name with an optional quality after a colon: `pcss`, `pcss:fast`.
     pub fn from_name(name: &str) -> Option<Self> {
         let (kind, quality) = name.split_once(':').unwrap_or((name, Quality::default().name()));
         let (kind, quality) = (TechniqueKind::from_name(kind)?, Quality::from_name(quality)?);
@@ -28,17 +28,17 @@ impl Side {
         kind.has_quality(quality).then_some(side)
     }
 
-    /// Which technique.
+    /// The technique.
     pub fn kind(&self) -> TechniqueKind {
         self.kind
     }
 
-    /// How much it may spend.
+    /// The quality.
     pub fn quality(&self) -> Quality {
         self.quality
     }
 
-    /// Another technique, at the same quality where it has it.
+    /// Changes the technique and keeps the quality if the new technique has it.
     pub fn set_kind(&mut self, kind: TechniqueKind) {
         if kind != self.kind {
             let quality = self.quality;
@@ -47,29 +47,29 @@ impl Side {
         }
     }
 
-    /// Sets every parameter to what the quality has; as the technique comes where there is no such quality of it.
+    /// Changes the quality and resets every parameter; uses the default quality if the technique lacks this one.
     pub fn set_quality(&mut self, quality: Quality) {
         self.quality = if self.kind.has_quality(quality) { quality } else { Quality::default() };
         self.reset();
     }
 
-    /// Sets every parameter back to what the quality has.
+    /// Resets every parameter to the quality's value.
     pub fn reset(&mut self) {
         self.values = values_of(self.kind, self.quality);
         self.refused = None;
     }
 
-    /// Every parameter with its value, in the order of documentation.
+    /// Iterates over every parameter and its value, in the documentation's order.
     pub fn params(&self) -> impl Iterator<Item = (&'static ParamSpec, ParamValue)> + '_ {
         self.kind.param_specs().iter().zip(self.values.iter().copied())
     }
 
-    /// What the quality has for a key.
+    /// Value of a parameter in the current quality.
     pub fn usual(&self, spec: &ParamSpec) -> ParamValue {
         usual(self.kind, self.quality, spec)
     }
 
-    /// Sets a parameter from text. What is refused leaves the value as it was, and [`refusal`](Self::refusal) says why.
+    /// Sets a parameter from text. An invalid text changes nothing, and [`refusal`](Self::refusal) returns the reason.
     pub fn set(&mut self, key: &str, text: &str) {
         let specs = self.kind.param_specs();
         let Some(index) = specs.iter().position(|spec| spec.key.eq_ignore_ascii_case(key)) else { return };
@@ -82,12 +82,12 @@ impl Side {
         }
     }
 
-    /// Why a key was refused.
+    /// Reason why the last setting of a key was refused.
     pub fn refusal(&self, key: &str) -> Option<&str> {
         self.refused.as_ref().filter(|(refused, _)| *refused == key).map(|(_, why)| why.as_str())
     }
 
-    /// `pcss`, or `pcss:fast` where it is not at its defaults.
+    /// Name with quality: `pcss`, or `pcss:fast` if the quality is not the default.
     pub fn name(&self) -> String {
         match self.quality {
             Quality::Balanced => self.kind.name().into(),
@@ -95,8 +95,8 @@ impl Side {
         }
     }
 
-    /// The same with masks for shading alone: the part of a light's own irradiance that arrives ([`SampleWeights::Irradiance`]), where the
-    /// technique has it.
+    /// Returns the side with masks for shading: the visible fraction of a light's irradiance
+    /// ([`SampleWeights::Irradiance`]), if the technique supports it.
     pub fn for_shading(&self) -> Self {
         let mut side = self.clone();
         if SampleWeights::is_parameter_of(self.kind.param_specs()) {
@@ -105,7 +105,7 @@ impl Side {
         side
     }
 
-    /// The parameters that are not as the quality has them, as text.
+    /// Parameters that differ from the quality's values, as text.
     pub fn settings(&self) -> Vec<(&'static str, String)> {
         let differs = |(spec, value): &(&'static ParamSpec, ParamValue)| *value != self.usual(spec);
         self.params().filter(differs).map(|(spec, value)| (spec.key, value.to_string())).collect()
@@ -121,7 +121,6 @@ fn usual(kind: TechniqueKind, quality: Quality, spec: &ParamSpec) -> ParamValue 
     settings.into_iter().find(|(key, _)| *key == spec.key).map_or(spec.default, |(_, value)| value)
 }
 
-/// A value of a parameter's type from text that was checked.
 #[cfg(test)]
 mod tests {
     use super::*;

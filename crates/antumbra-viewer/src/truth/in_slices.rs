@@ -1,4 +1,4 @@
-//! Tracing without a thread: a few milliseconds of rows each time that someone asks for an estimate.
+//! Tracing without a thread: a few milliseconds of rows whenever an estimate is requested.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,18 +13,18 @@ use super::tracing::Tracing;
 use super::{Estimate, Job};
 use crate::aside::Wake;
 
-/// How long a frame may trace: about half of a sixtieth of a second.
+/// Tracing time per frame: about half of a sixtieth of a second.
 const SLICE: Duration = Duration::from_millis(8);
-/// Rows between two looks at the clock: neighbours share what hides them, so single rows would cost more.
+/// Rows between two checks of the clock. Neighbouring pixels share occluders, so single rows would cost more.
 const ROWS: u32 = 4;
 
-/// A job and how far it is.
+/// Time-sliced tracer of one job.
 pub struct Slices {
     wake: Wake,
-    /// Of the scene that was traced last.
+    /// Tracer of the last scene.
     tracer: Option<(Arc<Scene>, Tracer)>,
     tracing: Option<Tracing>,
-    /// When the slice began that is going on; `None` before the first question of a frame.
+    /// Start of the current time slice; `None` before the first request of a frame.
     began: Option<Instant>,
 }
 
@@ -35,22 +35,22 @@ impl fmt::Debug for Slices {
 }
 
 impl Slices {
-    /// Nothing to trace yet. `wake` is called after each slice that leaves something to trace.
+    /// Creates a tracer without a job. `wake` is called after each time slice that leaves work.
     pub fn new(wake: Wake) -> Self {
         Self { wake, tracer: None, tracing: None, began: None }
     }
 
-    /// Traces a job instead of what was traced before.
+    /// Traces a job instead of the current one.
     pub fn start(&mut self, id: u64, job: Job) {
         self.tracing = Some(Tracing::new(id, job));
     }
 
-    /// Traces nothing more.
+    /// Stops tracing.
     pub fn stop(&mut self) {
         self.tracing = None;
     }
 
-    /// Traces until an estimate is there or the slice is over, which ends with `None`.
+    /// Traces until an estimate is available or the time slice ends. The end of the slice returns `None`.
     pub fn take(&mut self) -> Option<Result<Estimate, String>> {
         let began = *self.began.get_or_insert_with(Instant::now);
         while began.elapsed() < SLICE {

@@ -1,5 +1,5 @@
-//! The truth, live: rays traced while the picture stands still, ever more of them. Natively on threads of their own; in a
-//! browser, whose pages have one, some rows between two frames.
+//! Progressive ground truth: rays are traced while the image is static. Natively threads do this; in a browser, whose pages
+//! have a single thread, some rows are traced between two frames.
 
 #[cfg(any(test, target_arch = "wasm32"))]
 mod in_slices;
@@ -20,23 +20,23 @@ use on_thread::Thread as Worker;
 
 use crate::aside::Wake;
 
-/// Light points of each round; a multiple of nothing, and a square for the stratified set.
+/// Light samples per round; a square number for the stratified set.
 pub const ROUND_POINTS: u32 = 16;
-/// Rounds until nothing more is traced: the reference's 1024 points.
+/// Maximum number of rounds; together they have the reference's 1024 samples.
 pub const ROUNDS: u32 = 64;
-/// Pixels that are not judged hold this.
+/// Value of pixels that are not judged.
 pub const NOT_JUDGED: f32 = -1.0;
 
-/// What is traced.
+/// A view to trace.
 #[derive(Clone, Debug)]
 pub struct Job {
     /// The scene.
     pub scene: Arc<Scene>,
-    /// Where from.
+    /// The camera.
     pub camera: Camera,
-    /// The picture's size.
+    /// Image size.
     pub size_px: UVec2,
-    /// Which light.
+    /// The light.
     pub light: Light,
 }
 
@@ -48,21 +48,21 @@ impl Job {
     }
 }
 
-/// What the rays say so far.
+/// Visibility traced so far.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// Which tracing this is of.
+    /// Identifier of the job.
     pub job: u64,
     /// Width and height.
     pub size_px: UVec2,
-    /// Light points for each pixel so far.
+    /// Light samples per pixel so far.
     pub points: u32,
-    /// Visibility by pixel, the mean of its channels; [`NOT_JUDGED`] for background and what faces away.
+    /// Visibility by pixel, averaged over channels; [`NOT_JUDGED`] for background and surfaces turned away from the light.
     pub values: Vec<f32>,
 }
 
 impl Estimate {
-    /// The root mean square of a mask's error, over the pixels that are judged. `None` where none is.
+    /// Root-mean-square error of a mask over judged pixels; `None` if there are none.
     pub fn rmse(&self, mask: &[f32]) -> Option<f64> {
         let judged = self.values.iter().zip(mask).filter(|(truth, _)| **truth >= 0.0);
         let (sum, count) =
@@ -71,25 +71,25 @@ impl Estimate {
     }
 }
 
-/// Traces one job at a time.
+/// Progressive tracer of one job at a time.
 #[derive(Debug)]
 pub struct LiveTruth {
     worker: Worker,
     current: Option<Job>,
     count: u64,
-    /// The newest estimate of the current job.
+    /// Newest estimate of the current job.
     estimate: Option<Estimate>,
-    /// Why there is none.
+    /// Reason why there is no estimate.
     pub problem: Option<String>,
 }
 
 impl LiveTruth {
-    /// Nothing to trace yet. `wake` is called whenever [`estimate`](Self::estimate) is worth asking again.
+    /// Creates a tracer without a job. `wake` is called whenever [`estimate`](Self::estimate) may have changed.
     pub fn new(wake: Wake) -> Self {
         Self { worker: Worker::new(wake), current: None, count: 0, estimate: None, problem: None }
     }
 
-    /// Traces `job`, anew where it is another one; `None` stops.
+    /// Traces `job`, from the start if it differs from the current one; `None` stops.
     pub fn want(&mut self, job: Option<Job>) {
         let is_same = match (&self.current, &job) {
             (Some(current), Some(job)) => current.is(job),
@@ -107,7 +107,7 @@ impl LiveTruth {
         self.current = job;
     }
 
-    /// What the rays say so far.
+    /// Returns the newest estimate of the current job.
     pub fn estimate(&mut self) -> Option<&Estimate> {
         while let Some(result) = self.worker.take() {
             match result {
@@ -137,7 +137,7 @@ mod tests {
 
     use super::*;
 
-    /// Waits for an estimate of so many points.
+    /// Waits for an estimate of at least `points` light samples.
     fn wait_for(truth: &mut LiveTruth, points: u32) -> Estimate {
         let began = Instant::now();
         loop {
@@ -151,7 +151,7 @@ mod tests {
         }
     }
 
-    /// The error of `values` over the pixels that `estimate` judges.
+    /// Error of `values` over the pixels that `estimate` judges.
     fn judged_rmse(estimate: &Estimate, exact: &[f32], values: &[f32]) -> f64 {
         let keep = |(judged, value): (&f32, &f32)| if *judged < 0.0 { NOT_JUDGED } else { *value };
         let values = estimate.values.iter().zip(values).map(keep).collect();
@@ -176,9 +176,9 @@ mod tests {
         let mut truth = LiveTruth::new(Arc::new(|| {}));
         truth.want(Some(job.clone()));
         let late = wait_for(&mut truth, ROUNDS * ROUND_POINTS);
-        // How far the thread is when it is first asked depends on the machine, so the first round is traced here.
+        // The thread's progress at the first request depends on the machine, so the first round is traced here.
         let (early_rmse, late_rmse) = (judged_rmse(&late, &exact, &first_round), late.rmse(&exact).unwrap());
-        // 4.3e-3 when this was written: sixty-four sets of sixteen points are noisier than one of 1024.
+        // Measured: 4.3e-3. Sixty-four sets of sixteen samples are noisier than one set of 1024.
         assert!(late_rmse < 6e-3, "{late_rmse}");
         assert!(late_rmse < 0.5 * early_rmse, "{early_rmse} to {late_rmse}");
 

@@ -1,4 +1,4 @@
-//! Tracing on a thread, whose tracer takes the others: whole rounds at a time.
+//! Tracing in whole rounds on a background thread; its tracer uses further threads.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,11 +13,11 @@ use super::tracing::Tracing;
 use super::{Estimate, Job};
 use crate::aside::Wake;
 
-/// The thread, which ends with this value.
+/// Handle of the thread, which ends when the handle is dropped.
 pub struct Thread {
     tasks: Sender<Task>,
     estimates: Receiver<Result<Estimate, String>>,
-    /// Stops what is being traced.
+    /// Cancels the current task.
     cancel: Arc<AtomicBool>,
 }
 
@@ -41,7 +41,7 @@ impl Thread {
         thread::spawn(move || {
             let mut worker = Worker { tracer: None, sender, wake };
             while let Ok(mut task) = incoming.recv() {
-                // Only the newest counts.
+                // Older tasks are obsolete.
                 while let Ok(newer) = incoming.try_recv() {
                     task = newer;
                 }
@@ -51,27 +51,27 @@ impl Thread {
         Self { tasks, estimates, cancel: Arc::default() }
     }
 
-    /// Traces a job instead of what was traced before.
+    /// Traces a job instead of the current one.
     pub fn start(&mut self, id: u64, job: Job) {
         self.stop();
         self.cancel = Arc::default();
-        // The thread lives as long as this value.
+        // Sending succeeds, because the thread lives as long as this value.
         let _ = self.tasks.send(Task { id, job, cancel: self.cancel.clone() });
     }
 
-    /// Traces nothing more.
+    /// Stops tracing.
     pub fn stop(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// The oldest estimate that was not taken yet, or why there is none.
+    /// Returns the oldest estimate not yet taken, or an error.
     pub fn take(&mut self) -> Option<Result<Estimate, String>> {
         self.estimates.try_recv().ok()
     }
 }
 
 struct Worker {
-    /// Of the scene that was traced last.
+    /// Tracer of the last scene.
     tracer: Option<(Arc<Scene>, Tracer)>,
     sender: Sender<Result<Estimate, String>>,
     wake: Wake,
@@ -88,7 +88,7 @@ impl Worker {
         }
     }
 
-    /// Traces rounds until there are enough or nobody wants them.
+    /// Traces rounds until all are done or the task is cancelled.
     fn trace(&mut self, task: Task) -> Result<(), String> {
         let mut tracing = Tracing::new(task.id, task.job);
         let scene = &tracing.job().scene;

@@ -1,4 +1,4 @@
-//! One job's rays, as many rows at a time as one likes: receivers first, then round after round.
+//! Incremental tracing of one job by rows: receivers first, then rounds of shadow rays.
 
 use std::sync::atomic::AtomicBool;
 
@@ -6,25 +6,25 @@ use antumbra_reference::{Receivers, SampledLight, Tracer, VisibilityOptions};
 
 use super::{Estimate, Job, NOT_JUDGED, ROUND_POINTS, ROUNDS};
 
-/// How far a job is.
+/// Progress of a job.
 #[derive(Debug)]
 pub struct Tracing {
     id: u64,
     job: Job,
     receivers: Receivers,
-    /// The light as the current round samples it, after the receivers.
+    /// Samples of the light in the current round; set once the receivers are traced.
     light: Option<SampledLight>,
-    /// Rounds that are done.
+    /// Number of completed rounds.
     rounds: u32,
-    /// Rows that the receivers or the current round have.
+    /// Number of completed rows of the receivers or of the current round.
     rows: u32,
-    /// Visibility summed over rounds, by pixel, and whether it is judged.
+    /// Visibility by pixel, summed over rounds, and whether the pixel is judged.
     sums: Vec<f64>,
     is_judged: Vec<bool>,
 }
 
 impl Tracing {
-    /// Nothing traced yet.
+    /// Creates a job without progress.
     pub fn new(id: u64, job: Job) -> Self {
         let pixels = (job.size_px.x * job.size_px.y) as usize;
         let receivers = Receivers { size_px: job.size_px, points: Vec::with_capacity(pixels) };
@@ -40,20 +40,20 @@ impl Tracing {
         }
     }
 
-    /// What is traced.
+    /// The job.
     pub fn job(&self) -> &Job {
         &self.job
     }
 
-    /// Whether there are rounds enough.
+    /// Whether all rounds are done.
     pub fn is_done(&self) -> bool {
         self.rounds == ROUNDS
     }
 
-    /// Goes on by `rows` rows, or to the end of the round: then that is an estimate.
+    /// Traces `rows` more rows, up to the end of the round. The end of a round returns an estimate.
     ///
     /// # Errors
-    /// One line where the light cannot be traced, or `cancel` was set.
+    /// Fails with one line if the light cannot be traced, or if `cancel` was set.
     pub fn advance(&mut self, tracer: &Tracer, rows: u32, cancel: &AtomicBool) -> Result<Option<Estimate>, String> {
         let Job { camera, size_px, light, .. } = &self.job;
         let part = self.rows..self.rows.saturating_add(rows).min(size_px.y);

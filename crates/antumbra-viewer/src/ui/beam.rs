@@ -1,4 +1,4 @@
-//! What a light is held to, drawn in the picture and taken hold of there: a spot's cone, and a square frustum.
+//! A light's cone and frustum in the image, with handles to drag.
 
 use antumbra_light::{Cone, Light};
 use antumbra_scene::Camera;
@@ -6,31 +6,31 @@ use glam::Vec3;
 
 use crate::camera;
 
-/// Edges are drawn so long, of the scene's diagonal.
+/// Length of the drawn edges, in scene diagonals.
 const LENGTH_DIAGONALS: f32 = 0.2;
-/// Corners of a cone's ring.
+/// Number of corners of a cone's ring.
 const RING_CORNERS: usize = 48;
-/// Angles are found to this, radians, and an outer one is larger than the inner by it.
+/// Resolution of dragged angles, radians; the outer angle exceeds the inner one by at least this.
 const STEP_RAD: f32 = 0.25 * std::f32::consts::PI / 180.0;
-/// No half angle is larger than so many steps: 89 degrees.
+/// Largest half angle in steps: 89 degrees.
 const MOST_STEPS: usize = 356;
 
-/// What one takes hold of.
+/// A handle to drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
-    /// The angle beyond which nothing is lit.
+    /// Outer cone angle, beyond which nothing is lit.
     Outer,
-    /// The angle up to which all is lit fully.
+    /// Inner cone angle, up to which everything is fully lit.
     Inner,
     /// Half of the frustum's angle.
     Frustum,
 }
 
 impl Handle {
-    /// Every handle.
+    /// All handles.
     pub const ALL: [Self; 3] = [Self::Outer, Self::Inner, Self::Frustum];
 
-    /// The handle's angle off the axis, radians; `None` where the light is not held to such.
+    /// The handle's angle from the axis, radians; `None` if the light has no such limit.
     fn angle_rad(self, light: &Light) -> Option<f32> {
         match self {
             Self::Outer => light.cone.map(|cone| cone.outer_rad),
@@ -40,15 +40,15 @@ impl Handle {
         .filter(|_| !light.is_distant())
     }
 
-    /// Where it is drawn; `None` where the light is not held to such.
+    /// Position of the handle; `None` if the light has no such limit.
     pub fn place(self, light: &Light, camera: &Camera, diagonal_m: f32) -> Option<Vec3> {
         Some(self.at(light, camera, diagonal_m, self.angle_rad(light)?))
     }
 
-    /// Where it is drawn at another angle.
+    /// Position of the handle at another angle.
     fn at(self, light: &Light, camera: &Camera, diagonal_m: f32, angle_rad: f32) -> Vec3 {
         let frame = light.frame();
-        // Cones have no right of their own: across the view angles are seen best.
+        // A cone is symmetric about its axis; across the view direction its angles are easiest to see.
         let across = frame.axis.cross(camera::axes(camera).forward).normalize_or(frame.right);
         let off_axis = match self {
             Self::Outer => across,
@@ -59,7 +59,7 @@ impl Handle {
         frame.center + length_m * (frame.axis * angle_rad.cos() + off_axis * angle_rad.sin())
     }
 
-    /// Gives the light the angle at which the handle is drawn nearest to the pointer.
+    /// Sets the light's angle to the one whose handle is nearest to the pointer.
     pub fn drag(
         self,
         light: &mut Light,
@@ -82,7 +82,7 @@ impl Handle {
     }
 }
 
-/// Lines along the light's limits: the cone's two rings and four edges, the frustum's pyramid.
+/// Outlines of the light's limits: the cone's two rings and four edges, the frustum's pyramid.
 pub fn lines(light: &Light, diagonal_m: f32) -> Vec<Vec<Vec3>> {
     if light.is_distant() {
         return Vec::new();
@@ -104,7 +104,7 @@ pub fn lines(light: &Light, diagonal_m: f32) -> Vec<Vec<Vec3>> {
         }
     }
     if let Some(fov_rad) = light.fov_rad {
-        // As far along the axis as its handle.
+        // The pyramid ends at the same depth as its handle.
         let (depth_m, half_m) = (length_m * (0.5 * fov_rad).cos(), length_m * (0.5 * fov_rad).sin());
         let corner = |x: f32, y: f32| frame.center + frame.axis * depth_m + half_m * (frame.right * x + frame.up * y);
         let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
@@ -153,7 +153,7 @@ mod tests {
         for handle in Handle::ALL {
             let mut light = spot();
             let before = on_screen(handle.place(&light, &camera(), 5.0).unwrap()).unwrap();
-            // Towards where the handle of a smaller angle is.
+            // The target is the handle's position at a smaller angle.
             let target = on_screen(handle.at(&light, &camera(), 5.0, 0.45)).unwrap();
             assert!(before.distance(target) > 3.0, "{handle:?} does not move on the screen");
             handle.drag(&mut light, &camera(), 5.0, target, on_screen);

@@ -1,12 +1,12 @@
-//! What is under the pointer, in numbers.
+//! Values of the pixel under the pointer.
 
 use crate::renderer::Inspected;
 use crate::state::State;
 
-/// Off the pointer, points.
+/// Distance from the pointer, points.
 const OFFSET: egui::Vec2 = egui::vec2(18.0, 18.0);
 
-/// Shows a pixel's numbers beside the pointer. `truth` is the traced visibility there, below zero where it is not judged.
+/// Shows a pixel's values beside the pointer. `truth` is the traced visibility; it is negative if the pixel is not judged.
 pub fn show(ctx: &egui::Context, state: &State, pointer: egui::Pos2, inspected: &Inspected, truth: Option<f32>) {
     let area =
         egui::Area::new(egui::Id::unique("inspector")).order(egui::Order::Tooltip).interactable(false).fade_in(false);
@@ -23,7 +23,7 @@ pub fn show(ctx: &egui::Context, state: &State, pointer: egui::Pos2, inspected: 
     });
 }
 
-/// Names and numbers with their units.
+/// Returns names and values with units.
 fn rows(state: &State, inspected: &Inspected, truth: Option<f32>) -> Vec<(String, String)> {
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));

@@ -1,4 +1,4 @@
-//! The list of lights, and the chosen one's shape, size and place.
+//! The list of lights, and the selected one's shape, size and position.
 
 use antumbra_light::{Cone, Light, LightShape};
 use glam::Vec3;
@@ -6,10 +6,10 @@ use glam::Vec3;
 use super::decimals;
 use crate::state::{Angles, ShapeKind, State, move_by};
 
-/// Drags move a light by this part of the scene's diagonal a point of the screen.
+/// Scene diagonals that a light moves per point of a drag.
 const DRAG_DIAGONALS: f32 = 1.0 / 1000.0;
 
-/// The list, and the chosen light.
+/// Shows the list and the selected light.
 pub fn show(ui: &mut egui::Ui, state: &mut State) {
     ui.horizontal_wrapped(|ui| {
         for (index, light) in state.setup.lights.iter().enumerate() {
@@ -34,7 +34,7 @@ pub fn show(ui: &mut egui::Ui, state: &mut State) {
         limits(ui, &mut light);
         emission(ui, &mut light);
     });
-    // What means nothing is not taken, and the controls go back to what was.
+    // An invalid light is rejected, and the controls return to the previous values.
     if light != *before {
         match light.validate() {
             Ok(()) => state.setup.lights[index] = light,
@@ -49,7 +49,7 @@ pub fn show(ui: &mut egui::Ui, state: &mut State) {
     }
 }
 
-/// A turn in twenty seconds.
+/// Turntable speed: a turn in twenty seconds.
 pub(super) const TURN_RAD_S: f32 = std::f32::consts::TAU / 20.0;
 
 fn length(ui: &mut egui::Ui, value_m: &mut f32, speed_m: f32) {
@@ -134,11 +134,11 @@ fn pose(ui: &mut egui::Ui, light: &mut Light, anchor: Vec3, speed_m: f32) {
     }
 }
 
-/// To begin with: a desk lamp's cone, and a frustum as wide.
+/// Initial half angles of a cone: a desk lamp's. The frustum is as wide.
 const FIRST_CONE_RAD: [f32; 2] = [25.0 * DEGREE_RAD, 35.0 * DEGREE_RAD];
 const DEGREE_RAD: f32 = std::f32::consts::PI / 180.0;
 
-/// What the light is held to: a cone, a square frustum.
+/// Shows the light's limits: a cone, a square frustum.
 fn limits(ui: &mut egui::Ui, light: &mut Light) {
     if light.is_distant() {
         return;
@@ -176,7 +176,7 @@ fn limits(ui: &mut egui::Ui, light: &mut Light) {
     ui.end_row();
 }
 
-/// To begin with: the candela of a bright bulb, 1 250 lumens all around; as lux, a sun in mist.
+/// Initial intensity: the candela of a bright bulb, 1 250 lumens in all directions, or the lux of a hazy sun.
 const DEFAULT_GIVEN: f32 = 100.0;
 
 fn emission(ui: &mut egui::Ui, light: &mut Light) {

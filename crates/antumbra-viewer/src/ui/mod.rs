@@ -1,4 +1,4 @@
-//! What the window is made of. Each part reads and changes the state; what takes more than that is an [`Action`].
+//! Panels of the window. Each reads and changes the state; all else is requested as an [`Action`].
 
 mod beam;
 mod inspector;
@@ -24,41 +24,41 @@ use crate::file_dialog::Purpose;
 use crate::renderer::MapChoices;
 use crate::state::State;
 
-/// What the window asks for beyond a change of the state.
+/// A request from the window beyond a change of the state.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// Open a scene by its name.
     Open(String),
-    /// Choose in the system's dialog what to open, or where to save under this name.
+    /// Choose a file to open, or to save under this name, in the system's dialog.
     Choose(Purpose, String),
-    /// Take camera and lights from a file.
+    /// Load camera and lights from a file.
     OpenSetup(PathBuf),
     /// Save camera and lights to a file.
     SaveSetup(PathBuf),
-    /// Save the picture, without the window around it.
+    /// Save the image without the window.
     SavePicture(PathBuf),
-    /// Put the command line on the clipboard.
+    /// Copy the command line to the clipboard.
     CopyCommand,
-    /// See all of the scene.
+    /// Frame the whole scene.
     FrameAll,
-    /// Expose the lights to what is seen now.
+    /// Recompute the exposure from the visible surfaces.
     Expose,
-    /// Take back the newest edit.
+    /// Undo the newest edit.
     Undo,
-    /// Do again what was taken back last.
+    /// Redo the edit that was undone last.
     Redo,
 }
 
-/// What panels keep between frames that is no part of the state.
+/// State of the panels that persists between frames and is not part of the viewer's state.
 #[derive(Debug)]
 pub struct Panels {
     /// The window that opens scenes.
     pub open: OpenWindow,
-    /// Where setups are saved to.
+    /// Path for saving setups.
     pub setup_path: String,
-    /// Where pictures are saved to.
+    /// Path for saving images.
     pub picture_path: String,
-    /// Whether the panel at the side is shown.
+    /// Whether the side panel is shown.
     pub is_side_shown: bool,
     /// Whether the values under the pointer are shown.
     pub is_inspecting: bool,
@@ -76,12 +76,11 @@ impl Default for Panels {
     }
 }
 
-/// Beside a name and a number with its unit, in a panel as wide as it opens: else the panel would grow with its contents,
-/// and the picture shrink.
+/// Width of a slider, points. With name, number and unit it fits the panel's initial width; otherwise the panel would grow
+/// and the image shrink.
 const SLIDER_WIDTH: f32 = 84.0;
 
-/// Writes a slider's number with so many digits behind the point at most. A slider with `max_decimals` of its own rounds the
-/// number itself, as soon as it is shown.
+/// Formats a slider's number with at most `most` decimals. A slider's own `max_decimals` would round the value itself when it is shown.
 fn decimals(most: usize) -> impl Fn(f64, std::ops::RangeInclusive<usize>) -> String {
     move |value, _| {
         let text = format!("{value:.most$}");
@@ -89,8 +88,7 @@ fn decimals(most: usize) -> impl Fn(f64, std::ops::RangeInclusive<usize>) -> Str
     }
 }
 
-/// The bar at the top: what is open, what is shown, and how, where lists have so many levels; and whether there is something to undo and to
-/// redo. Returns what was asked for.
+/// Shows the top bar: scene, view, choices of levels and layers, undo and redo. Returns the requested actions.
 pub fn top(
     ui: &mut egui::Ui,
     state: &mut State,
@@ -101,7 +99,7 @@ pub fn top(
     toolbar::show(ui, state, panels, choices, can_undo_and_redo)
 }
 
-/// The panel at the side: techniques, lights, view, times.
+/// Shows the side panel: techniques, lights, view, times.
 pub fn side(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels, readings: &Readings<'_>) -> Vec<Action> {
     let mut actions = Vec::new();
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {

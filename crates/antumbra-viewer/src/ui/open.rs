@@ -1,4 +1,4 @@
-//! The window in which a scene is chosen: a path, or a built-in.
+//! The window for choosing a scene: a path, or a built-in scene.
 
 use antumbra_scene::builtin;
 
@@ -8,21 +8,21 @@ use crate::file_dialog::Purpose;
 use crate::loader::is_setup;
 use crate::thumbnails::{SIZE_PX, Thumbnails};
 
-/// A page has one thread, which tracing would hold up.
+/// Whether thumbnails are shown; a page's single thread would be blocked by tracing.
 const HAS_THUMBNAILS: bool = !cfg!(target_arch = "wasm32");
 
-/// The window, shown or not.
+/// The window, open or closed.
 #[derive(Debug, Default)]
 pub struct OpenWindow {
-    /// Whether it is shown.
+    /// Whether the window is shown.
     pub is_open: bool,
     path: String,
-    /// Of the built-in scenes; for as long as the window is there.
+    /// Thumbnails of the built-in scenes.
     thumbnails: Thumbnails,
 }
 
 impl OpenWindow {
-    /// The window; a scene that was chosen closes it. `wake` is called when there is another thumbnail to show.
+    /// Shows the window. Choosing a scene closes it. `wake` is called when there is another thumbnail to show.
     pub fn show(&mut self, ctx: &egui::Context, wake: &Wake) -> Option<Action> {
         let mut chosen = None;
         let mut is_open = self.is_open;
@@ -57,11 +57,11 @@ impl OpenWindow {
         chosen
     }
 
-    /// A scene's picture, or its place while it is traced.
+    /// Shows a scene's thumbnail, or a placeholder while it is traced.
     fn thumbnail(&mut self, ui: &mut egui::Ui, name: &'static str, wake: &Wake) -> egui::Response {
         let size = egui::vec2(SIZE_PX.x as f32, SIZE_PX.y as f32);
         let (rect, response) = ui.allocate_exact_size(size, egui::Sense::click());
-        // Those that are scrolled away are not asked for.
+        // Thumbnails outside the visible area are not requested.
         if ui.is_rect_visible(rect) {
             match self.thumbnails.of(ui.ctx(), name, wake) {
                 Some(texture) => egui::Image::new(texture).paint_at(ui, rect),
@@ -73,7 +73,7 @@ impl OpenWindow {
         response
     }
 
-    /// A path to enter.
+    /// Shows an input for a path.
     fn path(&mut self, ui: &mut egui::Ui, chosen: &mut Option<Action>) {
         ui.horizontal(|ui| {
             let hint = "path of a .glb or .gltf scene, or of a .toml setup";
@@ -91,7 +91,7 @@ impl OpenWindow {
     }
 }
 
-/// What opening a file means, by its name.
+/// Action that opens a file, by the extension of its name.
 pub fn action_for(path: &str) -> Action {
     if is_setup(path) { Action::OpenSetup(path.into()) } else { Action::Open(path.to_owned()) }
 }

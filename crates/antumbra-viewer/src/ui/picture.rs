@@ -1,4 +1,4 @@
-//! The picture, and what a hand does in it: the camera, the divider, the light.
+//! The image and the interaction in it: camera, divider, light.
 
 use antumbra_light::{Light, LightShape};
 use antumbra_scene::Camera;
@@ -8,20 +8,20 @@ use super::beam::{self, Handle};
 use crate::camera;
 use crate::state::{Angles, Show, State, move_by};
 
-/// A drag over the picture's height turns the camera so far.
+/// Rotation of the camera for a drag over the image's height, radians.
 const TURN_RAD: f32 = std::f32::consts::PI;
 /// Points of scrolling that halve the distance to the target.
 const SCROLL_HALVING: f32 = 300.0;
-/// Flying covers this part of the scene's diagonal a second.
+/// Flight speed, scene diagonals per second.
 const FLIGHT_DIAGONALS_S: f32 = 0.25;
-/// A hand this near to the divider or the light takes hold of it, points.
+/// Distance at which the pointer grabs the divider or the light, points.
 const REACH: f32 = 8.0;
-/// A sun is drawn this many of the scene's diagonals from its middle.
+/// Distance of a drawn sun from the scene's centre, in scene diagonals.
 const SUN_DIAGONALS: f32 = 0.5;
-/// Corners of a round light's outline.
+/// Number of corners of a round light's outline.
 const OUTLINE_CORNERS: usize = 48;
 
-/// What a drag has hold of.
+/// Object of a drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hold {
     Divider,
@@ -30,17 +30,16 @@ enum Hold {
     Beam(Handle),
 }
 
-/// Where the pointer is over the picture: on the screen, and in parts of the picture from its top left.
+/// Position of the pointer over the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
-    /// On the screen, points.
+    /// Position on the screen, points.
     pub place: egui::Pos2,
-    /// From 0 to 1.
+    /// Position in the image from its top left, 0 to 1.
     pub unit: Vec2,
 }
 
-/// Shows the texture over all of `ui`, takes the hand in, and draws divider and light over it; `map_lines` are what is told of
-/// the sides' light maps or lists.
+/// Shows the image, handles input, and draws divider and light over it. `map_lines` describe the sides' shadow maps or lists.
 pub fn show(
     ui: &mut egui::Ui,
     state: &mut State,
@@ -78,7 +77,7 @@ pub fn show(
     Some(Pointer { place, unit: Vec2::new(unit.x, unit.y) })
 }
 
-/// Under each side's maps, what they are.
+/// Draws each side's description below its maps.
 fn tell_of_maps(ui: &egui::Ui, painter: &egui::Painter, state: &State, rect: egui::Rect, lines: [Option<String>; 2]) {
     let x = if state.is_split { divider_x(state, rect) } else { rect.right() };
     let rooms = [(rect.left(), x), (x, rect.right())];
@@ -121,7 +120,7 @@ fn drag(ui: &egui::Ui, state: &mut State, response: &egui::Response, rect: egui:
         };
         ui.data_mut(|data| data.insert_temp(hold_id, hold));
     }
-    // Where frames are slow, the last of the way comes with the letting go.
+    // At low frame rates the last movement arrives together with the release.
     if !response.dragged() && !response.drag_stopped() {
         return;
     }
@@ -167,7 +166,7 @@ fn diagonal_of(state: &State) -> f32 {
     state.scene.as_ref().map_or(1.0, |open| open.bounds.diagonal())
 }
 
-/// The handle of the chosen light's cone or frustum that is within reach of a place.
+/// Returns the handle of the selected light's cone or frustum within reach of a position.
 fn beam_at(state: &State, from: egui::Pos2, rect: egui::Rect) -> Option<Handle> {
     let (light, camera) = (&state.setup.lights[state.light], &state.setup.camera);
     let off = |handle: &Handle| {
@@ -178,7 +177,7 @@ fn beam_at(state: &State, from: egui::Pos2, rect: egui::Rect) -> Option<Handle> 
     near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(handle, _)| handle)
 }
 
-/// Moves a light across the picture, at the distance that it is at, so that it stays under the hand.
+/// Moves a light parallel to the image at its depth, so that it follows the pointer.
 fn drag_light(light: &mut Light, camera: &Camera, by_heights: Vec2) {
     let axes = camera::axes(camera);
     let depth_m = (light.center - camera.eye).dot(axes.forward);
@@ -186,10 +185,10 @@ fn drag_light(light: &mut Light, camera: &Camera, by_heights: Vec2) {
     move_by(light, height_m * (axes.right * by_heights.x - axes.up * by_heights.y));
 }
 
-/// Turns a sun as the hand moves it across the sky: to the picture's right and up.
+/// Rotates a sun so that it follows the pointer: to the image's right and up.
 fn turn_sun(light: &mut Light, camera: &Camera, by_heights: Vec2) {
     let mut angles = Angles::of(light);
-    // Beyond the scene the sun moves right by turning towards -azimuth, on the camera's side by turning the other way.
+    // Ahead of the camera the sun moves right for a falling azimuth, behind it for a rising one.
     let is_beyond = -light.axis.dot(camera::axes(camera).forward) > 0.0;
     angles.azimuth_rad += TURN_RAD * by_heights.x * if is_beyond { -1.0 } else { 1.0 };
     let zenith = std::f32::consts::FRAC_PI_2;
@@ -197,14 +196,14 @@ fn turn_sun(light: &mut Light, camera: &Camera, by_heights: Vec2) {
     angles.give_to(light);
 }
 
-/// Where the chosen light is taken hold of: its centre, or for a sun where its rays come from, seen from the scene's middle.
+/// Position of the selected light's handle: its centre, or the direction of a sun from the scene's centre.
 fn handle_of(state: &State) -> Vec3 {
     let light = &state.setup.lights[state.light];
     let Some(open) = state.scene.as_ref().filter(|_| light.is_distant()) else { return light.center };
     open.bounds.center() - light.axis * (SUN_DIAGONALS * open.bounds.diagonal())
 }
 
-/// W, A, S, D, Q and E move the camera as long as they are held.
+/// Moves the camera while W, A, S, D, Q or E are pressed.
 fn fly(ui: &egui::Ui, state: &mut State) {
     let (direction, seconds, is_fast) = ui.input(|input| {
         let axis = |positive, negative| {
@@ -225,7 +224,7 @@ fn fly(ui: &egui::Ui, state: &mut State) {
     }
 }
 
-/// Where a point of the world lies on the screen; `None` behind the camera.
+/// Projects a world position to the screen; `None` behind the camera.
 fn place_of(camera: &Camera, x: Vec3, rect: egui::Rect) -> Option<egui::Pos2> {
     let size = UVec2::new(rect.width().max(1.0) as u32, rect.height().max(1.0) as u32);
     let clip = camera.clip_from_view(size) * camera.view_from_world() * x.extend(1.0);
@@ -236,7 +235,7 @@ fn place_of(camera: &Camera, x: Vec3, rect: egui::Rect) -> Option<egui::Pos2> {
     })
 }
 
-/// The chosen light's shape, its centre to take hold of, and which way it looks.
+/// Draws the selected light's shape, handle and direction.
 fn outline(painter: &egui::Painter, state: &State, rect: egui::Rect) {
     let light = &state.setup.lights[state.light];
     let camera = &state.setup.camera;
@@ -263,7 +262,7 @@ fn outline(painter: &egui::Painter, state: &State, rect: egui::Rect) {
     }
 }
 
-/// What the chosen light is held to, and where one takes hold of it: an outer angle's handle is full, an inner one's not.
+/// Draws the selected light's cone or frustum with its handles: filled for the outer angle, hollow for the inner.
 fn outline_beam(painter: &egui::Painter, state: &State, rect: egui::Rect, stroke: egui::Stroke) {
     let (light, camera, diagonal_m) = (&state.setup.lights[state.light], &state.setup.camera, diagonal_of(state));
     let place = |x: Vec3| place_of(camera, x, rect);
@@ -289,7 +288,7 @@ fn outline_beam(painter: &egui::Painter, state: &State, rect: egui::Rect, stroke
     }
 }
 
-/// Closed lines around a light's shape, in the world.
+/// Closed outlines of a light's shape in world space.
 fn rings(light: &Light) -> Vec<Vec<Vec3>> {
     let frame = light.frame();
     let at = |x: f32, y: f32, z: f32| frame.center + frame.right * x + frame.up * y + frame.axis * z;
@@ -319,10 +318,10 @@ fn rings(light: &Light) -> Vec<Vec<Vec3>> {
     }
 }
 
-/// The line between the sides, its handle, and whose sides they are.
+/// Draws the divider, its handle, and the names of the sides.
 fn divider(ui: &egui::Ui, painter: &egui::Painter, state: &State, rect: egui::Rect) {
     let x = divider_x(state, rect);
-    // White with a dark rim is seen over anything.
+    // White with a dark rim is visible on any background.
     let rim = egui::Color32::from_black_alpha(160);
     painter.vline(x, rect.y_range(), egui::Stroke::new(4.0, rim));
     painter.circle_filled(egui::pos2(x, rect.center().y), 7.0, rim);
@@ -363,7 +362,7 @@ mod tests {
         assert!((moved - egui::vec2(40.0, 20.0)).length() < 0.1, "{moved:?}");
         assert_eq!(place_of(&camera, camera.eye + Vec3::new(3.0, 2.0, 6.0), rect), None);
 
-        // A sun beyond and one on the camera's side move right and up on the screen as the hand does.
+        // A sun ahead of the camera or behind it moves right and up with the pointer.
         for from in [Vec3::new(-1.0, 1.5, -2.0), Vec3::new(1.0, 1.5, 2.0)] {
             let mut sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.01 }, from, Vec3::ZERO);
             let axes = camera::axes(&camera);

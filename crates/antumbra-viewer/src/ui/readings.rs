@@ -1,26 +1,26 @@
-//! What is measured of what is shown: times, memory, errors.
+//! Measurements of the shown techniques: times, memory, errors.
 
 use crate::renderer::{ERROR_RAMP, ERROR_RANGE, FrameTimes, SideReadings, Times};
 use crate::state::State;
 
-/// What is measured.
+/// Measurements of a frame.
 #[derive(Clone, Debug)]
 pub struct Readings<'a> {
-    /// The left side, or the only one, and the right side.
+    /// The left or only side, and the right side.
     pub sides: [SideReadings<'a>; 2],
-    /// Light points a pixel that the truth has so far.
+    /// Light samples per pixel that the ground truth has so far.
     pub truth_points: Option<u32>,
-    /// GPU memory that the scene takes, bytes.
+    /// GPU memory of the scene, bytes.
     pub scene_memory_bytes: u64,
-    /// The picture's size, pixels.
+    /// Image size, pixels.
     pub size_px: glam::UVec2,
     /// The adapter's name.
     pub adapter: &'a str,
-    /// What the device has beyond WebGPU's core.
+    /// Features of the device beyond WebGPU's core.
     pub features: wgpu::Features,
 }
 
-/// Times of every pass, as medians over the last frames, and as a graph.
+/// Shows medians of every pass's time over the last frames, and a graph.
 pub fn show(ui: &mut egui::Ui, state: &State, readings: &Readings<'_>) {
     ui.label(egui::RichText::new(readings.adapter).weak());
     for (side, readings) in state.shown_sides().iter().zip(&readings.sides) {
@@ -58,7 +58,7 @@ fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
-/// A bar for each of the last frames, and a line at the median.
+/// Draws a bar for each of the last frames, and a line at the median.
 fn graph(ui: &mut egui::Ui, times: &Times) {
     let height = 36.0;
     let (rect, _) = ui.allocate_exact_size(egui::vec2(ui.available_width(), height), egui::Sense::hover());
@@ -77,7 +77,7 @@ fn graph(ui: &mut egui::Ui, times: &Times) {
     painter.hline(rect.x_range(), y(median_ms), ui.visuals().widgets.active.fg_stroke);
 }
 
-/// The bar at the bottom: the newest message, errors, sizes.
+/// Shows the status bar: the newest message, errors, sizes.
 pub fn status_bar(ui: &mut egui::Ui, state: &State, readings: &Readings<'_>, message: &str, is_bad: bool) {
     ui.horizontal(|ui| {
         if let Some(open) = &state.scene {
@@ -108,7 +108,7 @@ pub fn status_bar(ui: &mut egui::Ui, state: &State, readings: &Readings<'_>, mes
     });
 }
 
-/// The error view's colours with their numbers.
+/// Shows the colour map of the error view.
 fn error_scale(ui: &mut egui::Ui) {
     ui.separator();
     ui.label(format!("{:+}", -ERROR_RANGE));

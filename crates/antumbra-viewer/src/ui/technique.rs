@@ -1,4 +1,4 @@
-//! A side's technique and its parameters, straight from their declarations.
+//! Controls of a side's technique and parameters, generated from their declarations.
 
 use antumbra::contract::{ParamScale, ParamSpec, ParamValue};
 use antumbra::{Quality, TechniqueKind};
@@ -7,7 +7,7 @@ use super::decimals;
 use crate::renderer::SideReadings;
 use crate::state::Side;
 
-/// The technique's name and quality, what it is, and its parameters, on a device of these features.
+/// Shows the technique's name, quality, description and parameters on a device with these features.
 pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>, features: wgpu::Features) {
     ui.horizontal(|ui| {
         let mut kind = side.kind();
@@ -62,7 +62,7 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>, fea
     });
 }
 
-/// What a technique is, for what, where it fails, and what it lacks on a device of these features.
+/// Describes a technique: its use, its failures, and its limitations on a device with these features.
 fn about(kind: TechniqueKind, features: wgpu::Features) -> String {
     let facts = kind.facts();
     let mut lines = vec![
@@ -76,7 +76,7 @@ fn about(kind: TechniqueKind, features: wgpu::Features) -> String {
     lines.join("\n").replace('`', "")
 }
 
-/// What a technique lacks on a device of these features that it has on others; WebGPU's core has none of them.
+/// Returns a technique's limitations on a device with these features, compared with other devices. WebGPU's core has none of the features.
 fn lacks(kind: TechniqueKind, features: wgpu::Features) -> Vec<String> {
     let mut lacks = Vec::new();
     for spec in kind.param_specs() {
@@ -93,20 +93,20 @@ fn lacks(kind: TechniqueKind, features: wgpu::Features) -> Vec<String> {
     lacks
 }
 
-/// Parameters that gain by a depth test before the fragment stage, and what happens without.
+/// Parameters that benefit from a depth test before the fragment stage, with the effect of its absence.
 const LATE_TESTS: [(&str, &str); 2] = [
     ("stencil", "fragments over empty lists are begun all the same"),
     ("path", "fragment_two_pass scatters fragments that are hidden, too"),
 ];
 
-/// Why a choice of a parameter is not to be had on a device of these features.
+/// Reason why a parameter's choice is unavailable on a device with these features.
 fn lack(spec: &ParamSpec, choice: &str, features: wgpu::Features) -> Option<&'static str> {
     let has_other_counts = features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
     let is_other_count = spec.key == "msaa" && !matches!(choice, "1" | "4");
     (is_other_count && !has_other_counts).then_some("this device has maps of 1 and 4 samples a texel")
 }
 
-/// One parameter: its control, a way back where it is not at its default, and why it was refused.
+/// Shows one parameter: its control, a reset button unless it has its default, and the reason of a refusal.
 fn parameter(
     ui: &mut egui::Ui,
     side: &mut Side,
@@ -138,11 +138,11 @@ fn parameter(
     }
 }
 
-/// Room for most names; the rest is cut, and whole in the tooltip.
+/// Width of names, points; longer names are cut and shown in full in the tooltip.
 const NAME_WIDTH: f32 = 110.0;
 
-/// Switches for the names that a number's place takes; switched off, the number is the one that was `chosen` for the last frame, or
-/// the middle of the range.
+/// Shows switches for names that replace a number. Switching a name off sets the number that was `chosen` for the last
+/// frame, or the middle of the range.
 fn name_control(ui: &mut egui::Ui, spec: &ParamSpec, value: ParamValue, chosen: Option<u32>) -> Option<String> {
     let (low, high) = spec.range?;
     let mut text = None;
@@ -156,7 +156,7 @@ fn name_control(ui: &mut egui::Ui, spec: &ParamSpec, value: ParamValue, chosen: 
     text
 }
 
-/// The control for a parameter's type; the new value as text where it was changed.
+/// Shows the control for a parameter's type. Returns the new value as text if it was changed.
 fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue, features: wgpu::Features) -> Option<String> {
     let slider = |ui: &mut egui::Ui, mut number: f64, is_whole: bool| {
         let (low, high) = spec.range?;
@@ -204,7 +204,7 @@ fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue, featu
     }
 }
 
-/// The five facts of a parameter.
+/// Returns a parameter's tooltip: key, meaning, valid values, default and details.
 fn explanation(spec: &ParamSpec, usual: ParamValue) -> String {
     let unit = if spec.unit.is_empty() { String::new() } else { format!(" {}", spec.unit) };
     format!("{}: {}\n\nTakes {}{unit}; {usual} as it comes.\n\n{}", spec.key, spec.meaning, spec.expected(), spec.more)
@@ -214,7 +214,7 @@ fn explanation(spec: &ParamSpec, usual: ParamValue) -> String {
 mod tests {
     use super::*;
 
-    /// What WebGPU's core lacks is said of those techniques that would use it, and of no other.
+    /// The description names limitations of WebGPU's core for techniques that they affect, and for no other.
     #[test]
     fn the_list_says_what_a_technique_lacks_here() {
         let core = wgpu::Features::empty();

@@ -1,8 +1,8 @@
-//! The bar of an animated scene: play and pause, the time, how fast it goes by.
+//! The playback bar of an animated scene: play and pause, time, speed.
 
 use crate::state::{SPEEDS, State};
 
-/// Shows the bar, where the scene is animated.
+/// Shows the bar if the scene is animated.
 pub fn show(ui: &mut egui::Ui, state: &mut State) {
     let play = &mut state.play;
     let Some([first, last]) = play.ends_s else { return };
@@ -15,7 +15,7 @@ pub fn show(ui: &mut egui::Ui, state: &mut State) {
         }
         let speed = egui::DragValue::new(&mut play.speed).range(SPEEDS).speed(0.01).max_decimals(2).prefix("× ");
         ui.add(speed).on_hover_text("Seconds of the scene in a second");
-        // The rest of the bar, but for the number.
+        // The slider fills the bar except for the number.
         ui.spacing_mut().slider_width = (ui.available_width() - 80.0).max(60.0);
         let range = first.min(0.0)..=last;
         let slider = egui::Slider::new(&mut play.time_s, range)

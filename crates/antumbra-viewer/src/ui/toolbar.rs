@@ -1,4 +1,4 @@
-//! The bar at the top, and the controls of the view.
+//! The top bar, and the controls of the view.
 
 use std::path::PathBuf;
 
@@ -8,13 +8,13 @@ use crate::file_dialog::Purpose;
 use crate::renderer::MapChoices;
 use crate::state::{Show, State};
 
-/// Room for the two last buttons of the bar, points.
+/// Width reserved for the bar's last two buttons, points.
 const LOOKS_WIDTH: f32 = 170.0;
 
-/// A slider between a few, points.
+/// Width of a slider with few values, points.
 const CHOICE_WIDTH: f32 = 60.0;
 
-/// What is open, what is shown, and how.
+/// Shows scene, view and their choices.
 pub fn show(
     ui: &mut egui::Ui,
     state: &mut State,
@@ -83,7 +83,7 @@ pub fn show(
         if ui.button("Copy command").on_hover_text("The command line that draws this again").clicked() {
             actions.push(Action::CopyCommand);
         }
-        // At the right, or in a narrow window behind the others.
+        // The buttons align right, or follow the others in a narrow window.
         if ui.available_size_before_wrap().x < LOOKS_WIDTH {
             looks(ui, panels);
         } else {
@@ -93,20 +93,20 @@ pub fn show(
     actions
 }
 
-/// Which of so many is shown, counted from 1; nothing where there is no choice.
+/// Shows a selector for one of `count` items, numbered from 1; nothing if there is no choice.
 fn one_of(ui: &mut egui::Ui, name: &str, count: usize, chosen: &mut usize, tip: &str) {
     if count < 2 {
         return;
     }
     let mut shown = (*chosen).min(count - 1) + 1;
-    // Two of them have room beside the views in a narrow window.
+    // Two selectors must fit beside the views in a narrow window.
     ui.spacing_mut().slider_width = CHOICE_WIDTH;
     if ui.add(egui::Slider::new(&mut shown, 1..=count).text(name)).on_hover_text(tip).changed() {
         *chosen = shown - 1;
     }
 }
 
-/// How the window looks.
+/// Shows the buttons for the window's appearance.
 fn looks(ui: &mut egui::Ui, panels: &mut Panels) {
     ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
     let is_dark = ui.visuals().dark_mode;
@@ -116,7 +116,7 @@ fn looks(ui: &mut egui::Ui, panels: &mut Panels) {
     }
 }
 
-/// Camera, exposure, files.
+/// Shows the controls of camera, exposure and files.
 pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Action> {
     let mut actions = Vec::new();
     let camera = &mut state.setup.camera;
@@ -152,7 +152,7 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
             if ui.button(name).clicked() && !path.trim().is_empty() {
                 actions.push(action(PathBuf::from(path.trim())));
             }
-            // A browser has a place for downloads, and opens by the window for scenes.
+            // A browser has a folder for downloads, and opens files in the scene window.
             if !cfg!(target_arch = "wasm32") && ui.button("…").on_hover_text("In the system's dialog").clicked() {
                 actions.push(Action::Choose(purpose, path.trim().to_owned()));
             }

@@ -1,4 +1,4 @@
-//! The runs that `antumbra compare` holds its own against.
+//! Baselines of `antumbra compare`.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use serde_json::json;
 use crate::args::CompareArgs;
 use crate::failure::Failure;
 
-/// The baseline of each scene: the file that is given, or, of several scenes, those in the folder.
+/// Reads the baseline of each scene: the given file, or for several scenes the files in the given folder.
 pub(super) fn baselines(args: &CompareArgs, folders: &[String]) -> Result<Vec<Option<BaselineFile>>, Failure> {
     let Some(given) = &args.run.baseline else { return Ok(vec![None; folders.len()]) };
     if folders.len() > 1 && given.is_file() {
@@ -29,14 +29,14 @@ pub(super) fn baselines(args: &CompareArgs, folders: &[String]) -> Result<Vec<Op
     folders.iter().map(read).collect()
 }
 
-/// A baseline and where it is from.
+/// A baseline with its path.
 #[derive(Clone)]
 pub(super) struct BaselineFile {
     pub(super) path: PathBuf,
     pub(super) baseline: Baseline,
 }
 
-/// Refuses a baseline of something else.
+/// Refuses a baseline of another scene or view.
 pub(super) fn check_view(path: &Path, baseline: &Baseline, request: &CompareRequest<'_>) -> Result<(), LabError> {
     let name = request.scene_name();
     let setup = request.setup.counted_from(-request.anchor).to_toml();

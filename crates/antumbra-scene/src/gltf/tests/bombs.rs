@@ -1,4 +1,4 @@
-//! Small files that ask for a great deal: refused at once, or loaded at once, never slowly.
+//! Small files that request huge resources are refused or loaded at once, never slowly.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::features::Doc;
 
-/// A refusal reads a few megabytes at most, also on a busy machine.
+/// Time limit: a refusal reads a few megabytes at most, also on a busy machine.
 const AT_ONCE: Duration = Duration::from_secs(5);
 
 fn refused(doc: &Doc, want: &str) {
@@ -46,7 +46,7 @@ fn a_million_uses_of_one_accessor() {
     doc.json["meshes"] = json!([{ "primitives": vec![primitive; 5_000] }]);
     refused(&doc, "vertices");
 
-    // Attributes that are read and thrown away count too.
+    // Attributes that are read and discarded count too.
     let mut doc = Doc::new(json!([{ "mesh": 0 }]));
     doc.triangle(json!({}));
     let times: Vec<f32> = (0..10_000).map(|k| k as f32).collect();

@@ -1,12 +1,12 @@
-//! Every file that `broken/expected.tsv` lists does what is wanted there: no panic, no hang, no scene that would put
-//! a NaN into the frame.
+//! Every file that `broken/expected.tsv` lists has one of the outcomes given there, without panic, hang or a scene that
+//! would put a NaN into the frame.
 
 use std::time::Duration;
 
 use super::{guarded, scenes_folder, unsound};
 use crate::gltf::{Limits, Pose, load_file};
 
-/// What may happen to a file.
+/// Permitted outcomes of a file.
 #[derive(Debug, PartialEq)]
 struct Wanted {
     may_load: bool,
@@ -14,7 +14,7 @@ struct Wanted {
     empty: bool,
 }
 
-/// The third column in terms of outcomes: it names the wanted one first and alternatives after `or`.
+/// Parses the third column: it names the wanted outcome first, and alternatives after `or`.
 fn wanted(text: &str) -> Wanted {
     let alternative = text.contains(" or ") || text.contains(", or ");
     let or_fails = ["or error", "or refused"].iter().any(|s| text.contains(s));
@@ -50,7 +50,7 @@ fn every_broken_file_does_what_is_wanted() {
         let (name, wanted) = (columns[0], wanted(columns[2]));
         files += 1;
         let path = folder.join(name);
-        // Times at, within and beyond the clips.
+        // Times at the start of the clips, within them and after them.
         for time_s in [0.0, 0.3, 1e9] {
             let path = path.clone();
             let outcome = guarded(Duration::from_secs(20), move || {

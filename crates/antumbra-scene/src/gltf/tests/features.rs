@@ -1,4 +1,4 @@
-//! One small file for each feature, made here.
+//! Features of the format, each tested with a small generated file.
 
 use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
@@ -10,14 +10,14 @@ use antumbra_light::LightShape;
 
 const FLOAT: u32 = 5126;
 
-/// A document with its binary data, grown accessor by accessor.
+/// Builder of a document with its binary data.
 pub(super) struct Doc {
     pub json: Value,
     pub bin: Vec<u8>,
 }
 
 impl Doc {
-    /// A scene of the nodes given.
+    /// Creates a scene of the given nodes.
     pub(super) fn new(nodes: Value) -> Self {
         let count = nodes.as_array().unwrap().len();
         let children: Vec<u64> = nodes
@@ -63,7 +63,7 @@ impl Doc {
         self.accessor(bytemuck::cast_slice(values), FLOAT, kind, values.len() / width, json!({}))
     }
 
-    /// The unit right triangle in the xy plane, facing +z, as mesh 0.
+    /// Adds the unit right triangle in the xy plane, facing +z, as mesh 0.
     pub(super) fn triangle(&mut self, extra: Value) {
         let positions = self.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
         let mut primitive = json!({ "attributes": { "POSITION": positions } });
@@ -102,7 +102,7 @@ fn corners(scene: &Scene) -> Vec<Vec3> {
     scene.world_triangles().flat_map(|t| t.positions).collect()
 }
 
-/// The facing that the winding gives.
+/// Unit normal that follows from the winding.
 fn facing(t: &[Vec3]) -> Vec3 {
     (t[1] - t[0]).cross(t[2] - t[0]).normalize()
 }
@@ -161,7 +161,7 @@ fn quantised_and_sparse_attributes_are_decoded() {
     let mut doc = Doc::new(json!([{ "mesh": 0, "scale": [2, 2, 2] }]));
     doc.json["extensionsUsed"] = json!(["KHR_mesh_quantization"]);
     doc.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
-    // Four bytes from one vertex to the next.
+    // The stride is four bytes.
     let bytes = [0i8, 0, 0, 0, 127, 0, 0, 0, 0, 127, -128, 0].map(|v| v as u8);
     let view = doc.view(&bytes, json!({ "byteStride": 4 }));
     let replaced = doc.view(&[2], json!({}));
@@ -356,7 +356,7 @@ fn materials_keep_what_shadows_need() {
     assert_eq!(scene.meshes[0].colors[0], Vec4::new(1.0, 0.0, 0.2, 1.0));
 }
 
-/// A node that an animation drives with `output` at times 1 and 3.
+/// Document whose node an animation drives with `output` at times 1 and 3.
 fn animated(path: &str, kind: &str, interpolation: &str, output: &[f32]) -> Doc {
     let mut doc = Doc::new(json!([{ "mesh": 0, "translation": [9, 9, 9] }]));
     doc.triangle(json!({}));
@@ -440,7 +440,7 @@ fn skins_follow_their_joints_and_not_their_node() {
         { "translation": [0, 2, 0] },
     ]));
     let joints = doc.accessor(&[0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 7, 0], 5121, "VEC4", 3, json!({}));
-    // The third vertex hangs from both, and from a joint that does not exist.
+    // The third vertex is influenced by both joints, and by one that does not exist.
     let weights = doc.floats("VEC4", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.25, 0.25, 0.5, 0.0]);
     doc.triangle(json!({ "attributes": { "JOINTS_0": joints, "WEIGHTS_0": weights } }));
     let inverse = [Mat4::IDENTITY, Mat4::from_translation(Vec3::new(-1.0, 0.0, 0.0))];

@@ -1,4 +1,4 @@
-//! The loader against good, odd and broken files.
+//! Tests of the loader with good, odd and broken files.
 
 mod bombs;
 mod broken;
@@ -13,7 +13,7 @@ use antumbra_testing::scenes_folder;
 
 use crate::{Scene, Setup};
 
-/// Runs `work` on a thread of its own; a panic or more than `limit` of time is reported as an error.
+/// Runs `work` on a thread of its own; a panic or a time beyond `limit` is reported as an error.
 fn guarded<T: Send + 'static>(limit: Duration, work: impl FnOnce() -> T + Send + 'static) -> Result<T, String> {
     let (sender, receiver) = std::sync::mpsc::channel();
     let thread = std::thread::spawn(move || {
@@ -33,7 +33,7 @@ fn guarded<T: Send + 'static>(limit: Duration, work: impl FnOnce() -> T + Send +
     }
 }
 
-/// Everything that other rooms rely on. Returns what is wrong.
+/// Checks everything that other modules rely on. Returns what is wrong.
 fn unsound(scene: &Scene) -> Option<String> {
     let all = |ok: bool, what: &str| if ok { None } else { Some(what.to_owned()) };
     for (k, mesh) in scene.meshes.iter().enumerate() {

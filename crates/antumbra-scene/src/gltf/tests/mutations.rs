@@ -1,7 +1,7 @@
-//! Good files with a few bytes changed or cut off: an error or a sound scene, never a panic or a hang.
+//! Good files with a few bytes changed or cut off give an error or a sound scene, never a panic or a hang.
 //!
-//! Deterministic, so that a failure can be repeated; `fuzz/` looks further. Limits are tight, so that what a changed
-//! count asks for stays small.
+//! The mutations are deterministic, so that a failure can be repeated; `fuzz/` searches further. Limits are tight, so that
+//! changed counts request little.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ use super::{guarded, scenes_folder, unsound};
 use crate::gltf::{Limits, Pose, load_bytes};
 use crate::{Setup, builtin, export_glb};
 
-/// Permuted congruential generator (O'Neill 2014, PCG-XSH-RR), so that a seed names a case for ever.
+/// Permuted congruential generator (O'Neill 2014, PCG-XSH-RR): a seed always names the same case.
 struct Random(u64);
 
 impl Random {
@@ -25,14 +25,14 @@ impl Random {
 
 /// One mutation of `bytes`: flips, overwritten digits and punctuation, cut ends, repeated pieces.
 fn mutate(bytes: &[u8], random: &mut Random) -> Vec<u8> {
-    /// What does most harm in JSON and in binary counts.
+    /// Bytes that do most harm in JSON and in binary counts.
     const SPITEFUL: &[u8] = b"0123456789-.eE\"{}[],:\x00\xff\x7f\x80";
     let mut out = bytes.to_vec();
     for _ in 0..=random.below(4) {
         if out.is_empty() {
             break;
         }
-        // The document is at the beginning and does more than the data after it.
+        // The document is at the beginning and matters more than the data after it.
         let reach = if random.below(3) > 0 { out.len().min(4096) } else { out.len() };
         let at = random.below(reach);
         match random.below(10) {
@@ -52,8 +52,7 @@ fn mutate(bytes: &[u8], random: &mut Random) -> Vec<u8> {
     out
 }
 
-/// A container whose chunk lengths are right again after the document was changed, so that more than the container is
-/// tested.
+/// Repairs the chunk lengths of a container whose document was changed, so that more than the container is tested.
 fn mended(glb: &[u8]) -> Option<Vec<u8>> {
     let start = glb.windows(4).position(|w| w == b"BIN\0")?.checked_sub(4)?;
     let (json, bin) = (glb.get(20..start)?, glb.get(start + 8..)?);
@@ -74,7 +73,7 @@ fn mended(glb: &[u8]) -> Option<Vec<u8>> {
 #[test]
 fn mutated_scenes_never_crash() {
     const ITERATIONS: usize = 6000;
-    /// A slow machine tests fewer rather than failing.
+    /// Time limit: a slow machine tests fewer mutations rather than failing.
     const TIME: Duration = Duration::from_secs(6);
     let mut seeds: Vec<(String, Vec<u8>)> = ["window", "occluders"]
         .iter()

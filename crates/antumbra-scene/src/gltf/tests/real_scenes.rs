@@ -1,11 +1,11 @@
-//! The test scenes against the figures in their README.
+//! Test scenes have the triangle counts, bounds and materials that their README lists.
 
 use glam::Vec3;
 
 use super::{scenes_folder, unsound};
 use crate::gltf::{Limits, Loaded, Pose, load_file};
 
-/// Files with vertices that no triangle uses: the README's box counts them, a scene's does not. The leaves of this one
+/// Files with vertices that no triangle uses: the README's bounds include them, a scene's do not. The leaves of this one
 /// have 129 168 vertices and indices that end at 65 535.
 const COUNTS_UNUSED_VERTICES: &[&str] = &["tree-oak-masked.glb"];
 
@@ -79,7 +79,7 @@ fn counts_and_bounds_are_those_of_the_readme() {
             |mode: fn(&crate::AlphaMode) -> bool| scene.meshes.iter().any(|m| mode(&scene.materials[m.material].alpha));
         check(used(|a| matches!(a, crate::AlphaMode::Mask { .. })) == row.mask, "mask".into());
         check(used(|a| matches!(a, crate::AlphaMode::Blend)) == row.blend, "blend".into());
-        // The README judges the whole file; here each mesh is judged alone.
+        // The README judges the whole file, but `closed` is a property of each mesh.
         if let ([mesh], [_]) = (&scene.meshes[..], &scene.instances[..]) {
             check(mesh.closed == row.closed, format!("closed: {}", mesh.closed));
         }
@@ -87,7 +87,7 @@ fn counts_and_bounds_are_those_of_the_readme() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Skins, nodes and morph targets: the scene at another time is what loading at that time gives, without its pictures.
+/// A scene at another time, without images, equals the scene loaded at that time: skins, nodes and morph targets.
 #[test]
 fn animated_scenes_are_had_at_other_times() {
     let Some(folder) = scenes_folder() else { return };

@@ -1,4 +1,4 @@
-//! What surfaces do to light, and which of them there are: transmission, volumes, WebP pictures, hidden nodes.
+//! Surfaces and their effect on light: transmission, volumes, WebP images, hidden nodes.
 
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
@@ -7,7 +7,7 @@ use super::features::Doc;
 use crate::translucency::tests::passes;
 use crate::{AlphaMode, Coverage, Occluder};
 
-/// A lossless picture of one row.
+/// Lossless image of one row.
 fn picture(format: image::ImageFormat, texels: &[[u8; 4]]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     let rgba = image::RgbaImage::from_raw(texels.len() as u32, 1, texels.as_flattened().to_vec()).unwrap();
@@ -15,7 +15,7 @@ fn picture(format: image::ImageFormat, texels: &[[u8; 4]]) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// A triangle with one material, with coordinates along u, and pictures of one row each, a texture a picture.
+/// Triangle with one material, texture coordinates along u, and one texture for each image of one row.
 fn textured(material: Value, pictures: &[&[[u8; 4]]]) -> Doc {
     let mut doc = Doc::new(json!([{ "mesh": 0 }]));
     let uv = doc.floats("VEC2", &[0.0, 0.5, 1.0, 0.5, 0.5, 0.5]);
@@ -125,7 +125,7 @@ fn volumes_absorb_over_their_thickness_in_the_world() {
     let mut doc = textured(absorbing(volume), &[]);
     doc.json["extensionsRequired"] = json!(["KHR_materials_volume"]);
     close(passes(&doc.load(), 0, 1), Vec3::new(1.0, 0.25, 0.0625));
-    // The node's scale is that of the thickness, and each scale has its own.
+    // The node's scale applies to the thickness, and each scale gets its own copy.
     doc.json["nodes"] = json!([{ "mesh": 0 }, { "mesh": 0, "scale": [2, 2, 2] }, { "mesh": 0, "scale": [2, 2, -2] }]);
     doc.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
     let scene = doc.load();
@@ -168,7 +168,7 @@ fn volumes_that_absorb_nothing_are_none() {
     );
 }
 
-/// A cut-out whose picture is WebP, and PNG where `fallback` is given.
+/// Alpha-tested triangle whose image is WebP, and PNG if `fallback` is given.
 fn webp(webp: &[u8], fallback: Option<&[[u8; 4]]>) -> Doc {
     let mut doc = textured(
         json!({ "alphaMode": "MASK", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }),
