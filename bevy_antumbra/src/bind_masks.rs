@@ -44,7 +44,7 @@ pub fn bind_masks(
             tile_px: maps.map_or(size_px, |maps| glam::UVec2::new(maps.width(), maps.height())),
             map_count: maps.map_or(0, wgpu::Texture::depth_or_array_layers),
             mask_count: if has_masks { layers.count } else { 0 },
-            most_layers: device.limits().max_texture_array_layers,
+            max_layers: device.limits().max_texture_array_layers,
         };
         let mut masks = match shadows.views.remove(&entity).filter(|masks| masks.shape.serves(&shape)) {
             Some(masks) => masks,
@@ -55,10 +55,10 @@ pub fn bind_masks(
             }
         };
         let shape = masks.shape;
-        if shape.map_count + shape.slot_count() * shape.tiles().element_product() > shape.most_layers {
+        if shape.map_count + shape.slot_count() * shape.tiles().element_product() > shape.max_layers {
             warnings.say(format!(
                 "the device has {} layers, too few for the masks of all lights beside Bevy's own maps: larger maps                  (DirectionalLightShadowMap) take fewer layers",
-                shape.most_layers
+                shape.max_layers
             ));
         }
         masks.maps = match (maps, masks.maps.take()) {

@@ -18,7 +18,7 @@ pub fn count(
     counts.lights = lights.lights.len();
     counts.casters = casters.as_ref().map_or(0, |casters| casters.set.len());
     if let (Some(casters), Some(shadows)) = (casters, shadows) {
-        counts.objects_made = shadows.gpu.objects_made().total();
+        counts.objects_created = shadows.gpu.objects_created().total();
         counts.memory_bytes = casters.set.memory_bytes() + shadows.memory_bytes();
     }
 }

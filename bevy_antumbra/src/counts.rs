@@ -18,7 +18,7 @@ pub struct Counts {
     pub casters: usize,
     /// Textures, buffers, bind groups and the like that the library has made since the start. A frame that only moves makes
     /// none.
-    pub objects_made: u64,
+    pub objects_created: u64,
     /// Bytes of GPU memory of casters and of lights' states; masks apart.
     pub memory_bytes: u64,
     /// Processor time of the render world's own work for shadows: casters brought up to date, frames prepared and recorded.

@@ -19,14 +19,14 @@ use crate::casters::CasterStore;
 use crate::convert::mat4;
 use crate::counts::ShadowCounts;
 use crate::lights::{DefaultSettings, LightLayers, MaskLayers, ShadowLight, ShadowLights};
-use crate::masks::{KeptGroup, MaskWriter, ScratchMask, ViewMasks};
+use crate::masks::{CachedGroup, MaskWriter, ScratchMask, ViewMasks};
 use crate::normals::{NormalDeriver, NormalSources, Normals};
 use crate::seen::{Seen, SeenGatherer};
 use crate::settings::SoftShadows;
 use crate::warnings::Warnings;
 
 /// Frames after which what was not used is dropped.
-const KEPT_FRAMES: u64 = 8;
+const RETAINED_FRAMES: u64 = 8;
 
 /// States of all lights in all views, and what their masks are written to.
 #[derive(Resource)]
@@ -229,7 +229,7 @@ impl Shadows {
         let receivers = view.receivers(picture, None);
         let outcome = split.receivers.record(&mut Recorder::new(encoder, None), &receivers);
         let pictures = outcome.map(|()| {
-            let of_split = split.receivers.pictures(&receivers);
+            let of_split = split.receivers.images(&receivers);
             let normals = |i: usize| of_split[i].normals.cloned();
             [0, 1].map(|i| Picture {
                 depth: of_split[i].depth.clone(),
@@ -250,7 +250,7 @@ impl Shadows {
 /// What a view of several samples a pixel is split by.
 struct Split {
     receivers: SplitReceivers,
-    depths: [KeptGroup; 2],
+    depths: [CachedGroup; 2],
 }
 
 impl Split {
@@ -356,7 +356,7 @@ pub fn draw_masks(
         shadows.gatherer.record(encoder, shadows.gpu.queue(), &mut seen, &depth, part, world_from_clip);
     }
     shadows.seen.insert(entity, seen);
-    let oldest = shadows.frame.saturating_sub(KEPT_FRAMES);
+    let oldest = shadows.frame.saturating_sub(RETAINED_FRAMES);
     shadows.states.retain(|_, state| state.seen >= oldest);
     shadows.scratch.retain(|(_, seen)| *seen >= oldest);
     let views = &shadows.views;

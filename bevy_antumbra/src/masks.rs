@@ -37,7 +37,7 @@ pub struct Shape {
     pub map_count: u32,
     /// Of each picture.
     pub mask_count: u32,
-    pub most_layers: u32,
+    pub max_layers: u32,
 }
 
 /// Bevy's own maps.
@@ -58,7 +58,7 @@ impl Shape {
 
     /// As many as there can be; masks that then have no room are as if there were none.
     fn layer_count(&self) -> u32 {
-        (self.map_count + self.slot_count() * self.tiles().element_product()).min(self.most_layers)
+        (self.map_count + self.slot_count() * self.tiles().element_product()).min(self.max_layers)
     }
 
     /// Whether there is room for another's masks.
@@ -132,7 +132,7 @@ pub struct ScratchMask {
 }
 
 /// A group that is kept as long as it is of the same view.
-pub type KeptGroup = Option<(wgpu::TextureView, wgpu::BindGroup)>;
+pub type CachedGroup = Option<(wgpu::TextureView, wgpu::BindGroup)>;
 
 /// Draws masks into layers.
 pub struct MaskWriter {
@@ -228,7 +228,7 @@ impl MaskWriter {
         masks: &ViewMasks,
         picture: u32,
         from: &wgpu::TextureView,
-        kept: &mut KeptGroup,
+        kept: &mut CachedGroup,
     ) {
         let of_from = kept.take().filter(|(of, _)| of == from);
         let (_, group) = kept.insert(of_from.unwrap_or_else(|| (from.clone(), self.group(from))));
@@ -336,7 +336,7 @@ mod tests {
         tile_px: glam::UVec2::splat(1024),
         map_count: 5,
         mask_count: 2,
-        most_layers: 256,
+        max_layers: 256,
     };
 
     #[test]
@@ -351,7 +351,7 @@ mod tests {
 
     #[test]
     fn what_has_no_room_is_left_out() {
-        let few = Shape { most_layers: 10, ..SHAPE };
+        let few = Shape { max_layers: 10, ..SHAPE };
         assert_eq!(few.layer_count(), 10);
         assert_eq!(few.tiles_of(0).count() + few.tiles_of(1).count(), 5);
         let four_samples = Shape { samples: 4, ..SHAPE };

@@ -59,19 +59,19 @@ pub enum BevyMaps {
 pub struct ShadowDenoise {
     /// Frames that a pixel is the mean of at most: 1 to 64, 16 by default. More: less noise, and shadows that lag by some
     /// frames where lights or casters move slowly.
-    pub most_frames: u32,
+    pub max_frames: u32,
 }
 
 impl Default for ShadowDenoise {
     fn default() -> Self {
-        Self { most_frames: Denoise::default().most_frames }
+        Self { max_frames: Denoise::default().max_frames }
     }
 }
 
 impl ShadowDenoise {
     /// For the library, with what a view knows of motion.
     pub(crate) fn of_library(self, motion: Option<wgpu::TextureView>) -> Denoise {
-        Denoise { most_frames: self.most_frames, motion }
+        Denoise { max_frames: self.max_frames, motion }
     }
 }
 
@@ -354,8 +354,8 @@ mod tests {
         let edit: &mut dyn PartialReflect = &mut settings;
         let edit = edit.reflect_mut().as_struct().expect("a struct");
         edit.field_mut("quality").expect("a quality").apply(&ShadowQuality::Paper);
-        edit.field_mut("denoise").expect("an option").apply(&Some(ShadowDenoise { most_frames: 4 }));
-        let denoise = ShadowDenoise { most_frames: 4 };
+        edit.field_mut("denoise").expect("an option").apply(&Some(ShadowDenoise { max_frames: 4 }));
+        let denoise = ShadowDenoise { max_frames: 4 };
         assert_eq!(settings, SoftShadows::default().at(ShadowQuality::Paper).denoised(denoise));
     }
 

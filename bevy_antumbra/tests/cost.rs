@@ -53,11 +53,11 @@ fn processor_time_of_500_casters_under_8_lights() {
         headless.run(1);
         let counts = headless.app.world().resource::<ShadowCounts>().get();
         if frame == 14 {
-            made = counts.objects_made;
+            made = counts.objects_created;
         }
         if frame > 14 {
             times.push(counts.processor_time);
-            assert_eq!((counts.lights, counts.casters, counts.objects_made), (8, 501, made));
+            assert_eq!((counts.lights, counts.casters, counts.objects_created), (8, 501, made));
         }
     }
     println!(

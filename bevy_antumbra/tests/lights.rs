@@ -149,7 +149,7 @@ fn frames_that_only_move_make_no_object() {
     assert_eq!((before.lights, before.casters), (4, meshes.len()));
     (12..40).for_each(|frame| shake(&mut headless, frame));
     let after = counts(&headless);
-    assert_eq!(after.objects_made, before.objects_made, "objects were made while all only moved");
+    assert_eq!(after.objects_created, before.objects_created, "objects were made while all only moved");
     assert_eq!(after.memory_bytes, before.memory_bytes);
 }
 
@@ -413,10 +413,10 @@ fn come_and_go(frames: u32, has_plugin: bool) {
     assert!(rest.memory_bytes < most / 8, "{} KiB are held when all is gone", rest.memory_bytes / 1024);
     // All techniques have come in the first half; from then on the most that lights and casters hold of the GPU's memory is
     // not to grow any more.
-    let most_mib = |held: &[Held]| held.iter().filter_map(|held| held.gpu_mib).reduce(f64::max);
+    let max_mib = |held: &[Held]| held.iter().filter_map(|held| held.gpu_mib).reduce(f64::max);
     let (first, second) = held.split_at(held.len() / 2);
     if frames >= 1000
-        && let (Some(first), Some(second)) = (most_mib(first), most_mib(second))
+        && let (Some(first), Some(second)) = (max_mib(first), max_mib(second))
     {
         assert!(second < 1.25 * first + 64.0, "the GPU's memory grew from {first:.0} to {second:.0} MiB at most");
     }

@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for frame in 0..FRAMES {
         renderer.draw(frame as f32 / 5.0)?;
         device.poll(wgpu::PollType::wait_indefinitely())?;
-        println!("frame {frame}: {} objects made so far", renderer.shadows.gpu().objects_made().total());
+        println!("frame {frame}: {} objects made so far", renderer.shadows.gpu().objects_created().total());
     }
     let pixels = read_rgba8(&device, &queue, renderer.targets.color.texture())?;
     image::save_buffer("many_lights.png", &pixels, 2 * VIEW_SIZE.x, VIEW_SIZE.y, image::ColorType::Rgba8)?;

@@ -328,7 +328,7 @@ fn what_moves_is_measured_and_shown() {
 }
 
 #[test]
-fn a_preset_is_a_paper_s_comparison_as_printed() {
+fn a_preset_is_a_paper_s_comparison_as_published() {
     let dir = tempfile::tempdir().unwrap();
     let told = run(dir.path(), &["techniques", "lvsm"]);
     let told = String::from_utf8_lossy(&told.stdout).into_owned();

@@ -94,7 +94,7 @@ impl CompareRequest<'_> {
         json!({
             "scene": self.scene_arguments,
             "triangles": self.scene.triangle_count(),
-            "setup": self.setup.counted_from(-self.anchor).to_toml(),
+            "setup": self.setup.relative_to(-self.anchor).to_toml(),
             "light": self.setup.lights[self.light].name,
             "truth": format!("{:?}", self.truth).to_lowercase(),
             "samples": self.samples,
@@ -232,6 +232,6 @@ fn scene_info(request: &CompareRequest<'_>, view: &View<'_>) -> SceneInfo {
         name: request.scene_name(),
         summary: summary.unwrap_or_default().to_owned(),
         triangles: view.triangle_count() as u64,
-        setup_toml: request.setup.counted_from(-request.anchor).to_toml(),
+        setup_toml: request.setup.relative_to(-request.anchor).to_toml(),
     }
 }

@@ -66,13 +66,13 @@ impl fmt::Display for FrameCount {
 const ALIKE: f64 = 1.5;
 
 /// Maximum number of warm-up frames beyond the requested ones and those in which a clock rises. On some machines frame times never settle.
-const MOST_WARM_UP: u32 = 16;
+const MAX_WARM_UP: u32 = 16;
 
 /// Multiple of the clock's rise time after which frames count even if they create resources.
 const ENDLESS: f64 = 20.0;
 
 /// Maximum number of timed frames, unless more are requested.
-const MOST_TIMED: u32 = 200;
+const MAX_TIMED: u32 = 200;
 
 /// Returns how long an adapter works before its times count. An idle graphics card runs at a fraction of its clock, and frames of a
 /// millisecond end long before the clock rises: on an NVIDIA H200, five of them took four times as long after a pause as without one.
@@ -132,7 +132,7 @@ impl Stopwatch {
         let rise_ms = ms_of(self.clock_rise).min(at_most_ms);
         // Ends even if a technique creates a resource in every frame.
         let is_roused = self.worked_ms >= rise_ms || self.warming_ms >= ENDLESS * rise_ms;
-        let is_last_chance = self.seen > self.timing.warm_up + MOST_WARM_UP && is_roused;
+        let is_last_chance = self.seen > self.timing.warm_up + MAX_WARM_UP && is_roused;
         if self.is_warm && has_made && !is_last_chance {
             // The frames timed so far were not representative.
             (self.is_warm, self.timed_ms, self.worked_ms) = (false, 0.0, 0.0);
@@ -163,7 +163,7 @@ impl Stopwatch {
         let ms = |duration: Duration| duration.as_secs_f64() * 1e3;
         let is_over = self.timed_ms >= ms(self.timing.at_most);
         let is_enough =
-            timed >= self.timing.frames && (self.timed_ms >= ms(self.timing.at_least) || timed >= MOST_TIMED);
+            timed >= self.timing.frames && (self.timed_ms >= ms(self.timing.at_least) || timed >= MAX_TIMED);
         self.is_warm && (is_enough || is_over)
     }
 

@@ -49,7 +49,7 @@ impl LightTruth {
     /// Stops judging pixels at whose centre depth buffer and ray show different surfaces, or different faces of one, and returns their
     /// number: techniques see one surface, and the truth is of the other. An edge is at the pixel's centre then, within the rasteriser's
     /// rounding of vertices. `seen` has the drawn surface of each pixel.
-    pub fn judge_what_is_seen(&mut self, seen: &[Option<SurfacePoint>], eye: Vec3) -> usize {
+    pub fn unjudge_mismatched_surfaces(&mut self, seen: &[Option<SurfacePoint>], eye: Vec3) -> usize {
         let mut others = 0;
         for ((judged, hit), seen) in self.judged.iter_mut().zip(self.first_hits.iter()).zip(seen) {
             let is_same = match (hit, seen) {
@@ -199,7 +199,7 @@ mod tests {
             rays: 0,
         };
         let seen = [&seen[..], &[None, at(1.0, Vec3::Y)]].concat();
-        assert_eq!(truth.judge_what_is_seen(&seen, Vec3::new(0.0, 5.0, 0.0)), 3);
+        assert_eq!(truth.unjudge_mismatched_surfaces(&seen, Vec3::new(0.0, 5.0, 0.0)), 3);
         assert_eq!(truth.judged, [false, false, false, true, true, false]);
     }
 }

@@ -58,7 +58,7 @@ struct Shifted {
 
 /// Maximum number of pixels for which shifted images are kept: with both layers about 72 bytes per pixel and shift,
 /// 600 MB. Larger ones are rendered again.
-const MOST_KEPT_PX: usize = 1 << 20;
+const MAX_KEPT_PX: usize = 1 << 20;
 
 impl<'a> View<'a> {
     /// Uploads the scene and renders what the setup's camera sees.
@@ -170,7 +170,7 @@ impl<'a> View<'a> {
             }
         };
         let pixels = pixel_count(self.images.size_px);
-        if pixels <= MOST_KEPT_PX && pictures.kept.get().is_none() {
+        if pixels <= MAX_KEPT_PX && pictures.kept.get().is_none() {
             let made = OFFSETS_PX.map(|offset_px| self.shifted(pictures, offset_px));
             let made = made.into_iter().collect::<Result<Vec<_>, _>>()?;
             pictures.kept.get_or_init(|| made);

@@ -281,18 +281,18 @@ fn steady_frames_make_nothing() {
         let mut street = Street::new(&lab, &gpu, size);
         let mut shadows = shadows(&gpu, kind, &small, street.lights.len());
         let masks: Vec<Mask> = street.lights.iter().map(|_| Mask::new(&lab.device, size)).collect();
-        let mut counts = gpu.objects_made();
+        let mut counts = gpu.objects_created();
         let mut held = Vec::new();
         for i in 0..10 {
             frame(&lab, &mut street, &mut shadows, &masks, i);
             if i == 5 {
-                counts = gpu.objects_made();
+                counts = gpu.objects_created();
             }
             if i >= 5 {
                 held.push(HELD_BYTES.load(Ordering::Relaxed));
             }
         }
-        assert_eq!(gpu.objects_made(), counts, "{kind}");
+        assert_eq!(gpu.objects_created(), counts, "{kind}");
         // Hash maps may grow occasionally, but not in every frame.
         let grown = held[held.len() - 1] - held[0];
         assert!(grown < 64 << 10, "{kind}: the heap grew by {grown} bytes over {} frames: {held:?}", held.len() - 1);

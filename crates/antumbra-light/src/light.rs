@@ -137,12 +137,12 @@ impl Light {
 
     /// Default up hint: +Y, or +Z if the axis is within 8 degrees of vertical.
     pub fn default_up(axis: Vec3) -> Vec3 {
-        Self::up_beside(axis, Vec3::Y)
+        Self::valid_up(axis, Vec3::Y)
     }
 
     /// Up hint that is valid for this axis: `up`, or +Z if the axis is within 8 degrees of `up`, or +Y if it is within 8 degrees of
     /// +Z, too.
-    pub fn up_beside(axis: Vec3, up: Vec3) -> Vec3 {
+    pub fn valid_up(axis: Vec3, up: Vec3) -> Vec3 {
         let is_beside = |hint: &Vec3| axis.cross(*hint).length() > 8f32.to_radians().sin() * hint.length();
         if up == Vec3::ZERO { up } else { [up, Vec3::Z].into_iter().find(is_beside).unwrap_or(Vec3::Y) }
     }
@@ -172,7 +172,7 @@ impl Light {
     }
 
     /// Returns the light with positions relative to `anchor`.
-    pub fn counted_from(&self, anchor: Vec3) -> Self {
+    pub fn relative_to(&self, anchor: Vec3) -> Self {
         let mut light = Self { center: self.center - anchor, ..self.clone() };
         if let LightShape::Points { positions_m } = &mut light.shape {
             positions_m.iter_mut().for_each(|position| *position -= anchor);
@@ -198,7 +198,7 @@ impl Light {
     }
 
     /// Whether the light shines in all directions: a shape with no front, without frustum or cone.
-    pub fn shines_all_around(&self) -> bool {
+    pub fn is_omnidirectional(&self) -> bool {
         self.fov_rad.is_none()
             && self.cone.is_none()
             && match self.shape {
@@ -208,7 +208,7 @@ impl Light {
     }
 
     /// Tangent of the angle from the axis, along right and up, beyond which the light does not reach; `None` if unlimited.
-    pub fn reach_tangent(&self) -> Option<f32> {
+    pub fn max_angle_tangent(&self) -> Option<f32> {
         let frustum = self.fov_rad.map(|fov| (0.5 * fov).tan());
         let cone = self.cone.map(|cone| cone.outer_rad.tan());
         frustum.into_iter().chain(cone).reduce(f32::min)
@@ -232,7 +232,7 @@ impl Light {
                     && from_center.dot(frame.right).abs() <= half_width
                     && from_center.dot(frame.up).abs() <= half_width
             }
-            None => depth > 0.0 || self.shines_all_around(),
+            None => depth > 0.0 || self.is_omnidirectional(),
         }
     }
 }
@@ -271,8 +271,8 @@ mod tests {
         let mut light = Light::new(LightShape::Sphere { radius_m: 0.1 }, Vec3::new(0.0, 1.0, 0.0), Vec3::ZERO);
         light.cone = Some(Cone { inner_rad: 20f32.to_radians(), outer_rad: FRAC_PI_4 });
         let frame = light.frame();
-        assert!(!light.shines_all_around());
-        assert!((light.reach_tangent().unwrap() - 1.0).abs() < 1e-6);
+        assert!(!light.is_omnidirectional());
+        assert!((light.max_angle_tangent().unwrap() - 1.0).abs() < 1e-6);
         assert!(light.reaches(&frame, Vec3::new(0.99, 0.0, 0.0)) && !light.reaches(&frame, Vec3::new(1.01, 0.0, 0.0)));
         assert!(!light.reaches(&frame, Vec3::new(0.8, 0.0, 0.8)), "round, not square");
         assert!(!light.reaches(&frame, Vec3::new(0.0, 2.0, 0.0)));
@@ -286,10 +286,10 @@ mod tests {
 
     #[test]
     fn an_up_along_the_axis_is_replaced() {
-        assert_eq!(Light::up_beside(Vec3::NEG_Y, Vec3::Y), Vec3::Z);
-        assert_eq!(Light::up_beside(Vec3::Z, Vec3::NEG_Z), Vec3::Y);
-        assert_eq!(Light::up_beside(Vec3::NEG_Y, Vec3::X), Vec3::X);
+        assert_eq!(Light::valid_up(Vec3::NEG_Y, Vec3::Y), Vec3::Z);
+        assert_eq!(Light::valid_up(Vec3::Z, Vec3::NEG_Z), Vec3::Y);
+        assert_eq!(Light::valid_up(Vec3::NEG_Y, Vec3::X), Vec3::X);
         let nine_degrees_off = Vec3::new(9f32.to_radians().sin(), -9f32.to_radians().cos(), 0.0);
-        assert_eq!(Light::up_beside(nine_degrees_off, Vec3::Y), Vec3::Y);
+        assert_eq!(Light::valid_up(nine_degrees_off, Vec3::Y), Vec3::Y);
     }
 }

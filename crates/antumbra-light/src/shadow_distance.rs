@@ -38,8 +38,8 @@ impl ShadowDistance {
     /// Start and length of the fade, metres. The length is never 0, so that it can be divided by.
     pub fn fade_span_m(&self) -> [f32; 2] {
         /// Minimum length, as a fraction of the distance: less than a pixel.
-        const LEAST_FADE: f32 = 1e-6;
-        [self.end_m - self.fade_m, self.fade_m.max(LEAST_FADE * self.end_m)]
+        const MIN_FADE: f32 = 1e-6;
+        [self.end_m - self.fade_m, self.fade_m.max(MIN_FADE * self.end_m)]
     }
 }
 

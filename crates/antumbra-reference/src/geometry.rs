@@ -32,7 +32,7 @@ pub(crate) struct Geometry {
 }
 
 /// Largest number of triangles: far below the 31 bits of a block's index (see `tree.rs`).
-const MOST_TRIANGLES: usize = 1 << 30;
+const MAX_TRIANGLES: usize = 1 << 30;
 
 impl Geometry {
     pub(crate) fn new(scene: &Scene) -> Result<Self, ReferenceError> {
@@ -94,8 +94,8 @@ fn check(scene: &Scene) -> Result<(), ReferenceError> {
         within("texel", (image.width as usize * image.height as usize).saturating_sub(1), image.rgba8.len())?;
     }
     let count = scene.triangle_count();
-    if count > MOST_TRIANGLES {
-        return Err(ReferenceError::TooManyTriangles { scene: scene.name.clone(), count, most: MOST_TRIANGLES });
+    if count > MAX_TRIANGLES {
+        return Err(ReferenceError::TooManyTriangles { scene: scene.name.clone(), count, most: MAX_TRIANGLES });
     }
     Ok(())
 }

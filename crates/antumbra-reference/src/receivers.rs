@@ -25,7 +25,7 @@ pub struct ReceiverPoint {
     /// Unit geometric normal in world space, turned to the side that is seen.
     pub normal: Vec3,
     /// Ray offset: distance along the normal at which shadow rays start, metres.
-    pub hair_m: f32,
+    pub ray_offset_m: f32,
     /// Index into the scene's instances; `u32::MAX` if the point is not a hit.
     pub instance: u32,
     /// Triangle index within the instance's mesh; `u32::MAX` if the point is not a hit.
@@ -33,26 +33,26 @@ pub struct ReceiverPoint {
 }
 
 /// Ray offset over the distance from the world's origin: 2⁻²¹; see the derivation above.
-const HAIR: f32 = 1.0 / (1 << 21) as f32;
+const RAY_OFFSET: f32 = 1.0 / (1 << 21) as f32;
 /// Part of the ray offset over the largest corner: 2⁻⁴⁶, a few roundings of double precision's 2⁻⁵³.
-const CORNER_HAIR: f32 = 1.0 / (1u64 << 46) as f32;
+const CORNER_RAY_OFFSET: f32 = 1.0 / (1u64 << 46) as f32;
 
 impl ReceiverPoint {
     /// Creates a point whose position is exact to single precision. A less certain position, of a depth buffer for example,
-    /// needs a larger [`hair_m`](Self::hair_m): raise it to the position's error.
+    /// needs a larger [`ray_offset_m`](Self::ray_offset_m): raise it to the position's error.
     pub fn new(position: Vec3, normal: Vec3) -> Self {
-        Self { position, normal, hair_m: HAIR * position.length(), instance: u32::MAX, triangle: u32::MAX }
+        Self { position, normal, ray_offset_m: RAY_OFFSET * position.length(), instance: u32::MAX, triangle: u32::MAX }
     }
 
     /// [`Self::new`] for a point on a triangle whose corners lie up to `largest_corner_m` from the world's origin.
     pub(crate) fn on_triangle(position: Vec3, normal: Vec3, largest_corner_m: f32) -> Self {
         let point = Self::new(position, normal);
-        Self { hair_m: point.hair_m + CORNER_HAIR * largest_corner_m, ..point }
+        Self { ray_offset_m: point.ray_offset_m + CORNER_RAY_OFFSET * largest_corner_m, ..point }
     }
 
     /// Start of shadow rays: the position plus the ray offset.
     pub fn origin(&self) -> Vec3 {
-        self.position + self.normal * self.hair_m
+        self.position + self.normal * self.ray_offset_m
     }
 }
 

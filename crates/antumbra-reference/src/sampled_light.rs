@@ -21,7 +21,7 @@ pub(crate) const TILE: usize = 64;
 /// Number of tiles per bundle, whose points share a walk through the tree.
 pub(crate) const BUNDLE: usize = 16;
 /// Largest number of light points per pixel, for reasons of memory.
-const MOST_SAMPLES: u32 = 1 << 20;
+const MAX_SAMPLES: u32 = 1 << 20;
 /// Number of points of all patterns together: 64 patterns of 1024, a MiB, which stays in a core's L2 cache.
 const PATTERN_POINTS: u32 = 1 << 16;
 /// Smallest and largest number of patterns, whatever the number of points.
@@ -91,8 +91,8 @@ impl SampledLight {
     /// The light is invalid, or the number of samples is zero or beyond 2²⁰.
     pub fn new(light: &Light, options: &VisibilityOptions) -> Result<Self, ReferenceError> {
         light.validate()?;
-        if !(1..=MOST_SAMPLES).contains(&options.samples) {
-            return Err(ReferenceError::Samples { samples: options.samples, most: MOST_SAMPLES });
+        if !(1..=MAX_SAMPLES).contains(&options.samples) {
+            return Err(ReferenceError::Samples { samples: options.samples, most: MAX_SAMPLES });
         }
         let listed = match &light.shape {
             LightShape::Points { positions_m } => Some(positions_m.len() as u32),

@@ -17,17 +17,17 @@ impl Camera {
     }
 
     /// Returns the camera in coordinates relative to `anchor`.
-    pub fn counted_from(self, anchor: Vec3) -> Self {
+    pub fn relative_to(self, anchor: Vec3) -> Self {
         Self { eye: self.eye - anchor, target: self.target - anchor, ..self }
     }
 }
 
 impl Setup {
     /// Returns the setup in coordinates relative to `anchor`.
-    pub fn counted_from(&self, anchor: Vec3) -> Self {
+    pub fn relative_to(&self, anchor: Vec3) -> Self {
         Self {
-            camera: self.camera.counted_from(anchor),
-            lights: self.lights.iter().map(|light| light.counted_from(anchor)).collect(),
+            camera: self.camera.relative_to(anchor),
+            lights: self.lights.iter().map(|light| light.relative_to(anchor)).collect(),
         }
     }
 }
@@ -52,8 +52,8 @@ impl Scene {
             instance.world_from_object =
                 (moved(-anchor) * world_from_object * moved(mesh_anchors[instance.mesh])).as_mat4();
         }
-        self.cameras.iter_mut().for_each(|camera| *camera = camera.counted_from(anchor));
-        self.lights.iter_mut().for_each(|light| *light = light.counted_from(anchor));
+        self.cameras.iter_mut().for_each(|camera| *camera = camera.relative_to(anchor));
+        self.lights.iter_mut().for_each(|light| *light = light.relative_to(anchor));
     }
 }
 
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(setup.camera.anchor(), Vec3::ZERO);
         scene.count_from(setup.camera.anchor());
         assert_eq!(corners(&scene), before);
-        assert_eq!(setup.counted_from(Vec3::ZERO), setup);
+        assert_eq!(setup.relative_to(Vec3::ZERO), setup);
     }
 
     /// A far scene, whether its vertices or its instances are far away, equals the scene at the origin within the precision
@@ -107,7 +107,7 @@ mod tests {
         for instance in &mut in_instances.instances {
             instance.world_from_object.w_axis += AWAY.extend(0.0);
         }
-        let far = setup.counted_from(-AWAY);
+        let far = setup.relative_to(-AWAY);
         let anchor = far.camera.anchor();
         assert!(anchor.distance(AWAY) < NEAR_M, "{anchor}");
         for mut moved in [in_corners, in_instances] {
@@ -119,7 +119,7 @@ mod tests {
             let largest = moved.meshes.iter().flat_map(|mesh| &mesh.positions).map(|p| p.abs().max_element());
             assert!(largest.fold(0.0, f32::max) < NEAR_M, "corners stay near their mesh's origin");
         }
-        let near = far.counted_from(anchor);
+        let near = far.relative_to(anchor);
         assert!((near.camera.eye + anchor - AWAY).distance(setup.camera.eye) < 0.001);
         assert!((near.lights[0].center + anchor - AWAY).distance(setup.lights[0].center) < 0.001);
     }
@@ -128,7 +128,7 @@ mod tests {
     fn points_of_a_light_move_with_it() {
         let mut light = Setup::for_scene(&load("builtin:overlap", &LoadOptions::default()).unwrap()).lights.remove(0);
         light.shape = LightShape::Points { positions_m: vec![AWAY, AWAY + Vec3::X] };
-        let LightShape::Points { positions_m } = light.counted_from(AWAY).shape else { unreachable!() };
+        let LightShape::Points { positions_m } = light.relative_to(AWAY).shape else { unreachable!() };
         assert_eq!(positions_m, [Vec3::ZERO, Vec3::X]);
     }
 }

@@ -37,7 +37,7 @@ impl Ground {
         match self {
             Self::Yes => true,
             Self::No => false,
-            Self::Auto => is_framed && scene.stands_on_nothing(),
+            Self::Auto => is_framed && scene.lacks_ground(),
         }
     }
 
@@ -50,7 +50,7 @@ impl Ground {
 impl Scene {
     /// Whether the scene has no ground of its own, as a single object: seen from above, hardly any of its outline is as low as its
     /// lowest parts. A slope without a level foot also counts as such an object.
-    pub fn stands_on_nothing(&self) -> bool {
+    pub fn lacks_ground(&self) -> bool {
         let bounds = self.bounds();
         let extent = bounds.max - bounds.min;
         if bounds.is_empty() || extent.y < FLAT * bounds.diagonal() {
@@ -72,7 +72,7 @@ impl Scene {
     /// Puts a square under the scene, at the lowest point of its bounding box, four of the box's diagonals wide. It is a mesh like
     /// others, named `ground`. [`Scene::ground`] identifies it, because it occludes nothing where light comes from above. A scene
     /// without triangles stays unchanged.
-    pub fn stand_on_ground(&mut self) {
+    pub fn add_ground(&mut self) {
         let bounds = self.bounds();
         if bounds.is_empty() {
             return;
@@ -132,7 +132,7 @@ mod tests {
     fn the_ground_lies_under_all_and_faces_up() {
         let mut scene = load("builtin:knot?triangles=1000", &LoadOptions::default()).unwrap();
         let (before, triangles) = (scene.bounds(), scene.triangle_count());
-        scene.stand_on_ground();
+        scene.add_ground();
         let after = scene.bounds();
         assert_eq!((after.min.y, after.max.y, scene.triangle_count()), (before.min.y, before.max.y, triangles + 2));
         assert!((after.max.x - after.min.x - 4.0 * before.diagonal()).abs() < 1e-3);
@@ -143,7 +143,7 @@ mod tests {
             assert!((b - a).cross(c - a).normalize().y > 0.999);
         }
         let mut nothing = Scene::default();
-        nothing.stand_on_ground();
+        nothing.add_ground();
         assert!(nothing.meshes.is_empty());
     }
 
@@ -152,13 +152,13 @@ mod tests {
     fn objects_stand_on_nothing_until_they_are_put_on_something() {
         for name in ["overlap", "columns", "tree", "street", "bench-under-tree", "town"] {
             let scene = load(&format!("builtin:{name}"), &LoadOptions::default()).unwrap();
-            assert!(!scene.stands_on_nothing(), "{name}");
+            assert!(!scene.lacks_ground(), "{name}");
         }
         let mut knot = load("builtin:knot?triangles=1000", &LoadOptions::default()).unwrap();
         knot.instances.retain(|instance| knot.meshes[instance.mesh].name == "knot");
-        assert!(knot.stands_on_nothing());
-        knot.stand_on_ground();
-        assert!(!knot.stands_on_nothing());
-        assert!(!Scene::default().stands_on_nothing());
+        assert!(knot.lacks_ground());
+        knot.add_ground();
+        assert!(!knot.lacks_ground());
+        assert!(!Scene::default().lacks_ground());
     }
 }

@@ -22,7 +22,7 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Lights of the asset.
     pub lights: Vec<Light>,
-    /// Index into `instances` of the ground that [`Scene::stand_on_ground`] added; `None` without one.
+    /// Index into `instances` of the ground that [`Scene::add_ground`] added; `None` without one.
     pub ground: Option<usize>,
     /// Loader warnings for the user, one line for each thing that was left out or repaired.
     pub warnings: Vec<String>,

@@ -28,7 +28,7 @@ impl Scene {
             format!("is {} across", length(across_m))
         } else if height_m > HIGHEST_ROOM_M && is_room(self) {
             format!("is a room of {} in height", length(height_m))
-        } else if across_m > LARGEST_OBJECT_M && height_m > HIGHEST_OBJECT_M && self.stands_on_nothing() {
+        } else if across_m > LARGEST_OBJECT_M && height_m > HIGHEST_OBJECT_M && self.lacks_ground() {
             format!("is an object of {} across", length(across_m))
         } else {
             return None;

@@ -121,7 +121,7 @@ impl App {
         let info = render_state.adapter.get_info();
         Self {
             adapter: format!("{} ({})", info.name, info.backend),
-            renderer: Renderer::new(&gpu, Compile::Aside(wake.clone())),
+            renderer: Renderer::new(&gpu, Compile::Background(wake.clone())),
             render_state,
             state: State::new(TechniqueKind::Smrt, TechniqueKind::Hard),
             history: History::default(),

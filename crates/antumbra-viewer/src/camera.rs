@@ -7,7 +7,7 @@ use antumbra_scene::Camera;
 use glam::{Quat, Vec2, Vec3};
 
 /// Minimum angle between view direction and up hint, radians: the horizon is still well defined there.
-const LEAST_POLE_ANGLE_RAD: f32 = 0.02;
+const MIN_POLE_ANGLE_RAD: f32 = 0.02;
 
 /// Unit vectors of the image's axes in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ fn turned(camera: &Camera, yaw_rad: f32, pitch_rad: f32) -> Vec3 {
     let Axes { forward, right, .. } = axes(camera);
     let pole = camera.up.normalize();
     let angle_from_pole = forward.angle_between(pole);
-    let room = LEAST_POLE_ANGLE_RAD..=std::f32::consts::PI - LEAST_POLE_ANGLE_RAD;
+    let room = MIN_POLE_ANGLE_RAD..=std::f32::consts::PI - MIN_POLE_ANGLE_RAD;
     let pitch_rad = angle_from_pole - (angle_from_pole - pitch_rad).clamp(*room.start(), *room.end());
     (Quat::from_axis_angle(pole, yaw_rad) * Quat::from_axis_angle(right, pitch_rad) * forward).normalize()
 }
@@ -63,8 +63,8 @@ pub fn pan(camera: &mut Camera, by_heights: Vec2) {
 pub fn zoom(camera: &mut Camera, factor: f32) {
     let away = camera.eye - camera.target;
     // The near plane would cut off a nearer target; single precision would lose a farther one.
-    let least_m = 4.0 * camera.near_m;
-    let distance = (away.length() * factor).clamp(least_m, 1e6 * least_m);
+    let min_m = 4.0 * camera.near_m;
+    let distance = (away.length() * factor).clamp(min_m, 1e6 * min_m);
     camera.eye = camera.target + distance * away.normalize();
 }
 

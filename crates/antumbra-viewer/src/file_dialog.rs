@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::pin::Pin;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use crate::aside::Wake;
+use crate::background::Wake;
 
 /// A file chosen in the dialog.
 #[derive(Debug)]

@@ -13,7 +13,7 @@
 #![forbid(unsafe_code)]
 
 mod app;
-mod aside;
+mod background;
 pub mod camera;
 mod device;
 #[cfg(target_arch = "wasm32")]

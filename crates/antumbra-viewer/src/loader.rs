@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use antumbra_scene::{Animations, Framing, Ground, LoadOptions, Scene, Setup, load_animated};
 use glam::Vec3;
 
-use crate::aside::{Wake, aside};
+use crate::background::{Wake, run_in_background};
 use crate::message::one_line;
 
 /// A loaded scene with its setup.
@@ -76,7 +76,7 @@ impl Loader {
     /// Loads a scene.
     pub fn load(&mut self, wanted: Wanted, wake: Wake) {
         let sender = self.expect(&wanted.spec);
-        aside(move || {
+        run_in_background(move || {
             // The receiver is gone if another scene was requested meanwhile.
             let _ = sender.send(load_now(wanted).map(|loaded| Opened::Scene(Box::new(loaded))));
             wake();
@@ -100,7 +100,7 @@ impl Loader {
     #[cfg(target_arch = "wasm32")]
     pub fn load_bytes(&mut self, name: String, bytes: Vec<u8>, wake: Wake) {
         let sender = self.expect(&name);
-        aside(move || {
+        run_in_background(move || {
             // The receiver is gone if another scene was requested meanwhile.
             let _ = sender.send(open_bytes(name, &bytes));
             wake();
@@ -152,7 +152,7 @@ fn finished(
         notes.push(Ground::told(&scene));
     }
     if has_ground {
-        scene.stand_on_ground();
+        scene.add_ground();
     }
     let anchor = setup.as_ref().map_or(&assumed.setup, |(_, setup)| setup).camera.anchor();
     scene.count_from(anchor);
@@ -160,9 +160,9 @@ fn finished(
         spec: antumbra_scene::builtin::declared_name(&wanted.spec),
         scene: Arc::new(scene),
         anchor,
-        assumed: assumed.setup.counted_from(anchor),
+        assumed: assumed.setup.relative_to(anchor),
         framing: assumed.framing.filter(|_| setup.is_none()),
-        setup: setup.map(|(path, setup)| (path, setup.counted_from(anchor))),
+        setup: setup.map(|(path, setup)| (path, setup.relative_to(anchor))),
         animations: animations.map(Arc::new),
         time_s: wanted.time_s,
         has_ground,

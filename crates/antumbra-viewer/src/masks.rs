@@ -18,7 +18,7 @@ use crate::state::{Show, Side, State};
 pub const SIZE_PX: UVec2 = UVec2::new(96, 64);
 
 /// Maximum number of frames to wait for a mask. Each frame waits for the device.
-const MOST_FRAMES: u32 = 3000;
+const MAX_FRAMES: u32 = 3000;
 
 /// A mask to draw: a technique, the scene's first light and the scene's own camera.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,7 +132,7 @@ impl Masks {
         let Some((_, renderer, state)) = &mut self.open else { return Err("no scene is open".into()) };
         state.sides[0] = case.side.clone();
         let mut asked = None;
-        for _ in 0..MOST_FRAMES {
+        for _ in 0..MAX_FRAMES {
             let drawn = renderer.draw(state, SIZE_PX, None);
             if let Some(why) = renderer.take_error() {
                 return Err(why);

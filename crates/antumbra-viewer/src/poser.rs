@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, channel};
 use antumbra_scene::{Animations, Scene};
 use glam::Vec3;
 
-use crate::aside::{Wake, aside};
+use crate::background::{Wake, run_in_background};
 use crate::message::one_line;
 
 /// Poses one animated scene.
@@ -36,11 +36,11 @@ impl Poser {
         let (sender, result) = channel();
         let (animations, has_ground, anchor) = (self.animations.clone(), self.has_ground, self.anchor);
         let wake = wake.clone();
-        aside(move || {
+        run_in_background(move || {
             let mut posed = animations.scene_at(time_s).map_err(|error| one_line(&error.to_string()));
             if let Ok(scene) = &mut posed {
                 if has_ground {
-                    scene.stand_on_ground();
+                    scene.add_ground();
                 }
                 scene.count_from(anchor);
             }

@@ -9,7 +9,7 @@ use antumbra_reference::{ReceiverPoint, Tracer, VisibilityOptions};
 use antumbra_scene::{LoadOptions, Scene, Setup, load, srgb_from_linear};
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::aside::{Wake, aside};
+use crate::background::{Wake, run_in_background};
 
 /// A thumbnail's size, pixels.
 pub const SIZE_PX: UVec2 = UVec2::new(96, 60);
@@ -51,7 +51,7 @@ impl Thumbnails {
         if matches!(known, Thumbnail::Wanted) && self.pending.is_none() {
             let (sender, traced) = channel();
             let wake = wake.clone();
-            aside(move || {
+            run_in_background(move || {
                 // The receiver is gone if the window was closed meanwhile.
                 let _ = sender.send(traced_picture(name));
                 wake();

@@ -7,7 +7,7 @@ use antumbra::TechniqueKind;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use wasm_bindgen::{JsCast, JsValue};
 
-pub use crate::aside::breath;
+pub use crate::background::yield_to_browser;
 
 use crate::app::{App, Outcome};
 use crate::device::device_descriptor;
@@ -76,9 +76,9 @@ pub async fn work_done(queue: &wgpu::Queue) {
     let is_done = Arc::new(AtomicBool::new(false));
     let done = is_done.clone();
     queue.on_submitted_work_done(move || done.store(true, Ordering::Relaxed));
-    breath().await;
+    yield_to_browser().await;
     while !is_done.load(Ordering::Relaxed) {
-        breath().await;
+        yield_to_browser().await;
     }
 }
 

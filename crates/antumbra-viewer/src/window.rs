@@ -17,7 +17,7 @@ use crate::options::{ViewerError, ViewerOptions};
 pub const ADAPTER_VARIABLE: &str = "ANTUMBRA_ADAPTER";
 
 /// Minimum lifetime of a device; one that is lost sooner is not replaced.
-const LEAST_LIFE: Duration = Duration::from_secs(10);
+const MIN_LIFE: Duration = Duration::from_secs(10);
 
 /// Opens the window and returns once it is closed. If the graphics device is lost, a new window continues with a new device.
 ///
@@ -30,7 +30,7 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
     loop {
         let made = Instant::now();
         match run_window(size, adapter.clone(), start)? {
-            Some(Ended::Lost(why, kept)) if made.elapsed() >= LEAST_LIFE => {
+            Some(Ended::Lost(why, kept)) if made.elapsed() >= MIN_LIFE => {
                 eprintln!("antumbra: the graphics device is lost ({why}); the window is opened again");
                 start = Start::Kept(kept);
             }

@@ -10,7 +10,7 @@
 use std::fmt;
 
 use crate::contract::{CastersKey, Denoise, DrawnLists, DrawnMap, Error, Overflow, Params, PreparedFrame};
-use crate::gpu::{Commands, Content, Gpu, Keep, Recorder, Stage, StagedUploads};
+use crate::gpu::{Commands, Content, Gpu, Recorder, RetainedState, Stage, StagedUploads};
 use crate::mask::denoise::{Denoiser, PreparedDenoise};
 use crate::mask::fade::{Fade, PreparedFade};
 use crate::mask::half_resolution::{HalfResolution, PreparedHalf};
@@ -33,7 +33,7 @@ use anchored::{Anchored, anchor_of};
 use conversions::{Ends, KeptEnds};
 use frame::{Asked, FrameCasters, prepared};
 use frame_key::FrameKey;
-use partitioned::{Parted, PartedPasses};
+use partitioned::{PartitionedPasses, PartitionedState};
 use shader_function::ShaderFunctions;
 use validate::Validator;
 
@@ -57,13 +57,13 @@ pub struct Shadow<T: Technique> {
     /// State if one view covers what the light reaches.
     technique: T,
     /// State if several views are needed; created on demand and retained.
-    parted: Option<Parted<T>>,
+    parted: Option<PartitionedState<T>>,
     ends: KeptEnds,
     denoiser: Option<Denoiser>,
     half: Option<HalfResolution>,
     smoothing: Option<Smoothing>,
     fade: Option<Fade>,
-    keep: Keep,
+    keep: RetainedState,
     functions: ShaderFunctions,
     /// Key of the mask's content, valid if the last frame was recorded and no commands were dropped.
     mask: Content<FrameKey<T::Params>>,
@@ -105,7 +105,7 @@ impl<T: Technique> Shadow<T> {
             half: None,
             smoothing: None,
             fade: None,
-            keep: Keep::default(),
+            keep: RetainedState::default(),
             functions: ShaderFunctions::default(),
             mask: Content::default(),
             is_recorded: true,
@@ -236,7 +236,7 @@ impl<T: Technique> Shadow<T> {
             is_noisy.then(|| self.smoothing.get_or_insert_with(|| Smoothing::new(stage)).prepare(stage, &of_mask));
         let of_technique = PreparedFrame { noisy: smoothing.as_ref().map(PreparedSmoothing::noisy), ..of_mask };
 
-        let light = match Parted::prepare(&mut self.parted, stage, &of_technique, meshes, &self.params)? {
+        let light = match PartitionedState::prepare(&mut self.parted, stage, &of_technique, meshes, &self.params)? {
             Some(parts) => LightPasses::Parts(Box::new(parts)),
             None => LightPasses::Whole(self.technique.prepare(stage, &of_technique, &self.params)?),
         };
@@ -294,7 +294,7 @@ impl<T: Technique> Shadow<T> {
     }
 
     /// State of the light's parts; `None` if the frame prepared last has one view.
-    fn parts_in_use(&self) -> Option<&Parted<T>> {
+    fn parts_in_use(&self) -> Option<&PartitionedState<T>> {
         self.parted.as_ref().filter(|parted| parted.is_in_use())
     }
 
@@ -309,7 +309,7 @@ impl<T: Technique> Shadow<T> {
     pub fn memory_bytes(&self) -> u64 {
         self.keep.memory_bytes()
             + self.technique.memory_bytes()
-            + self.parted.as_ref().map_or(0, Parted::memory_bytes)
+            + self.parted.as_ref().map_or(0, PartitionedState::memory_bytes)
             + self.denoiser.as_ref().map_or(0, Denoiser::memory_bytes)
     }
 
@@ -369,7 +369,7 @@ enum LightPasses<'a, P> {
     /// One view covers what the light reaches.
     Whole(P),
     /// Several views cover it, each with a mask that is joined to the light's.
-    Parts(Box<PartedPasses<'a, P>>),
+    Parts(Box<PartitionedPasses<'a, P>>),
 }
 
 /// Prepared frame of one light. It must be dropped before what it borrows: declare a list of them after their casters.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::contract::{Error, ParamError, ParamSpec, ParamValue, Params, Printed, Quality};
+use crate::contract::{Error, ParamError, ParamSpec, ParamValue, Params, PublishedForm, Quality};
 use crate::gpu::Gpu;
 use crate::shadow::{AnyShadow, Shadow};
 use crate::techniques::Technique;
@@ -162,10 +162,10 @@ macro_rules! techniques {
             }
 
             /// Departures from the paper, for [`Quality::Paper`]; `None` if the technique has no such quality.
-            pub fn printed(self) -> Option<&'static Printed> {
+            pub fn published(self) -> Option<&'static PublishedForm> {
                 match self { $(
                     #[cfg(feature = $family)]
-                    Self::$variant => <$variant as Technique>::Params::printed(),
+                    Self::$variant => <$variant as Technique>::Params::published(),
                 )+ }
             }
 
@@ -440,7 +440,7 @@ impl TechniqueKind {
 
     /// Whether the technique has this quality: every one of the ladder, and [`Quality::Paper`] if it sets anything.
     pub fn has_quality(self, quality: Quality) -> bool {
-        quality != Quality::Paper || self.printed().is_some()
+        quality != Quality::Paper || self.published().is_some()
     }
 }
 

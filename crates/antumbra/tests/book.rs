@@ -155,7 +155,7 @@ fn four_samples_a_pixel(
     (front, back): (Mask, Mask),
 ) -> Result<(), Error> {
     split.record(&mut recorder, &receivers)?; // a SplitReceivers, kept from frame to frame
-    for (receivers, mask) in split.pictures(&receivers).into_iter().zip([&front, &back]) {
+    for (receivers, mask) in split.images(&receivers).into_iter().zip([&front, &back]) {
         shadow.prepare(&Frame { light, casters, receivers, mask })?.record(&mut recorder);
     }
     Ok(())

@@ -79,7 +79,7 @@ fn worst_cases() -> String {
 fn departures(kinds: &[TechniqueKind]) -> Result<String, String> {
     let mut text = "| technique | ours | switch of `:paper` |\n|---|---|---|\n".to_owned();
     for kind in kinds {
-        let printed = kind.printed().ok_or_else(|| format!("`{kind}` has no preset `paper`"))?;
+        let printed = kind.published().ok_or_else(|| format!("`{kind}` has no preset `paper`"))?;
         let set = kind.quality_settings(Quality::Paper);
         for departure in printed.departures {
             let value = set.iter().find(|(key, _)| *key == departure.key).map(|(_, value)| value.to_string());

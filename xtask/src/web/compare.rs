@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// The largest mean of |ΔV| over a mask that two devices may differ by.
-const MOST_DIFFERENCE: f64 = 1e-3;
+const MAX_DIFFERENCE: f64 = 1e-3;
 
 /// One case's outcome.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,7 +67,7 @@ fn compare_with(native: &Path, web: &Path, adapter: &str) -> Result<(String, usi
         let file = format!("{index}.f32");
         match read(&native.join(&file)).and_then(|ours| difference(&ours, &read(&web.join(&file))?)) {
             Ok(difference) => {
-                if difference > MOST_DIFFERENCE {
+                if difference > MAX_DIFFERENCE {
                     faults.push(format!("{name}: mean |ΔV| {difference:.2e}"));
                 }
                 rows.push(Row { name: name.to_owned(), difference });

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::thread;
 
 /// What a page may post at most: a mask has 24 KB.
-const MOST_POSTED_BYTES: usize = 1 << 24;
+const MAX_POSTED_BYTES: usize = 1 << 24;
 
 /// Called with the path and the body of what is posted.
 pub type OnPost = Arc<dyn Fn(&str, Vec<u8>) + Send + Sync>;
@@ -83,7 +83,7 @@ fn answer(mut connection: TcpStream, folders: &Folders, on_post: &OnPost) -> std
         }
     }
     if method == "POST" {
-        let mut body = vec![0; length.min(MOST_POSTED_BYTES)];
+        let mut body = vec![0; length.min(MAX_POSTED_BYTES)];
         reader.read_exact(&mut body)?;
         on_post(&target, body);
         return respond(&mut connection, "204 No Content", "text/plain", b"");

@@ -65,7 +65,7 @@ fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, V
             load_scene(&args.scene, &SceneArgs { setup, time: *time, ground: args.ground }, narrowest(&sizes), bars)?;
         let mut setups = vec![(args.setups.first().map_or("this view".into(), |path| path.display().to_string()), own)];
         for path in args.setups.iter().skip(1) {
-            setups.push((path.display().to_string(), Setup::from_file(path)?.counted_from(anchor)));
+            setups.push((path.display().to_string(), Setup::from_file(path)?.relative_to(anchor)));
         }
         for (name, setup) in setups {
             let light = light_index(&setup.lights, args.light.as_deref())?;

@@ -159,7 +159,7 @@ impl Site<'_> {
         end_shadows(&mut setup.camera, args.shadow_distance);
         let light = light_index(&setup.lights, args.light.as_deref())?;
         let motion = self.motion.cloned().map(|options| MotionOptions {
-            path: options.path.iter().map(|camera| camera.counted_from(anchor)).collect(),
+            path: options.path.iter().map(|camera| camera.relative_to(anchor)).collect(),
             ..options
         });
         let request = CompareRequest {

@@ -91,14 +91,14 @@ fn load_scene(spec: &str, args: &SceneArgs, aspect: f32, progress: &dyn Progress
     let has_ground = args.ground.when().is_for(&scene, is_framed);
     // The ground comes after the camera, which frames the scene without it.
     if has_ground {
-        scene.stand_on_ground();
+        scene.add_ground();
     }
     if has_ground && args.ground == Ground::Auto {
         progress.note(&antumbra_scene::Ground::told(&scene));
     }
     let anchor = setup.camera.anchor();
     scene.count_from(anchor);
-    Ok(LoadedScene { scene, setup: setup.counted_from(anchor), anchor, has_ground })
+    Ok(LoadedScene { scene, setup: setup.relative_to(anchor), anchor, has_ground })
 }
 
 /// Width over height of the narrowest image; 16 : 9 for an empty list.

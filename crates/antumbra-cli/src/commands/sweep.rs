@@ -34,7 +34,7 @@ fn plan(args: &SweepPlanArgs, bars: &Bars) -> Result<(), Failure> {
         let LoadedScene { scene, setup, anchor, has_ground } =
             load_scene(spec, &args.scene, narrowest(&args.sizes), bars)?;
         let light = light_index(&setup.lights, args.light.as_deref())?;
-        scenes.push(PlannedScene::new(spec, args.scene.time, has_ground, &scene, &setup.counted_from(-anchor), light));
+        scenes.push(PlannedScene::new(spec, args.scene.time, has_ground, &scene, &setup.relative_to(-anchor), light));
     }
     let plan = Plan::new(scenes, &args.sizes, &chosen, args.samples, args.frames, command_line(), COMMIT);
     plan.write(out.path())?;

@@ -57,13 +57,13 @@ fn print_one(kind: TechniqueKind) {
         };
         say!("  {:9} {set}", quality.name());
     }
-    print_printed(kind);
+    print_departures(kind);
     say!("\nSet them with --set KEY=VALUE (render) or --set {kind}.KEY=VALUE (compare, bench).");
 }
 
 /// Prints a technique's departures from its paper, and the settings that undo them.
-fn print_printed(kind: TechniqueKind) {
-    let Some(printed) = kind.printed() else { return };
+fn print_departures(kind: TechniqueKind) {
+    let Some(printed) = kind.published() else { return };
     say!("\nAs published: {kind}:{}. What ours does instead:", Quality::Paper);
     let set = kind.quality_settings(Quality::Paper);
     for departure in printed.departures {

@@ -14,7 +14,7 @@ const POINTS: u32 = 256;
 
 /// Maximum change of a mask's error due to bounds. Without bounds of receivers, texels are larger, and a lamp's view is split into rings
 /// that known bounds would show to be empty (the error of `pcss` under the lamp is .0083 in one view, .0119 in several).
-const MOST_MORE: f64 = 0.004;
+const MAX_MORE: f64 = 0.004;
 
 /// The base scene with every object's matrix in a buffer, with the same bounds for all.
 fn gpu_driven(device: &Device, scene: &Scene, bounds: Option<Aabb>) -> HostCasters {
@@ -89,7 +89,7 @@ fn masks_are_as_good_with(bounds: &[Option<Aabb>]) {
                 println!("{name}, {light}, receivers {}: {of_known:.4} {errors:.4?}", receivers.is_some());
                 for (error, bounds) in errors.iter().zip(bounds) {
                     assert!(
-                        *error < of_known + MOST_MORE,
+                        *error < of_known + MAX_MORE,
                         "{name}, {light}: {error} of {bounds:?}, {of_known} of known"
                     );
                 }

@@ -159,7 +159,7 @@ fn textures() {
     let wrong =
         Denoise { motion: Some(half.create_view(&wgpu::TextureViewDescriptor::default())), ..Denoise::default() };
     for (denoise, words) in [
-        (Denoise { most_frames: 0, motion: None }, "the denoiser's frames is 0, and must be 1 to 64"),
+        (Denoise { max_frames: 0, motion: None }, "the denoiser's frames is 0, and must be 1 to 64"),
         (wrong, "the motion vectors' texture is of [8, 4]"),
     ] {
         let mut shadow = small_shadow(device, TechniqueKind::Pcss);

@@ -104,10 +104,10 @@ fn budgets_are_kept_and_no_light_waits_for_ever() {
     for (count, budget) in [(16usize, 1u32), (16, 4), (16, 16), (64, 1), (64, 4), (64, 16)] {
         let shadows = (0..count).map(|_| small_shadow(&device, kind_of("hard"))).collect();
         let mut hall = Hall::new(&device, UVec2::new(16, 9), shadows);
-        let most_age = 5 * count.div_ceil(budget as usize) as u32;
+        let max_age = 5 * count.div_ceil(budget as usize) as u32;
         let mut drawn = HashMap::<LightId, u32>::new();
         let mut made = None;
-        let (warm, all) = (2 * most_age.max(10), 4 * most_age.max(10));
+        let (warm, all) = (2 * max_age.max(10), 4 * max_age.max(10));
         for frame in 0..all {
             hall.move_boxes(0..100, frame);
             let of_frame = hall.draw(Budget::Lights(budget));
@@ -117,19 +117,19 @@ fn budgets_are_kept_and_no_light_waits_for_ever() {
                 assert_eq!(hall.state(*id) == MaskState::Drawn, is_drawn, "{count} lights, frame {frame}");
                 let is_young = match hall.state(*id) {
                     MaskState::Drawn => true,
-                    MaskState::Kept { age } => age <= most_age,
-                    MaskState::Missing => !drawn.contains_key(id) && frame < most_age,
+                    MaskState::Kept { age } => age <= max_age,
+                    MaskState::Missing => !drawn.contains_key(id) && frame < max_age,
                     MaskState::Current | MaskState::Culled => false,
                 };
                 assert!(is_young, "{count} lights, budget {budget}, frame {frame}: {:?}", hall.states());
             }
             of_frame.into_iter().for_each(|id| *drawn.entry(id).or_default() += 1);
             if frame == warm {
-                made = Some(device.gpu.objects_made());
+                made = Some(device.gpu.objects_created());
             }
         }
-        assert_eq!(made, Some(device.gpu.objects_made()), "{count} lights, budget {budget}");
-        let least = all / (most_age + 1);
+        assert_eq!(made, Some(device.gpu.objects_created()), "{count} lights, budget {budget}");
+        let least = all / (max_age + 1);
         assert!(hall.ids.iter().all(|id| drawn[id] >= least.max(1)), "{count} lights, budget {budget}: {drawn:?}");
     }
 }

@@ -155,9 +155,9 @@ fn moving_lamps(kinds: &[TechniqueKind]) {
             };
             let mut crowd = Crowd::new(&device, UVec2::new(16, 9), (0..lamps).map(shadow).collect());
             (0..10).for_each(|frame| _ = crowd.draw(frame));
-            let before = device.gpu.objects_made();
+            let before = device.gpu.objects_created();
             (10..60).for_each(|frame| _ = crowd.draw(frame));
-            assert_eq!(before, device.gpu.objects_made(), "{lamps} lamps, {kind}, {settings:?}");
+            assert_eq!(before, device.gpu.objects_created(), "{lamps} lamps, {kind}, {settings:?}");
         }
     }
 }
@@ -200,9 +200,9 @@ fn what_thirty_two_lamps_create_and_take() {
         let shadows = (0..32).map(|_| kind.create(&device.gpu).expect("any device")).collect();
         let mut crowd = Crowd::new(&device, UVec2::new(32, 18), shadows);
         (0..10).for_each(|frame| _ = crowd.draw(frame));
-        let before = device.gpu.objects_made().total();
+        let before = device.gpu.objects_created().total();
         (10..60).for_each(|frame| _ = crowd.draw(frame));
-        let created = device.gpu.objects_made().total() - before;
+        let created = device.gpu.objects_created().total() - before;
         let retained: u64 = crowd.shadows.iter().map(|(shadow, _)| shadow.memory_bytes()).sum();
         let [retained, shared] = [retained, device.gpu.memory_bytes().shared].map(|bytes| bytes >> 20);
         println!("{kind}: {created} objects, {retained} MiB retained, {shared} MiB shared");

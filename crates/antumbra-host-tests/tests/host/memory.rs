@@ -64,7 +64,7 @@ fn taken(shadow: &mut AnyShadow, gpu: &Gpu, frame: &Frame<'_>, encoder: &mut wgp
 /// frame drawn. Reported memory omits next to nothing of the allocated memory.
 fn plans_are_kept(device: &Device, kinds: &[TechniqueKind], pairs: &[(Size, wgpu::TextureFormat)]) {
     /// Maximum of unreported memory: uniforms and placeholder textures of one texel, bytes for all views into which a light is split.
-    const MOST_LEFT_OUT: u64 = 128 << 10;
+    const MAX_LEFT_OUT: u64 = 128 << 10;
     for kind in kinds {
         for (size, format) in pairs {
             let (size_px, settings) = size.of(*kind);
@@ -80,11 +80,11 @@ fn plans_are_kept(device: &Device, kinds: &[TechniqueKind], pairs: &[(Size, wgpu
                     Frame { light: &light, casters: casters.all(), receivers: picture.receivers(), mask: &mask };
                 let mut encoder = device.encoder();
 
-                let before = gpu.objects_made();
+                let before = gpu.objects_created();
                 let plan = MemoryPlan::new(&gpu);
                 let mut planned_shadow = shadow_of(plan.gpu(), *kind, &settings);
                 let planned = taken(&mut planned_shadow, plan.gpu(), &frame, &mut encoder);
-                assert_eq!(gpu.objects_made(), before, "{what}: the plan creates");
+                assert_eq!(gpu.objects_created(), before, "{what}: the plan creates");
 
                 let mut shadow = shadow_of(&gpu, *kind, &settings);
                 let real = taken(&mut shadow, &gpu, &frame, &mut encoder);
@@ -97,7 +97,7 @@ fn plans_are_kept(device: &Device, kinds: &[TechniqueKind], pairs: &[(Size, wgpu
                 println!("{what}: {} bytes retained, {} shared, {allocated} in all", planned.0, planned.1.shared);
                 assert!(reported > 0 && reported <= allocated, "{what}: {reported} of {allocated}");
                 let left_out = allocated - reported;
-                assert!(left_out <= MOST_LEFT_OUT, "{what}: {left_out}: {:?}", plan.resources());
+                assert!(left_out <= MAX_LEFT_OUT, "{what}: {left_out}: {:?}", plan.resources());
             }
         }
     }

@@ -48,7 +48,7 @@ const LONG_ENOUGH: Duration = Duration::from_millis(150);
 const PATIENCE: f64 = 5.0;
 
 /// Minimum width and height of an image, pixels.
-const LEAST_SIDE_PX: u32 = 24;
+const MIN_SIDE_PX: u32 = 24;
 
 /// A view with its ground truth, ready for techniques.
 struct Scene<'a> {
@@ -66,7 +66,7 @@ pub(super) struct Bench<'a> {
     tracers: Vec<Tracer>,
     rungs: [OnceCell<Vec<Scene<'a>>>; RUNGS.len()],
     /// Largest budget of all views, milliseconds; infinite until it is known. It bounds the time spent on a slow configuration.
-    pub(super) most_ms: Cell<f64>,
+    pub(super) max_ms: Cell<f64>,
 }
 
 impl<'a> Bench<'a> {
@@ -79,14 +79,14 @@ impl<'a> Bench<'a> {
         let uploaded = request.scenes.iter().map(|scene| Rc::new(GpuScene::upload(lab, scene))).collect();
         let tracers = request.scenes.iter().map(Tracer::new).collect::<Result<_, _>>()?;
         progress.end();
-        let most_ms = Cell::new(f64::INFINITY);
-        Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), most_ms })
+        let max_ms = Cell::new(f64::INFINITY);
+        Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), max_ms })
     }
 
     /// Returns the image size of a rung, pixels.
     pub(super) fn size_px(&self, rung: usize) -> UVec2 {
         let full = self.request.size_px;
-        (full / RUNGS[rung].part).max(UVec2::splat(LEAST_SIDE_PX)).min(full)
+        (full / RUNGS[rung].part).max(UVec2::splat(MIN_SIDE_PX)).min(full)
     }
 
     fn samples(&self, rung: usize) -> u32 {
@@ -116,7 +116,7 @@ impl<'a> Bench<'a> {
         let options = VisibilityOptions { samples: self.samples(rung), ..VisibilityOptions::default() };
         let lights = std::slice::from_ref(&setup.lights[asked.light]);
         let mut truth = trace_lights(tracer, &receivers, lights, &options, self.progress)?.swap_remove(0);
-        truth.judge_what_is_seen(&view.surface_points()?, setup.camera.eye);
+        truth.unjudge_mismatched_surfaces(&view.surface_points()?, setup.camera.eye);
         Ok(Scene { view, truth, receivers })
     }
 
@@ -135,7 +135,7 @@ impl<'a> Bench<'a> {
         let scenes = self.scenes(rung)?;
         let began = Instant::now();
         let mut measured = Measured::default();
-        let patience = Duration::from_secs_f64((PATIENCE * 1e-3 * self.most_ms.get()).clamp(0.02, 3.0));
+        let patience = Duration::from_secs_f64((PATIENCE * 1e-3 * self.max_ms.get()).clamp(0.02, 3.0));
         let at_most = LONG_ENOUGH.min(patience);
         let timing = Timing { warm_up: 1, frames, at_least: Duration::ZERO, at_most, end: None };
         let mut counts = Vec::new();

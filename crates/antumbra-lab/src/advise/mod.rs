@@ -309,7 +309,7 @@ pub fn advise(
         Budget::Ms(ms) => vec![ms; request.views.len()],
         Budget::TimesPcf(times) => base.ms.iter().map(|ms| times * ms).collect(),
     };
-    bench.most_ms.set(budget_ms.iter().copied().fold(0.0, f64::max));
+    bench.max_ms.set(budget_ms.iter().copied().fold(0.0, f64::max));
     let mut search = Search::new(&bench, &mut store, progress, budget_ms, request.limits);
     search.pcf_ms = matches!(request.budget, Budget::TimesPcf(_)).then(|| base.ms.clone());
     let left_out = if request.exhaustive {

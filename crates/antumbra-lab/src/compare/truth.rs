@@ -44,7 +44,8 @@ impl Judge {
         let mut truths = trace_lights_until(&tracer, &receivers, lights, &options, deadline, progress)?;
         let mut warnings = request.scene.warnings.clone();
         let seen = view.surface_points()?;
-        let others: Vec<usize> = truths.iter_mut().map(|truth| truth.judge_what_is_seen(&seen, camera.eye)).collect();
+        let others: Vec<usize> =
+            truths.iter_mut().map(|truth| truth.unjudge_mismatched_surfaces(&seen, camera.eye)).collect();
         if others[request.light] > 0 {
             warnings.push(format!(
                 "{} pixels are not judged: an edge passes through their centres, and the depth buffer shows another face \

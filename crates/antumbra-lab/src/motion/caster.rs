@@ -67,8 +67,8 @@ pub fn largest_caster(scene: &Scene, receivers: &Receivers) -> Option<MovingCast
         })
         .collect();
     // The first of equals, so that the choice is deterministic.
-    let largest = |most_spans: usize| {
-        let free = (0..pixels.len()).filter(|i| pixels[*i] > 0 && spans_along[*i] <= most_spans);
+    let largest = |max_spans: usize| {
+        let free = (0..pixels.len()).filter(|i| pixels[*i] > 0 && spans_along[*i] <= max_spans);
         free.max_by_key(|i| (pixels[*i], std::cmp::Reverse(*i)))
     };
     let index = largest(0).or_else(|| largest(1))?;

@@ -252,7 +252,7 @@ impl<'a> MovingScene<'a> {
             let (tracer, light) = (&tracing.tracer, &pose.light);
             let mut truth = trace_light(tracer, &receivers, light, &tracing.options(0), deadline, &report)?;
             let seen = self.look(&pose)?.read_surface_points(self.lab)?;
-            truth.judge_what_is_seen(&seen, pose.camera.eye);
+            truth.unjudge_mismatched_surfaces(&seen, pose.camera.eye);
             if i + 1 >= last {
                 let report = |fraction: f32| report(1.0 + fraction);
                 let other = trace_light(tracer, &receivers, light, &tracing.options(1), deadline, &report)?;

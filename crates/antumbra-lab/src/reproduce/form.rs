@@ -39,7 +39,7 @@ impl Row {
     pub fn forms(&self, paper: &Paper) -> &'static [Form] {
         let kind = TechniqueKind::from_name(self.technique);
         let is_own = paper.own.contains(&self.technique);
-        let departs = kind.is_some_and(|kind| kind.printed().is_some());
+        let departs = kind.is_some_and(|kind| kind.published().is_some());
         if is_own && departs && !self.is_published_alone { &[Form::Published, Form::Ours] } else { &[Form::Published] }
     }
 
@@ -73,7 +73,7 @@ fn choice_of_form(technique: &str, form: Form) -> Result<TechniqueChoice, LabErr
     let kind = TechniqueKind::from_name(technique)
         .ok_or_else(|| LabError::Request(format!("there is no technique `{technique}`")))?;
     let quality = match form {
-        Form::Published if kind.printed().is_some() => Quality::Paper,
+        Form::Published if kind.published().is_some() => Quality::Paper,
         _ => Quality::Balanced,
     };
     Ok(TechniqueChoice::of_quality(kind, quality))
@@ -111,7 +111,7 @@ mod tests {
         for paper in &PAPERS {
             for technique in paper.own {
                 let kind = TechniqueKind::from_name(technique).unwrap();
-                assert!(kind.printed().is_some(), "{}: {technique} has no preset `paper`", paper.id);
+                assert!(kind.published().is_some(), "{}: {technique} has no preset `paper`", paper.id);
             }
         }
     }
@@ -141,8 +141,8 @@ mod tests {
             for exhibit in paper.exhibits {
                 let rows: Vec<&Row> = exhibit.rows.iter().filter(|row| !row.technique.is_empty()).collect();
                 for (i, a) in rows.iter().enumerate() {
-                    let twin = rows[..i].iter().find(|b| are_one(paper, a, b)).map(|b| b.what);
-                    assert_eq!(twin, None, "{}/{}: `{}` runs the same", paper.id, exhibit.id, a.what);
+                    let cpu_reference = rows[..i].iter().find(|b| are_one(paper, a, b)).map(|b| b.what);
+                    assert_eq!(cpu_reference, None, "{}/{}: `{}` runs the same", paper.id, exhibit.id, a.what);
                 }
             }
         }

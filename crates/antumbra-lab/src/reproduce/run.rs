@@ -45,23 +45,23 @@ pub struct RunOptions {
     /// Whether to run rows that take a software renderer too long.
     pub dear: bool,
     /// Approximate maximum number of pixels of an image; larger images of the papers are reduced.
-    pub most_pixels: Option<u32>,
+    pub max_pixels: Option<u32>,
 }
 
 impl RunOptions {
     /// Returns the papers' settings, whatever the run time.
-    pub fn as_printed(frames: u32) -> Self {
+    pub fn as_published(frames: u32) -> Self {
         let at_most = Duration::from_secs(20);
-        Self { frames, size_px: None, samples: 1024, at_most, dear: true, most_pixels: None }
+        Self { frames, size_px: None, samples: 1024, at_most, dear: true, max_pixels: None }
     }
 
     /// Returns the papers' settings on a GPU. On a software renderer, images have about 256 × 144 pixels, which take minutes per paper,
     /// not hours. The truth's noise is below 0.002 rmse with 1024 samples, except in foliage, and twice that with 256.
     pub fn for_device(lab: &LabDevice, frames: u32) -> Self {
-        let printed = Self::as_printed(frames);
+        let printed = Self::as_published(frames);
         if lab.adapter.is_software() {
-            let (at_most, most_pixels) = (Duration::from_secs(2), Some(256 * 144));
-            Self { samples: 256, at_most, dear: false, most_pixels, ..printed }
+            let (at_most, max_pixels) = (Duration::from_secs(2), Some(256 * 144));
+            Self { samples: 256, at_most, dear: false, max_pixels, ..printed }
         } else {
             printed
         }
@@ -79,7 +79,7 @@ impl RunOptions {
             return size_px;
         }
         let pixels = width * height;
-        let shrink = self.most_pixels.map_or(1.0, |most| (f64::from(most) / f64::from(pixels)).sqrt().min(1.0));
+        let shrink = self.max_pixels.map_or(1.0, |most| (f64::from(most) / f64::from(pixels)).sqrt().min(1.0));
         let side = |length: u32| ((f64::from(length) * shrink).round() as u32).max(1);
         UVec2::new(side(width), side(height))
     }
@@ -356,7 +356,7 @@ impl Site<'_, '_> {
         // All techniques share a truth, so its time does not count for one of them.
         let deadline = self.bench.deadline;
         let mut truth = self.loaded.trace(self.setup, size_px, samples, deadline)?;
-        truth.judge_what_is_seen(&self.view.surface_points()?, self.setup.camera.eye);
+        truth.unjudge_mismatched_surfaces(&self.view.surface_points()?, self.setup.camera.eye);
         truth.first_hits = [].into();
         let truth = Rc::new(truth);
         self.bench.truths.insert(key, Rc::clone(&truth));
@@ -448,12 +448,12 @@ mod tests {
 
     #[test]
     fn pictures_keep_the_papers_shape() {
-        let options = RunOptions { most_pixels: Some(256 * 144), ..RunOptions::as_printed(1) };
+        let options = RunOptions { max_pixels: Some(256 * 144), ..RunOptions::as_published(1) };
         let row = error("", "builtin:overlap", "pcss");
         assert_eq!(options.size_of(&row.at(1280, 720)), UVec2::new(256, 144));
         assert_eq!(options.size_of(&row.at(512, 512)), UVec2::splat(192));
         assert_eq!(options.size_of(&row.at(64, 32)), UVec2::new(64, 32));
-        assert_eq!(RunOptions { most_pixels: None, ..options }.size_of(&row.at(512, 512)), UVec2::splat(512));
+        assert_eq!(RunOptions { max_pixels: None, ..options }.size_of(&row.at(512, 512)), UVec2::splat(512));
         assert_eq!(RunOptions { size_px: Some(UVec2::ONE), ..options }.size_of(&row), UVec2::ONE);
     }
 

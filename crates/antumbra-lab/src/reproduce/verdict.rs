@@ -199,7 +199,7 @@ impl Bench<'_> {
                 "it needs a GPU, since times of a software renderer say little about one: the same command on a GPU would show it",
             );
         }
-        if values.iter().any(|ms| *ms < LEAST_MS) {
+        if values.iter().any(|ms| *ms < MIN_MS) {
             return Some(
                 "a time is too short for a software renderer's clock: a larger image (--size) or a GPU would show it",
             );
@@ -236,7 +236,7 @@ impl Bench<'_> {
 
     fn is_of_few_frames(&self, row: &str, form: Form) -> bool {
         let count = self.measured(row, form).and_then(|measured| measured.count);
-        count.is_some_and(|count| count.frames < LEAST_FRAMES)
+        count.is_some_and(|count| count.frames < MIN_FRAMES)
     }
 
     fn range(&self, figure: Figure, row: &str, value: f64, form: Form) -> Range {
@@ -260,10 +260,10 @@ impl Bench<'_> {
 }
 
 /// Minimum time of a software renderer, ms. Shorter ones reflect its scheduler, which starts and ends passes.
-const LEAST_MS: f64 = 1.0;
+const MIN_MS: f64 = 1.0;
 
 /// Minimum number of frames of a software renderer's median. A shorter median may fall into a moment of other load.
-const LEAST_FRAMES: u32 = 5;
+const MIN_FRAMES: u32 = 5;
 
 /// Noise of a traced reference with one light sample per pixel, rmse: below .002 with 1024 samples, except in foliage.
 const TRUTH_NOISE: f64 = 0.064;

@@ -99,7 +99,7 @@ pub const DEFAULT_MAP_TEXELS: f32 = 1024.0;
 pub const GRAZING_DEG: f32 = 15.0;
 
 /// Maximum number of examined penumbra pixels: shares are accurate to 1.6 % (√(¼ / 1024)).
-const MOST_PIXELS: usize = 1024;
+const MAX_PIXELS: usize = 1024;
 /// Maximum number of rays per pixel.
 const RAYS: u32 = 32;
 
@@ -149,7 +149,7 @@ impl SceneFacts {
 
         let probe = Probe::new(scene, tracer, receivers, camera, light, &sampled, &judged);
         let mut tally = Tally::default();
-        let chosen = penumbra.len().min(MOST_PIXELS);
+        let chosen = penumbra.len().min(MAX_PIXELS);
         (0..chosen).for_each(|k| probe.look(penumbra[k * penumbra.len() / chosen], &mut tally));
 
         let occluders = scene.occluders();

@@ -8,13 +8,13 @@ use glam::Vec3;
 use super::{DEFAULT_MAP_TEXELS, PenumbraFacts, RAYS, Spread};
 
 /// Minimum fraction of the light that a depth hides.
-const LEAST_PART: f32 = 1.0 / 16.0;
+const MIN_PART: f32 = 1.0 / 16.0;
 /// Ratio of the largest to the smallest width that count as one depth.
 const DISTINCT: f64 = 1.5;
 /// Maximum number of surfaces examined per ray, because foliage has very many.
-const MOST_CROSSINGS: usize = 24;
+const MAX_CROSSINGS: usize = 24;
 /// Maximum number of occluders per ray whose width is examined.
-const MOST_WIDTHS: usize = 8;
+const MAX_WIDTHS: usize = 8;
 /// Half length, in texels, of the ray segment that looks for an occluder's neighbourhood: a surface
 /// tilted by 76° is still hit one texel away.
 const REACH_TEXELS: f32 = 4.0;
@@ -102,7 +102,7 @@ impl<'a> Probe<'a> {
                 tally.crossings += 1;
                 tally.masked += u64::from(matches!(occluder, Occluder::Masked { .. }));
                 tally.tinted += u64::from(occluder == Occluder::Translucent);
-                if occluder != Occluder::Translucent && looks < MOST_WIDTHS {
+                if occluder != Occluder::Translucent && looks < MAX_WIDTHS {
                     looks += 1;
                     tally.looked_at += 1;
                     tally.thin += u64::from(self.is_thin(crossing.first_hit.position, vector.normalize(), point));
@@ -113,7 +113,7 @@ impl<'a> Probe<'a> {
             return;
         }
         tally.widths_px.push(widths_m.iter().sum::<f64>() / widths_m.len() as f64 / f64::from(footprint_m));
-        let least = (points.len() as f32 * LEAST_PART).ceil() as usize;
+        let least = (points.len() as f32 * MIN_PART).ceil() as usize;
         let depths = distinct_depths(&mut widths_m, f64::from(footprint_m), least);
         tally.depths[depths.clamp(1, 3) - 1] += 1;
     }
@@ -125,7 +125,7 @@ impl<'a> Probe<'a> {
         // Whether the last crossing is a surface of a closed mesh that the ray has not left yet.
         let mut is_inside = false;
         let mut from_m = 0.0;
-        for _ in 0..MOST_CROSSINGS {
+        for _ in 0..MAX_CROSSINGS {
             let Some(hit) = self.tracer.first_hit(origin, direction, from_m) else { break };
             let distance_m = (hit.position - origin).dot(direction);
             if distance_m >= length_m {

@@ -251,7 +251,7 @@ impl<'a> Bench<'a> {
                 let options = VisibilityOptions { samples: TRUTH_SAMPLES, ..VisibilityOptions::default() };
                 let mut truth = trace(&scene, &setup, size_px, &options, progress)?.swap_remove(0);
                 let seen = View::new(lab, &scene, &setup, size_px)?.surface_points()?;
-                truth.judge_what_is_seen(&seen, setup.camera.eye);
+                truth.unjudge_mismatched_surfaces(&seen, setup.camera.eye);
                 SharedTruth::Still(truth)
             }
             Work::Motion(motion) => {

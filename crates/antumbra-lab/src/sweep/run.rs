@@ -103,7 +103,7 @@ impl<'a> Bench<'a> {
         let planned = &plan.scenes[job.scene];
         let mut scene = load(&planned.scene, &LoadOptions { time_s: planned.time_s })?;
         if planned.ground {
-            scene.stand_on_ground();
+            scene.add_ground();
         }
         if scene.triangle_count() != planned.triangles {
             return Err(LabError::Request(format!(
@@ -116,7 +116,7 @@ impl<'a> Bench<'a> {
         let setup = Setup::from_toml(&planned.setup, Path::new(PLAN_NAME))?;
         let anchor = setup.camera.anchor();
         scene.count_from(anchor);
-        let setup = setup.counted_from(anchor);
+        let setup = setup.relative_to(anchor);
         let Some(light) = setup.lights.iter().position(|light| light.name == planned.light) else {
             return Err(LabError::Request(format!("{PLAN_NAME}: there is no light `{}`; plan anew", planned.light)));
         };
@@ -125,7 +125,7 @@ impl<'a> Bench<'a> {
         // All lights are traced, so that pixels have the same light samples as in `compare`.
         let mut truth = trace(&scene, &setup, size_px, &options, progress)?.swap_remove(light);
         let seen = View::new(lab, &scene, &setup, size_px)?.surface_points()?;
-        truth.judge_what_is_seen(&seen, setup.camera.eye);
+        truth.unjudge_mismatched_surfaces(&seen, setup.camera.eye);
         let timing = Timing { warm_up: 1, frames: plan.frames, at_least: AT_LEAST, at_most: AT_MOST, end: None };
         Ok(Self { lab, scene, setup, light, size_px, truth, timing })
     }

@@ -14,7 +14,7 @@ use crate::readback::read_f32_layer;
 use crate::stopwatch::{Seen, Stopwatch};
 
 /// Maximum number of overflows, after each of which lists are enlarged, before a technique fails.
-const MOST_OVERFLOWS: u32 = 8;
+const MAX_OVERFLOWS: u32 = 8;
 
 /// Observer of drawn frames, which decides when there are enough.
 pub(super) trait Audience {
@@ -89,14 +89,14 @@ pub(super) fn draw_frames(
     let kind = technique.kind();
     let mut overflows = 0;
     loop {
-        let made_before = gpu.objects_made();
+        let made_before = gpu.objects_created();
         let prepare_began = Instant::now();
         let work = technique.prepare(frame)?;
         let prepare_ms = prepare_began.elapsed().as_secs_f64() * 1e3;
         // `prepare` reports the overflow of the previous frame.
         if let Some(overflow) = work.overflow() {
             overflows += 1;
-            if overflows > MOST_OVERFLOWS {
+            if overflows > MAX_OVERFLOWS {
                 return Err(LabError::NoRoom { technique: kind, overflow });
             }
             audience.begin_anew();
@@ -106,7 +106,7 @@ pub(super) fn draw_frames(
         }
         let mut times = one_frame(lab, work, timer.as_deref_mut())?;
         times.processor_ms += prepare_ms;
-        times.has_made = gpu.objects_made() != made_before;
+        times.has_made = gpu.objects_created() != made_before;
         audience.see(times)?;
     }
 }

@@ -102,22 +102,22 @@ fn nothing_needs_a_bias(on_tilted_planes: &[(u32, usize)], on_spheres: &[(u32, u
     let Some(lab) = lab() else { return };
     let tilted_planes = on_tilted_planes.iter().map(|case| ("tilted-planes", *case));
     let spheres = on_spheres.iter().map(|case| ("spheres", *case));
-    for (scene, (elevation, least_contact)) in tilted_planes.chain(spheres) {
+    for (scene, (elevation, min_contact)) in tilted_planes.chain(spheres) {
         let judged = Judged::new(&format!("builtin:{scene}?light_elevation_deg={elevation}"), |_| {});
         let contact = contact_umbra(&judged);
-        assert!(contact.len() >= least_contact, "{}: {} pixels at contacts", judged.spec, contact.len());
+        assert!(contact.len() >= min_contact, "{}: {} pixels at contacts", judged.spec, contact.len());
         for kind in [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::MultiView] {
             let visibility = judged.run(lab, kind, &[]);
             let lit_loss = judged.metrics(&visibility).lit_loss.expect("lit pixels");
-            let leak = if least_contact > 0 { mean_at(&visibility, &contact) } else { 0.0 };
+            let leak = if min_contact > 0 { mean_at(&visibility, &contact) } else { 0.0 };
             println!(
                 "{}: {kind}: lit_loss {lit_loss:.4}, umbra_leak {leak:.4} in {} pixels at contacts",
                 judged.spec,
                 contact.len()
             );
-            let (most_lit_loss, most_leak) = grazing_bounds(kind, elevation);
-            assert!(lit_loss <= most_lit_loss, "{}: {kind}: lit_loss {lit_loss}", judged.spec);
-            assert!(leak <= most_leak, "{}: {kind}: umbra_leak {leak} at contacts", judged.spec);
+            let (max_lit_loss, max_leak) = grazing_bounds(kind, elevation);
+            assert!(lit_loss <= max_lit_loss, "{}: {kind}: lit_loss {lit_loss}", judged.spec);
+            assert!(leak <= max_leak, "{}: {kind}: umbra_leak {leak} at contacts", judged.spec);
         }
     }
 }

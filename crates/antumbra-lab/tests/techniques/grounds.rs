@@ -22,7 +22,7 @@ fn a_ground_changes_no_shadow_of_what_stands_on_it() {
     let bare = load(&spec, &LoadOptions::default()).expect("a good scene");
     let setup = Setup::assumed_for(&bare, 16.0 / 9.0).setup;
     let mut on_ground = bare.clone();
-    on_ground.stand_on_ground();
+    on_ground.add_ground();
     let options = VisibilityOptions { samples: 256, ..VisibilityOptions::default() };
     let truth_of = |scene: &Scene| -> LightTruth {
         trace(scene, &setup, SIZE, &options, &Silent).expect("a good scene").swap_remove(0)

@@ -33,7 +33,7 @@ fn truth_at(judged: &Judged, tracer: &Tracer, points: &[Vec3]) -> Vec<f32> {
     let light = &judged.setup.lights[0];
     let facing = |x: &Vec3| {
         let towards = if light.is_distant() { -light.axis } else { (light.center - *x).normalize() };
-        ReceiverPoint { hair_m: 0.0, ..ReceiverPoint::new(*x, towards) }
+        ReceiverPoint { ray_offset_m: 0.0, ..ReceiverPoint::new(*x, towards) }
     };
     let points: Vec<_> = points.iter().map(facing).collect();
     let (options, never) = (VisibilityOptions::default(), AtomicBool::new(false));

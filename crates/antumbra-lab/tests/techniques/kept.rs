@@ -146,19 +146,19 @@ const TOGETHER: [Together; 18] = [
     (
         TechniqueKind::Lvsm,
         "boards under a rectangle",
-        &[("relax_over", "map_as_printed"), ("relax_background", "true")],
+        &[("relax_over", "map_as_published"), ("relax_background", "true")],
         false,
     ),
     (
         TechniqueKind::Lvsm,
         "boards under a rectangle",
-        &[("relax_over", "map_as_printed"), ("relax_from", "0.1")],
+        &[("relax_over", "map_as_published"), ("relax_from", "0.1")],
         false,
     ),
     (
         TechniqueKind::Lvsm,
         "boards under a rectangle",
-        &[("relax_over", "map_as_printed"), ("relax_up_to", "0.05")],
+        &[("relax_over", "map_as_published"), ("relax_up_to", "0.05")],
         false,
     ),
     (TechniqueKind::Pcf, "a strip light in a hall", &[("kernel_size", "31"), ("map_size", "32")], false),
@@ -454,7 +454,7 @@ fn one_mask_of_each_technique() {
 /// assignment of a cell's triangles to boxes may be random.)
 const SAME_WORK: f64 = 0.001;
 const OTHER_WORK: f64 = 0.03;
-const LEAST_WORK: f64 = 4.0;
+const MIN_WORK: f64 = 4.0;
 /// Tolerance for cells: the grouping of a cell's receivers is random and changes the work by a fiftieth; drawing instead of
 /// walking would change it by half.
 const CELLS: &str = "columns, cells";
@@ -515,7 +515,7 @@ fn work() {
         let part = if what == CELLS { CHANCE } else { part };
         for (was, is) in numbers.split(' ').zip(counts) {
             let (was, is): (f64, f64) = (was.parse().expect("a number"), is.into());
-            let may = LEAST_WORK + part * was;
+            let may = MIN_WORK + part * was;
             assert!((is - was).abs() <= may, "{what}: {counts:?} were tested, {numbers} before");
         }
     }

@@ -1,7 +1,7 @@
 //! The techniques against the ray tracer on the built-in scenes, by family. Bounds are values measured on a software
 //! adapter, with a small margin; they may be tightened, never loosened. `kept` compares with golden masks.
 
-mod as_printed;
+mod as_published;
 mod backprojection;
 mod baselines;
 mod bitmask;

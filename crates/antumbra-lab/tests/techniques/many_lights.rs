@@ -63,7 +63,8 @@ fn masks_of_a_foreign_renderer_are_as_good_as_the_laboratory_s() {
             .expect("a scene that can be seen");
         let seen = drawn_surfaces(lab, &renderer, view, &images);
         for (i, (light, truth)) in setup.lights.iter().zip(&mut truths).enumerate() {
-            let others = truth.judge_what_is_seen(&seen, setup.camera.eye) + judge_no_edge_of_reach(truth, light);
+            let others =
+                truth.unjudge_mismatched_surfaces(&seen, setup.camera.eye) + judge_no_edge_of_reach(truth, light);
             let judged = truth.judged.iter().filter(|judged| **judged).count();
             let mask = read_mask(lab, &renderer, view, i);
             let lab_mask = lab_mask(lab, &renderer, (view, i), &gpu_scene, &images);
@@ -85,13 +86,13 @@ fn masks_of_a_foreign_renderer_are_as_good_as_the_laboratory_s() {
 
 /// Draws frames in which everything moves. Returns the masks of the first frame by view.
 fn draw_frames(lab: &LabDevice, renderer: &mut Renderer) -> [Vec<Visibility>; 2] {
-    let mut made = vec![renderer.shadows.gpu().objects_made()];
+    let mut made = vec![renderer.shadows.gpu().objects_created()];
     let mut first_masks = [Vec::new(), Vec::new()];
     // The path is repeated, because a light's parts create maps when the camera first sees their receivers.
     for frame in (0..FRAMES).chain(0..FRAMES) {
         renderer.draw(0.2 * frame as f32).expect("a good frame");
         lab.check().expect("no error");
-        made.push(renderer.shadows.gpu().objects_made());
+        made.push(renderer.shadows.gpu().objects_created());
         if made.len() == 2 {
             let lights = 0..renderer.scene.lights.len();
             first_masks = [0, 1].map(|view| lights.clone().map(|i| read_mask(lab, renderer, view, i)).collect());

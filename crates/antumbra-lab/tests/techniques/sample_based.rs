@@ -20,8 +20,8 @@ use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
 use crate::common::{lab, seen_from_outside, snapped_texels};
 
 /// Ray offset as in `receiver_lists/light_bits/ray_offset.wesl`, and factor of the vertex-snapping distance as in `receivers/inputs.wesl`.
-const HAIR: f32 = 1.0 / (1 << 18) as f32;
-const HAIR_SNAPS: f32 = 1.5;
+const RAY_OFFSET: f32 = 1.0 / (1 << 18) as f32;
+const RAY_OFFSET_SNAPS: f32 = 1.5;
 
 const SIZE: UVec2 = UVec2::new(128, 72);
 /// Size at which one pixel in ten thousand is five pixels.
@@ -103,10 +103,10 @@ impl Same {
         let camera = &setup.camera;
         let pixel_m_per_m = 2.0 * (0.5 * camera.fov_y_rad).tan() / size_px.y as f32;
         let snapped_px = snapped_texels(lab);
-        let hair_at = |position: Vec3| {
+        let ray_offset_at = |position: Vec3| {
             let ahead_m = (position - camera.eye).dot((camera.target - camera.eye).normalize());
-            HAIR * (position.length() + position.distance(camera.eye))
-                + HAIR_SNAPS * snapped_px * pixel_m_per_m * ahead_m
+            RAY_OFFSET * (position.length() + position.distance(camera.eye))
+                + RAY_OFFSET_SNAPS * snapped_px * pixel_m_per_m * ahead_m
         };
         let tracer = Tracer::new(scene).expect("a scene that can be traced");
         let primary = tracer.primary(&setup.camera, size_px).points;
@@ -116,7 +116,7 @@ impl Same {
             .zip(&normals)
             .map(|(position, n)| {
                 position.map(|position| ReceiverPoint {
-                    hair_m: hair_at(position),
+                    ray_offset_m: ray_offset_at(position),
                     ..ReceiverPoint::new(position, Vec3::new(n[0], n[1], n[2]))
                 })
             })
@@ -130,11 +130,11 @@ impl Same {
                     let point = ReceiverPoint::new(position, Vec3::new(n[0], n[1], n[2]));
                     // A position from a depth buffer is inexact. The offset is twice its distance from the surface that the tracer finds
                     // there; if the tracer finds another surface, at an edge, it is the technique's own offset.
-                    let allowed = hair_at(position);
+                    let allowed = ray_offset_at(position);
                     let off_surface = traced
                         .filter(|traced| traced.position.distance(position) < 1e-3)
                         .map_or(allowed, |traced| 2.0 * (traced.position - position).dot(point.normal).abs());
-                    ReceiverPoint { hair_m: point.hair_m.max(off_surface.min(allowed)), ..point }
+                    ReceiverPoint { ray_offset_m: point.ray_offset_m.max(off_surface.min(allowed)), ..point }
                 })
             })
             .collect();
@@ -208,7 +208,7 @@ impl Same {
     fn ulps_to_either_answer(&self, i: usize, target: Vec3) -> Option<f64> {
         let (point, open_point) = (self.points[i]?, self.open_points[i]?);
         let start = point.position.as_dvec3();
-        let reach = f64::from(open_point.hair_m);
+        let reach = f64::from(open_point.ray_offset_m);
         let end = if self.light().is_distant() { start + 1e4 * target.as_dvec3() } else { target.as_dvec3() };
         let normal = point.normal.as_dvec3();
         // The receiver's own plane hides samples, too.
@@ -221,7 +221,7 @@ impl Same {
             near.iter().any(|(corners, is_closed)| {
                 let moved = match (is_closed, by_entering) {
                     (true, true) => moved,
-                    (true, false) => above + normal * f64::from(point.hair_m),
+                    (true, false) => above + normal * f64::from(point.ray_offset_m),
                     (false, _) => above + normal * reach,
                 };
                 is_in_the_way(corners, *is_closed && by_entering, start + moved, end)
@@ -447,7 +447,7 @@ fn alias_free_is_the_traced_hard_shadow_of_thin_things() {
 
 /// The paper's choices for drawn triangles: positions in the lists and a stencil for empty ones, six vertices per triangle,
 /// planes per triangle.
-const AS_PRINTED: [(&str, &str); 5] = [
+const AS_PUBLISHED: [(&str, &str); 5] = [
     ("traversal", "raster"),
     ("region", "six_vertices"),
     ("planes", "triangle"),
@@ -457,11 +457,11 @@ const AS_PRINTED: [(&str, &str); 5] = [
 
 /// Planes through triangle and light round differently than planes through the receiver, but by no more than the receiver's own position.
 #[test]
-fn alias_free_as_printed_is_the_traced_hard_shadow() {
+fn alias_free_as_published_is_the_traced_hard_shadow() {
     let Some(lab) = lab() else { return };
     let scenes = ["overlap", "leaning-plank", "columns", "knot?triangles=20000", "ring-in-grass", "street"];
     // One pixel of ring-in-grass differs, and none of the others.
-    alias_free_is_traced_with(lab, SIZE, &builtin(&scenes), &AS_PRINTED, 9_000);
+    alias_free_is_traced_with(lab, SIZE, &builtin(&scenes), &AS_PUBLISHED, 9_000);
 }
 
 /// With one light sample, six vertices per triangle, stored positions and the stencil change no bit.
@@ -482,17 +482,17 @@ fn no_switch_changes_a_drawn_hard_shadow() {
         let lit = groups.iter().filter(|visibility| **visibility > 0.0).count();
         assert!(groups.len() / 20 < lit && lit < groups.len() / 20 * 19, "{scene}: {lit} of {} lit", groups.len());
         let differing = |settings: &[(&str, &str)]| {
-            let plain = [("map_size", "64"), AS_PRINTED[0], ("region", "boxes"), ("stencil", "false")];
+            let plain = [("map_size", "64"), AS_PUBLISHED[0], ("region", "boxes"), ("stencil", "false")];
             let all: Vec<_> = plain.iter().chain(settings).copied().collect();
             let drawn = same.mask(lab, TechniqueKind::AliasFree, &all);
             drawn.iter().zip(&groups).filter(|(a, b)| a != b).count()
         };
         let chosen = [("traversal", "chosen")];
-        for settings in [&[][..], &chosen, &AS_PRINTED[1..2], &AS_PRINTED[3..4], &AS_PRINTED[4..]] {
+        for settings in [&[][..], &chosen, &AS_PUBLISHED[1..2], &AS_PUBLISHED[3..4], &AS_PUBLISHED[4..]] {
             let differing = differing(settings);
             assert!(differing == 0, "{scene}, {settings:?}: {differing} pixels differ");
         }
-        let by_planes = differing(&AS_PRINTED[1..]);
+        let by_planes = differing(&AS_PUBLISHED[1..]);
         println!("{scene}: {by_planes} of {} pixels differ by planes of the triangle", groups.len());
         // One in ten thousand may lie on an edge.
         assert!(by_planes * 10_000 <= groups.len(), "{scene}: {by_planes} pixels differ by planes of the triangle");

@@ -31,13 +31,13 @@ fn check(scene: &Scene, pixels: usize) {
 }
 
 /// Number of triangles that brute force handles in a second or two.
-const MOST_TRIANGLES: usize = 100_000;
+const MAX_TRIANGLES: usize = 100_000;
 
 #[test]
 fn builtin_scenes_equal_brute_force() {
     for info in builtin::NAMES {
         // A million hairs by brute force take a minute and test no more than thirty thousand leaves.
-        if info.triangles > MOST_TRIANGLES {
+        if info.triangles > MAX_TRIANGLES {
             continue;
         }
         let scene = load(&format!("builtin:{}", info.name), &LoadOptions::default()).unwrap();

@@ -84,7 +84,7 @@ mod tests {
             instances: vec![antumbra_scene::Instance { mesh: 0, world_from_object: glam::Mat4::from_rotation_x(0.7) }],
             ..Scene::default()
         };
-        scene.stand_on_ground();
+        scene.add_ground();
         scene
     }
 
@@ -111,7 +111,7 @@ mod tests {
         let mut far = scene;
         far.count_from(Vec3::new(1.0e4, 3.0, -7.0e3));
         let far = GpuScene::upload(gpu, &far);
-        assert_eq!(far.casters_for(&at(2.0).counted_from(Vec3::new(1.0e4, 3.0, -7.0e3))).len(), 1);
+        assert_eq!(far.casters_for(&at(2.0).relative_to(Vec3::new(1.0e4, 3.0, -7.0e3))).len(), 1);
     }
 
     /// A ground that belongs to the scene is an ordinary caster.

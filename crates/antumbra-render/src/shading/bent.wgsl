@@ -16,7 +16,7 @@ struct BentCorner {
     @location(2) alpha: f32,
 }
 
-fn least_irradiance(x: vec3f, vertex: u32, to_world: mat3x3f, side: f32) -> f32 {
+fn min_irradiance(x: vec3f, vertex: u32, to_world: mat3x3f, side: f32) -> f32 {
     var least = facing_irradiance(light, x);
     let end = min(vertex_faces[vertex + 1u], arrayLength(&vertex_faces));
     for (var i = vertex_faces[vertex]; i < end; i += 3u) {
@@ -43,7 +43,7 @@ fn vertex_bent(@builtin(vertex_index) corner_index: u32, @builtin(instance_index
         position_in_object(indices[first + 2u]) - a,
     );
     let is_front = dot(transform_normal(to_world_linear, front), corner.geometric_normal) >= 0.0;
-    let least = least_irradiance(x, vertex, to_world_linear, select(-1.0, 1.0, is_front));
+    let least = min_irradiance(x, vertex, to_world_linear, select(-1.0, 1.0, is_front));
     let bent = least / max(facing_irradiance(light, x), 1e-30);
     return BentCorner(corner.position, bent, corner.uv, unmapped_color(corner).a);
 }

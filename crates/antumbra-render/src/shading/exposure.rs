@@ -16,7 +16,7 @@ use std::f32::consts::PI;
 use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec3;
 
-use super::{ELLIPSOID, LEAST_HALF_WIDTH_M, POINTS, RECTANGLE, SPHERE, SUN, kind_and_half_size};
+use super::{ELLIPSOID, MIN_HALF_WIDTH_M, POINTS, RECTANGLE, SPHERE, SUN, kind_and_half_size};
 
 /// Largest number of visible points that determine the exposure.
 const EXPOSURE_POINTS: usize = 2048;
@@ -141,7 +141,7 @@ fn facing_irradiance(light: &Light, points: &[Vec3], x: Vec3) -> f32 {
         .iter()
         .map(|u| {
             let segment = light.point(&frame, *u, x).vector_from(x);
-            let distance = segment.length().max(LEAST_HALF_WIDTH_M);
+            let distance = segment.length().max(MIN_HALF_WIDTH_M);
             let direction = segment / distance;
             let emitted = if emits_to_all_sides { 1.0 } else { (-direction.dot(light.axis)).max(0.0) };
             emitted * direction.dot(towards).max(0.0) / (distance * distance)

@@ -431,9 +431,9 @@ const SUN: u32 = 4;
 const POINTS: u32 = 5;
 
 /// Half width of a light without size, metres: too small to be visible in an image.
-const LEAST_HALF_WIDTH_M: f32 = 1e-3;
+const MIN_HALF_WIDTH_M: f32 = 1e-3;
 /// Tangent of half the angle of a sun without size.
-const LEAST_TANGENT: f32 = 1e-4;
+const MIN_TANGENT: f32 = 1e-4;
 
 impl LightBuffers {
     /// Creates the buffers of a light of some radiance (radiant intensity for points).
@@ -483,14 +483,14 @@ fn light_uniform(light: &Light, radiance: Vec3) -> LightUniform {
 }
 
 fn kind_and_half_size(shape: &LightShape) -> (u32, Vec3) {
-    let at_least = |v: Vec3| v.max(Vec3::splat(LEAST_HALF_WIDTH_M));
+    let at_least = |v: Vec3| v.max(Vec3::splat(MIN_HALF_WIDTH_M));
     match shape {
         LightShape::Rectangle { size_m } => (RECTANGLE, at_least(0.5 * size_m.extend(0.0))),
         LightShape::Disk { radius_m } => (DISK, at_least(Vec3::splat(*radius_m))),
         LightShape::Sphere { radius_m } => (SPHERE, at_least(Vec3::splat(*radius_m))),
         LightShape::Ellipsoid { radii_m } => (ELLIPSOID, at_least(*radii_m)),
         LightShape::Sun { angular_diameter_rad } => {
-            (SUN, Vec3::splat((0.5 * angular_diameter_rad).tan().max(LEAST_TANGENT)))
+            (SUN, Vec3::splat((0.5 * angular_diameter_rad).tan().max(MIN_TANGENT)))
         }
         LightShape::Points { .. } => (POINTS, Vec3::ZERO),
     }

@@ -74,7 +74,7 @@ impl Subject {
             }
             bounds = speck;
         }
-        Self { bounds, all, has_shadow: scene.stands_on_nothing() }
+        Self { bounds, all, has_shadow: scene.lacks_ground() }
     }
 
     /// Points that must be in the image: the corners of the box and, with `has_shadow`, of the shadow of its lower half. (Shadows of the
@@ -116,9 +116,9 @@ pub(super) fn camera(subject: &Subject, aspect: f32) -> Camera {
     }
 }
 
-/// Returns the target's offset across the view and the camera's distance from it, at least `least_m`, so that the corners fill the image.
+/// Returns the target's offset across the view and the camera's distance from it, at least `min_m`, so that the corners fill the image.
 /// `towards` is the unit direction towards the camera, `slope_y` the tangent of half its vertical field of view.
-fn place_filled_by(corners: &[Vec3], towards: Vec3, up: Vec3, slope_y: f32, aspect: f32, least_m: f32) -> (Vec3, f32) {
+fn place_filled_by(corners: &[Vec3], towards: Vec3, up: Vec3, slope_y: f32, aspect: f32, min_m: f32) -> (Vec3, f32) {
     let right = up.cross(towards).normalize();
     let up = towards.cross(right);
     // A corner at (x, z), across the image and towards the camera, is visible if |x − e| ≤ slope · (distance − z), with the eye at
@@ -134,7 +134,7 @@ fn place_filled_by(corners: &[Vec3], towards: Vec3, up: Vec3, slope_y: f32, aspe
         let (most, least) = limits(across, slope);
         (most - least) / (2.0 * slope)
     };
-    let distance = axes.map(enough).into_iter().fold(least_m, f32::max);
+    let distance = axes.map(enough).into_iter().fold(min_m, f32::max);
     // Of these e, the one with equal margins on both sides of the image, found by bisection.
     let middle = |(across, slope): (Vec3, f32)| {
         let (most, least) = limits(across, slope);
@@ -161,8 +161,8 @@ impl Camera {
         let towards = (self.eye - self.target).normalize();
         let corners = bounds.corners().map(|corner| corner - center);
         let slope_y = (0.5 * self.fov_y_rad).tan();
-        let least_m = radius.max(4.0 * self.near_m);
-        let (offset, distance) = place_filled_by(&corners, towards, self.up, slope_y, aspect, least_m);
+        let min_m = radius.max(4.0 * self.near_m);
+        let (offset, distance) = place_filled_by(&corners, towards, self.up, slope_y, aspect, min_m);
         self.target = center + offset;
         self.eye = self.target + distance * towards;
     }

@@ -144,7 +144,7 @@ fn light(file: &File, value: &Spanned<DeValue>, index: usize, folder: &Path) -> 
         shape,
         center: center.as_vec3(),
         axis,
-        up: Light::up_beside(axis, section.vec3("up")?.map_or(Vec3::Y, |v| v.as_vec3())),
+        up: Light::valid_up(axis, section.vec3("up")?.map_or(Vec3::Y, |v| v.as_vec3())),
         fov_rad: section.number("fov")?.map(|degrees| degrees.to_radians() as f32),
         cone: section.numbers("cone")?.map(|[inner, outer]: [f64; 2]| Cone {
             inner_rad: inner.to_radians() as f32,

@@ -15,15 +15,15 @@ use crate::{Camera, Scene};
 /// Smallest fraction of rays from an enclosed point that meet front faces: true in a hall without a roof, not in a street.
 const ENCLOSED: f32 = 0.8;
 /// Smallest number of enclosed test points in a room.
-const LEAST_ENCLOSED: usize = 3;
+const MIN_ENCLOSED: usize = 3;
 /// Number of rays from a point, evenly distributed over the sphere.
 const DIRECTIONS: u32 = 32;
 /// Smallest height of a room, metres.
-const LEAST_HEIGHT_M: f32 = 1.5;
+const MIN_HEIGHT_M: f32 = 1.5;
 /// Eye height above the floor, metres, if the room is high enough.
 const EYE_HEIGHT_M: f32 = 1.6;
 /// Largest number of triangles that are tested: with more, the rays would take seconds.
-const MOST_TRIANGLES: usize = 2_000_000;
+const MAX_TRIANGLES: usize = 2_000_000;
 /// Vertical field of view, degrees: wide, as is usual for rooms.
 const FOV_Y_DEGREES: f32 = 65.0;
 /// Height of the lamp, as a fraction of the way from the eye to the ceiling.
@@ -41,7 +41,7 @@ struct Hit {
 
 /// Returns a room's default camera and lamp; `None` if the scene is no room.
 pub(super) fn inside(scene: &Scene) -> Option<(Camera, Light)> {
-    if scene.triangle_count() > MOST_TRIANGLES {
+    if scene.triangle_count() > MAX_TRIANGLES {
         return None;
     }
     let bounds = scene.bounds();
@@ -49,7 +49,7 @@ pub(super) fn inside(scene: &Scene) -> Option<(Camera, Light)> {
     let places: Vec<Vec3> = [(0.5, 0.5), (0.3, 0.3), (0.7, 0.3), (0.3, 0.7), (0.7, 0.7)]
         .map(|(x, z)| place_within(bounds, Vec3::new(x, 0.4, z)))
         .to_vec();
-    if places.iter().filter(|place| is_enclosed(&faces, **place)).count() < LEAST_ENCLOSED {
+    if places.iter().filter(|place| is_enclosed(&faces, **place)).count() < MIN_ENCLOSED {
         return None;
     }
     let view = longest_view(&faces, bounds)?;
@@ -96,7 +96,7 @@ fn longest_view(faces: &[[Vec3; 3]], bounds: Aabb) -> Option<View> {
             let up = column[1].map_or(bounds.max.y - place.y, |hit| hit.distance_m);
             let height_m = down + up;
             let eye_m = EYE_HEIGHT_M.min(0.5 * height_m);
-            (height_m >= LEAST_HEIGHT_M).then_some(*place + (eye_m - down) * Vec3::Y)
+            (height_m >= MIN_HEIGHT_M).then_some(*place + (eye_m - down) * Vec3::Y)
         })
         .collect();
     let way = |k: u32| Vec3::new((TAU * k as f32 / WAYS as f32).cos(), 0.0, (TAU * k as f32 / WAYS as f32).sin());

@@ -304,7 +304,7 @@ fn grounds_do_not_make_specks_of_what_stands_on_them() {
     }
     let houses = village.bounds();
     assert_eq!(Subject::of(&village).bounds, houses);
-    village.stand_on_ground();
+    village.add_ground();
     let ground = village.meshes.last_mut().unwrap();
     ground.positions.iter_mut().for_each(|p| *p *= Vec3::new(10.0, 1.0, 10.0));
     let subject = Subject::of(&village);

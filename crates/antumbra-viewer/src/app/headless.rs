@@ -20,7 +20,7 @@ use crate::options::ViewerOptions;
 use crate::state::{Show, Side};
 
 /// Time limit for the application to become idle. Software devices compile some techniques for a minute.
-const MOST_WAIT: Duration = Duration::from_secs(300);
+const MAX_WAIT: Duration = Duration::from_secs(300);
 
 /// A window without a screen.
 pub struct Window {
@@ -31,7 +31,7 @@ pub struct Window {
     pub pixels_per_point: f32,
     pub device: wgpu::Device,
     /// Uncaptured errors of the device.
-    pub complaints: Arc<Mutex<Vec<String>>>,
+    pub validation_errors: Arc<Mutex<Vec<String>>>,
     pub outcome: Outcome,
 }
 
@@ -112,13 +112,13 @@ impl Window {
         let (ctx, outcome) = (egui::Context::default(), Outcome::default());
         let mut app = make(&ctx, render_state, outcome.clone());
         app.file_dialog = FileDialog::absent();
-        let complaints = Arc::new(Mutex::new(Vec::new()));
-        let told = complaints.clone();
+        let validation_errors = Arc::new(Mutex::new(Vec::new()));
+        let told = validation_errors.clone();
         // This replaces the renderer's own handler.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             told.lock().unwrap_or_else(PoisonError::into_inner).push(error.to_string());
         }));
-        Ok(Self { ctx, app, size: egui::vec2(640.0, 400.0), pixels_per_point: 1.0, device, complaints, outcome })
+        Ok(Self { ctx, app, size: egui::vec2(640.0, 400.0), pixels_per_point: 1.0, device, validation_errors, outcome })
     }
 
     /// Runs one frame with these events.
@@ -142,7 +142,7 @@ impl Window {
         // slow device would receive frames faster than it draws them. A lost device is reported by the next frame.
         output.textures_delta.clear();
         let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
-        assert_eq!(*self.complaints.lock().unwrap_or_else(PoisonError::into_inner), Vec::<String>::new());
+        assert_eq!(*self.validation_errors.lock().unwrap_or_else(PoisonError::into_inner), Vec::<String>::new());
     }
 
     /// Runs frames until the application is idle. Returns whether that happened within `most`.
@@ -160,9 +160,9 @@ impl Window {
         false
     }
 
-    /// Runs frames until the application is idle; panics after `MOST_WAIT`.
+    /// Runs frames until the application is idle; panics after `MAX_WAIT`.
     pub fn settle(&mut self) {
-        let is_still = self.wait(MOST_WAIT);
+        let is_still = self.wait(MAX_WAIT);
         let compiling = self.app.renderer.sides.each_ref().map(|side| side.compiling());
         assert!(is_still, "it never stands still: {:?}, compiling {compiling:?}", self.app.message);
     }

@@ -86,7 +86,7 @@ impl App {
     }
 
     pub(super) fn take_setup(&mut self, path: PathBuf, in_world: Setup) {
-        let setup = in_world.counted_from(self.state.anchor);
+        let setup = in_world.relative_to(self.state.anchor);
         self.state.take_setup(setup.clone());
         self.say(format!("camera and lights of {}", path.display()));
         self.panels.setup_path = path.display().to_string();

@@ -23,7 +23,7 @@ impl App {
         self.size_px = size_px;
         if let Some(framing) = self.unframed.take() {
             let camera = framing.camera(size_px.x as f32 / size_px.y as f32);
-            self.state.setup.camera = camera.counted_from(self.state.anchor);
+            self.state.setup.camera = camera.relative_to(self.state.anchor);
         }
         self.ask_for_truth();
         let estimate = self.truth.estimate();

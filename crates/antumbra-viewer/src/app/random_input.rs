@@ -21,7 +21,7 @@ const HOME: &str = "builtin:overlap";
 /// Window size for [`HOME`], points. It is small because software devices draw it.
 const HOME_SIZE: [f32; 2] = [480.0, 160.0];
 /// Time limit of a step that only waits.
-const MOST_WATCHING: Duration = Duration::from_secs(1);
+const MAX_WATCHING: Duration = Duration::from_secs(1);
 
 /// Xorshift generator; a seed determines its numbers (Marsaglia, "Xorshift RNGs", 2003).
 struct Random(u64);
@@ -112,7 +112,7 @@ impl RandomInput {
             6 => touch(window, random),
             _ => {
                 // A playing animation never becomes idle.
-                window.wait(MOST_WATCHING);
+                window.wait(MAX_WATCHING);
             }
         }
         window.frame(Vec::new());

@@ -31,13 +31,13 @@ struct Totals {
 @group(0) @binding(3) var<storage, read> counted: array<u32, 2>;
 
 // Bits of a map's side: 65536 texels, more than any device has.
-const MOST_BITS = 16u;
+const MAX_BITS = 16u;
 
 fn length_at(texel: vec2u) -> u32 {
     var i = texel.y * lists.size_texels.x + texel.x;
     if lists.order == 1u || (lists.order == 2u && words[lists.told_by] == 1u) {
         i = 0u;
-        for (var bit = 0u; bit < MOST_BITS; bit++) {
+        for (var bit = 0u; bit < MAX_BITS; bit++) {
             // Chromium's compiler wants every parenthesis.
             i |= (((texel.x >> bit) & 1u) << (2u * bit)) | (((texel.y >> bit) & 1u) << (2u * bit + 1u));
         }

@@ -35,7 +35,7 @@ pub use side_readings::SideReadings;
 pub use texture_reader::Texels;
 pub use times::{FRAMES, FrameTimes, Times};
 
-pub use crate::aside::Wake;
+pub use crate::background::Wake;
 use crate::state::{Side, State};
 use crate::truth::Estimate;
 use antialiasing::{Antialiasing, Smoothed};
@@ -52,14 +52,14 @@ pub enum Compile {
     /// Compile before the call returns.
     AtOnce,
     /// Compile in the background, on a thread if there are threads; then call the callback.
-    Aside(Wake),
+    Background(Wake),
 }
 
 impl fmt::Debug for Compile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::AtOnce => "AtOnce",
-            Self::Aside(_) => "Aside",
+            Self::Background(_) => "Background",
         })
     }
 }

@@ -21,12 +21,12 @@ use super::side_readings::SideReadings;
 use super::texture_reader::TextureReader;
 use super::times::{FrameClock, FrameTimes, Times};
 use super::{Compile, Wake};
-use crate::aside::aside;
+use crate::background::run_in_background;
 use crate::state::{Show, Side};
 
 /// Maximum number of techniques that a side compiles at a time: the chosen one and a former choice. On software devices
 /// each takes hundreds of megabytes, and a slow one takes a minute.
-const MOST_COMPILERS: usize = 2;
+const MAX_COMPILERS: usize = 2;
 
 /// A side's state on the GPU.
 #[derive(Debug)]
@@ -318,7 +318,7 @@ impl SideWork {
         }
         // Drivers cannot cancel a compilation. A user who scrolls through the techniques leaves some behind; the next one
         // waits until one is done.
-        if Arc::strong_count(&self.compilers) > MOST_COMPILERS {
+        if Arc::strong_count(&self.compilers) > MAX_COMPILERS {
             return;
         }
         let compiler = self.compilers.clone();
@@ -341,9 +341,9 @@ impl SideWork {
                 let _ = sender.send(make());
                 self.collect(&for_collect);
             }
-            Compile::Aside(wake) => {
+            Compile::Background(wake) => {
                 let wake: Wake = wake.clone();
-                aside(move || {
+                run_in_background(move || {
                     let made = make();
                     // This drop precedes the send, because the recipient may start another compilation.
                     drop(compiler);
@@ -435,7 +435,7 @@ impl SideWork {
         frame: &SideFrame<'_>,
     ) -> Result<(), String> {
         let began = Instant::now();
-        let made_before = gpu.objects_made();
+        let made_before = gpu.objects_created();
         let casters = frame.scene.casters_of_lights();
         let mut works = Vec::new();
         for ((shadow, light), mask) in self.shadows.iter_mut().zip(frame.lights).zip(&self.masks) {
@@ -454,7 +454,7 @@ impl SideWork {
         }
         self.auto_map_sizes = self.shadows.iter().flat_map(AnyShadow::auto_map_sizes).collect();
         let processor_ms = began.elapsed().as_secs_f64() * 1e3;
-        let has_made = gpu.objects_made() != made_before;
+        let has_made = gpu.objects_created() != made_before;
         let frame = FrameTimes { passes: Vec::new(), processor_ms, has_made };
         if is_timed {
             self.clock.record(encoder, frame.clone());

@@ -413,7 +413,7 @@ fn light_maps_are_seen_as_the_light_sees() {
 #[test]
 fn techniques_that_are_passed_by_do_not_pile_up() {
     let Some((renderer, mut state)) = fixture("builtin:overlap") else { return };
-    let mut renderer = Renderer { compile: Compile::Aside(Arc::new(|| ())), ..renderer };
+    let mut renderer = Renderer { compile: Compile::Background(Arc::new(|| ())), ..renderer };
     let passed_by = ["hard", "pcf", "vsm", "esm", "evsm", "pcss"].map(|name| TechniqueKind::from_name(name).unwrap());
     let mut most = 0;
     for kind in passed_by {

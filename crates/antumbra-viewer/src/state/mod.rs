@@ -62,7 +62,7 @@ impl Show {
 }
 
 /// Maximum number of bookmarks: the digits without zero.
-const MOST_BOOKMARKS: usize = 9;
+const MAX_BOOKMARKS: usize = 9;
 
 /// The open scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -165,7 +165,7 @@ impl State {
 
     /// Returns camera and lights in world space, as files store them.
     pub fn setup_in_world(&self) -> Setup {
-        self.setup.counted_from(-self.anchor)
+        self.setup.relative_to(-self.anchor)
     }
 
     /// Sets camera and lights to `setup`, which is relative to the anchor.
@@ -176,7 +176,7 @@ impl State {
 
     /// Adds a bookmark of the camera. A tenth one replaces the ninth.
     pub fn add_bookmark(&mut self) {
-        self.bookmarks.truncate(MOST_BOOKMARKS - 1);
+        self.bookmarks.truncate(MAX_BOOKMARKS - 1);
         self.bookmarks.push(self.setup.camera);
     }
 
@@ -302,7 +302,7 @@ mod tests {
             state.add_bookmark();
             state.setup.camera.eye.x += 1.0;
         }
-        assert_eq!(state.bookmarks.len(), MOST_BOOKMARKS);
+        assert_eq!(state.bookmarks.len(), MAX_BOOKMARKS);
         state.go_to_bookmark(0);
         assert_eq!(state.setup.camera, before);
         let scene = load("builtin:overlap", &LoadOptions::default()).unwrap();

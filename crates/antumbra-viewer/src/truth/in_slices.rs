@@ -11,7 +11,7 @@ use web_time::Instant;
 
 use super::tracing::Tracing;
 use super::{Estimate, Job};
-use crate::aside::Wake;
+use crate::background::Wake;
 
 /// Tracing time per frame: about half of a sixtieth of a second.
 const SLICE: Duration = Duration::from_millis(8);

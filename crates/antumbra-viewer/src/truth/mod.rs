@@ -18,7 +18,7 @@ use in_slices::Slices as Worker;
 #[cfg(not(target_arch = "wasm32"))]
 use on_thread::Thread as Worker;
 
-use crate::aside::Wake;
+use crate::background::Wake;
 
 /// Light samples per round; a square number for the stratified set.
 pub const ROUND_POINTS: u32 = 16;

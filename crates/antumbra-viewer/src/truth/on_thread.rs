@@ -11,7 +11,7 @@ use antumbra_scene::Scene;
 
 use super::tracing::Tracing;
 use super::{Estimate, Job};
-use crate::aside::Wake;
+use crate::background::Wake;
 
 /// Handle of the thread, which ends when the handle is dropped.
 pub struct Thread {

@@ -13,7 +13,7 @@ const RING_CORNERS: usize = 48;
 /// Resolution of dragged angles, radians; the outer angle exceeds the inner one by at least this.
 const STEP_RAD: f32 = 0.25 * std::f32::consts::PI / 180.0;
 /// Largest half angle in steps: 89 degrees.
-const MOST_STEPS: usize = 356;
+const MAX_STEPS: usize = 356;
 
 /// A handle to drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Handle {
         let off = |angle_rad: f32| {
             on_screen(self.at(light, camera, diagonal_m, angle_rad)).map_or(f32::MAX, |place| place.distance(pointer))
         };
-        let angles = (0..=MOST_STEPS).map(|step| step as f32 * STEP_RAD);
+        let angles = (0..=MAX_STEPS).map(|step| step as f32 * STEP_RAD);
         let Some(angle_rad) = angles.min_by(|a, b| off(*a).total_cmp(&off(*b))) else { return };
         match (self, &mut light.cone, &mut light.fov_rad) {
             (Self::Outer, Some(cone), _) => cone.outer_rad = angle_rad.max(cone.inner_rad + STEP_RAD),

@@ -3,7 +3,7 @@
 use antumbra_scene::builtin;
 
 use super::Action;
-use crate::aside::Wake;
+use crate::background::Wake;
 use crate::file_dialog::Purpose;
 use crate::loader::is_setup;
 use crate::thumbnails::{SIZE_PX, Thumbnails};

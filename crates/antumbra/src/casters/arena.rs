@@ -23,7 +23,7 @@ struct Column {
 }
 
 /// Minimum number of items of a buffer.
-const LEAST_ITEMS: u64 = 1024;
+const MIN_ITEMS: u64 = 1024;
 
 impl Arena {
     /// Creates an arena with one buffer per label, without allocating them yet. The second values are bytes per item.
@@ -32,20 +32,20 @@ impl Arena {
         let column =
             |(label, item_bytes): &(&'static str, u64)| Column { label, item_bytes: *item_bytes, buffer: None };
         let columns = columns.iter().map(column).collect();
-        Self { usage, ranges: RangeAllocator::new(0..LEAST_ITEMS), columns }
+        Self { usage, ranges: RangeAllocator::new(0..MIN_ITEMS), columns }
     }
 
-    /// Allocates a range of `count` items. If the arena must grow, no buffer exceeds `most_bytes`. Returns the number
+    /// Allocates a range of `count` items. If the arena must grow, no buffer exceeds `max_bytes`. Returns the number
     /// of bytes needed as the error.
-    pub(super) fn take(&mut self, count: u64, most_bytes: u64) -> Result<Range<u32>, u64> {
+    pub(super) fn take(&mut self, count: u64, max_bytes: u64) -> Result<Range<u32>, u64> {
         let item_bytes = self.columns.iter().map(|column| column.item_bytes).max().unwrap_or(1);
         loop {
             if let Ok(range) = self.ranges.allocate_range(count.max(1)) {
                 return Ok(range.start as u32..range.start as u32 + count as u32);
             }
             let held = self.ranges.initial_range().end;
-            let most_items = most_bytes / item_bytes;
-            let wanted = (held + count).next_power_of_two().min(most_items);
+            let max_items = max_bytes / item_bytes;
+            let wanted = (held + count).next_power_of_two().min(max_items);
             if wanted <= held {
                 return Err((held + count) * item_bytes);
             }
@@ -101,13 +101,13 @@ mod tests {
     #[test]
     fn ranges_are_apart_and_come_back() {
         let mut arena = Arena::new(&[("test", 4)], wgpu::BufferUsages::empty());
-        let most_bytes = 4 * 4096;
-        let a = arena.take(1000, most_bytes).expect("room");
-        let b = arena.take(2000, most_bytes).expect("room after it has grown");
+        let max_bytes = 4 * 4096;
+        let a = arena.take(1000, max_bytes).expect("room");
+        let b = arena.take(2000, max_bytes).expect("room after it has grown");
         assert!(a.end <= b.start || b.end <= a.start, "{a:?} {b:?}");
-        assert_eq!(arena.take(4000, most_bytes), Err(4 * (4096 + 4000)));
+        assert_eq!(arena.take(4000, max_bytes), Err(4 * (4096 + 4000)));
         arena.give_back(&b);
-        assert!(arena.take(3000, most_bytes).is_ok(), "what was given back is taken again");
+        assert!(arena.take(3000, max_bytes).is_ok(), "what was given back is taken again");
     }
 
     #[test]

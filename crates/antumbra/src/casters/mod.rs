@@ -26,7 +26,7 @@ use glam::Mat4;
 use slotmap::SlotMap;
 
 use crate::contract::{Error, MeshVersion};
-use crate::gpu::{Commands, Gpu, Keep};
+use crate::gpu::{Commands, Gpu, RetainedState};
 
 mod arena;
 mod ball;
@@ -95,7 +95,7 @@ pub struct CasterSet {
     order: Vec<CasterId>,
     /// Whether `order` is up to date with the casters.
     is_sorted: bool,
-    keep: Keep,
+    keep: RetainedState,
     /// Unique number of the set.
     number: u64,
     /// Number of changes.
@@ -138,7 +138,7 @@ struct CasterEntry {
 }
 
 /// Name in errors, in place of a technique's.
-const WHO: &str = "casters";
+const ERROR_SOURCE: &str = "casters";
 
 /// Number of the next set.
 static NEXT_SET: AtomicU64 = AtomicU64::new(0);
@@ -162,7 +162,7 @@ impl CasterSet {
             matrices: Vec::new(),
             order: Vec::new(),
             is_sorted: true,
-            keep: Keep::default(),
+            keep: RetainedState::default(),
             number: NEXT_SET.fetch_add(1, Ordering::Relaxed),
             version: 0,
             updated: None,
@@ -182,10 +182,10 @@ impl CasterSet {
     /// If buffers are too short or unreadable, or all meshes together exceed the size of a binding.
     pub fn add_mesh(&mut self, mesh: &Mesh<'_>) -> Result<MeshId, Error> {
         let source = source_of(mesh)?;
-        let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
+        let max_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
         let arena = &mut self.vertices[usize::from(source.has_uvs())];
-        let vertices = room(arena.take(source.vertex_count().into(), most_bytes), most_bytes)?;
-        let triangles = match room(self.indices.take(u64::from(source.index_count()) / 3, most_bytes), most_bytes) {
+        let vertices = room(arena.take(source.vertex_count().into(), max_bytes), max_bytes)?;
+        let triangles = match room(self.indices.take(u64::from(source.index_count()) / 3, max_bytes), max_bytes) {
             Ok(triangles) => triangles,
             Err(error) => {
                 arena.give_back(&vertices);
@@ -268,8 +268,8 @@ impl CasterSet {
         let mesh = self.meshes.get(caster.mesh).ok_or_else(|| gone("the caster's mesh"))?;
         check_surface(&self.gpu, &caster.surface, mesh)?;
         let of_instances = PlacedInstances::new(&caster.instances, mesh.bounds)?;
-        let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
-        let places = room(self.instances.take(of_instances.count.into(), most_bytes), most_bytes)?;
+        let max_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
+        let places = room(self.instances.take(of_instances.count.into(), max_bytes), max_bytes)?;
         let mut entry = CasterEntry {
             mesh: caster.mesh,
             places,
@@ -296,8 +296,8 @@ impl CasterSet {
         let entry = self.casters.get_mut(id).ok_or_else(|| gone("the caster"))?;
         let of_instances = PlacedInstances::new(&instances, self.meshes[entry.mesh].bounds)?;
         if of_instances.count != entry.places.end - entry.places.start {
-            let most_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
-            let places = room(self.instances.take(of_instances.count.into(), most_bytes), most_bytes)?;
+            let max_bytes = self.gpu.device.limits().max_storage_buffer_binding_size;
+            let places = room(self.instances.take(of_instances.count.into(), max_bytes), max_bytes)?;
             self.instances.give_back(&std::mem::replace(&mut entry.places, places));
             self.is_sorted = false;
         }
@@ -403,11 +403,11 @@ fn check_box(what: &'static str, bounds: Aabb, holds_any: bool) -> Result<(), Er
 }
 
 /// Returns the allocated range, or an error with the bytes that would be needed.
-fn room(range: Result<Range<u32>, u64>, most_bytes: u64) -> Result<Range<u32>, Error> {
+fn room(range: Result<Range<u32>, u64>, max_bytes: u64) -> Result<Range<u32>, Error> {
     range.map_err(|bytes| Error::Unsupported {
-        technique: WHO,
+        technique: ERROR_SOURCE,
         needed: format!("{bytes} bytes of one kind of data for all casters of a set"),
-        had: format!("{most_bytes} bytes a binding"),
+        had: format!("{max_bytes} bytes a binding"),
         remedy: "cast with fewer or coarser meshes, or ask for a larger max_storage_buffer_binding_size",
     })
 }
@@ -417,5 +417,5 @@ fn gone(what: &'static str) -> Error {
 }
 
 fn bad(what: &'static str, had: String, needed: String) -> Error {
-    Error::BadFrame { technique: WHO, what, had, needed }
+    Error::BadFrame { technique: ERROR_SOURCE, what, had, needed }
 }

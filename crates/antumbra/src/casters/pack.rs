@@ -81,7 +81,7 @@ shared_constants! {
 const INDICES_32: u32 = 2;
 
 /// Name in errors, in place of a technique's.
-const WHO: &str = "casters";
+const ERROR_SOURCE: &str = "casters";
 
 /// Part of a host's buffer, read as 32-bit words.
 #[derive(Clone, Debug)]
@@ -148,7 +148,7 @@ impl Words {
 }
 
 fn bad(what: &'static str, had: String, needed: String) -> Error {
-    Error::BadFrame { technique: WHO, what, had, needed }
+    Error::BadFrame { technique: ERROR_SOURCE, what, had, needed }
 }
 
 /// Source of a mesh's vertices and indices for packing.

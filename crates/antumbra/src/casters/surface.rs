@@ -74,11 +74,11 @@ pub(super) fn check_surface(gpu: &Gpu, surface: &Surface, mesh: &MeshEntry) -> R
             "on a mesh that has some".into(),
         ));
     }
-    let complaint = ViewKind::Filtered.complaint(gpu, &texture.view);
-    complaint.map_or(Ok(()), |complaint| {
+    let validation_error = ViewKind::Filtered.validation_error(gpu, &texture.view);
+    validation_error.map_or(Ok(()), |validation_error| {
         Err(bad(
             "the surface's texture",
-            format!("one that cannot be bound ({complaint})"),
+            format!("one that cannot be bound ({validation_error})"),
             "a 2D view of one layer, of a filterable colour format".into(),
         ))
     })

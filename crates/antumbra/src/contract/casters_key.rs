@@ -19,7 +19,7 @@ impl CastersKey {
     }
 
     /// Returns the key for positions relative to an anchor.
-    pub(crate) fn counted_from(self, anchor: Vec3) -> Self {
+    pub(crate) fn relative_to(self, anchor: Vec3) -> Self {
         Self { anchor: anchor.to_array().map(f32::to_bits), ..self }
     }
 }

@@ -10,12 +10,12 @@
 /// penumbra allows.
 ///
 /// The mask of a single frame is smoothed over pixels only. While nothing changes, the mask is redrawn until its means cover
-/// `most_frames` frames; then it is cached.
+/// `max_frames` frames; then it is cached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Denoise {
     /// Maximum number of frames in a mean, 1 to 64. More frames reduce noise at rest and in motion, but shadows of slowly moving
     /// lights or casters lag by some of them.
-    pub most_frames: u32,
+    pub max_frames: u32,
     /// Motion vectors: image position of each pixel's surface in this frame minus that in the previous frame, as fractions of the
     /// image, right and down. Any float format with `TEXTURE_BINDING`, laid out as the depth buffer. `None`: only camera motion is
     /// reprojected, and moving objects are detected by depth alone.
@@ -23,13 +23,13 @@ pub struct Denoise {
 }
 
 impl Denoise {
-    /// Upper limit of [`most_frames`](Self::most_frames).
-    pub const MOST_FRAMES: u32 = 64;
+    /// Upper limit of [`max_frames`](Self::max_frames).
+    pub const MAX_FRAMES: u32 = 64;
 }
 
 impl Default for Denoise {
     /// Means over 16 frames, reprojected by the camera's motion.
     fn default() -> Self {
-        Self { most_frames: 16, motion: None }
+        Self { max_frames: 16, motion: None }
     }
 }

@@ -39,7 +39,7 @@ pub use mask::{Mask, MaskChannels, MaskPlace};
 pub(crate) use param_macros::{declare_params, param_choice, params, params_in_full};
 pub use params::{ParamList, ParamScale, ParamSpec, ParamType, ParamValue, Params};
 pub use points::{PointBuffer, PointReceivers, PointWidths};
-pub use quality::{Departure, Printed, Quality};
+pub use quality::{Departure, PublishedForm, Quality};
 pub(crate) use receivers::SeenPoint;
 pub use receivers::{Camera, DepthConvention, PreparedReceivers, Receivers, Surfaces};
 pub use sample_weights::SampleWeights;

@@ -122,8 +122,8 @@ macro_rules! declare_params {
             }
 
             #[allow(unreachable_code)]
-            fn printed() -> Option<&'static $crate::contract::Printed> {
-                $( return Some(&$crate::contract::Printed {
+            fn published() -> Option<&'static $crate::contract::PublishedForm> {
+                $( return Some(&$crate::contract::PublishedForm {
                     departures: &[$( $crate::contract::Departure { key: stringify!($paper_key), ours: $ours }, )*],
                     kept: &[$( $kept, )*],
                 }); )?

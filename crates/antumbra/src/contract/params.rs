@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use super::{ParamError, Printed, Quality};
+use super::{ParamError, PublishedForm, Quality};
 
 /// Scale of a parameter's slider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -223,7 +223,7 @@ pub trait Params: Default + Clone + PartialEq + wgpu::WasmNotSendSync {
     /// Parameters of a quality; the defaults for [`Quality::Balanced`].
     fn of_quality(quality: Quality) -> Self;
     /// Departures from the paper, for [`Quality::Paper`]; `None` if there is no such setting.
-    fn printed() -> Option<&'static Printed>;
+    fn published() -> Option<&'static PublishedForm>;
     /// Declarations, in the order of documentation.
     fn specs() -> &'static [ParamSpec];
     /// Value of a key of [`Self::specs`].

@@ -45,7 +45,7 @@ impl Quality {
 
 /// Departures of a technique from its paper: those that [`Quality::Paper`] turns off, and those that nothing turns off.
 #[derive(Clone, Copy, Debug)]
-pub struct Printed {
+pub struct PublishedForm {
     /// Departures that a parameter turns off.
     pub departures: &'static [Departure],
     /// Departures that nothing turns off.

@@ -51,7 +51,7 @@ pub(crate) trait Bindings {
     }
 
     /// Creates a group that the caller keeps together with its resources.
-    fn kept_group(&self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
+    fn cached_group(&self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
         let entries = self.entries();
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(Self::LABEL), layout, entries: &entries })
     }

@@ -93,7 +93,7 @@ pub(crate) fn shared_table(gpu: &Gpu, key: TableKey, bytes: impl FnOnce() -> Vec
 }
 
 /// Uploads bytes whose number varies from frame to frame, to a storage buffer that never shrinks.
-pub(crate) fn upload_with_room<'a>(
+pub(crate) fn upload_growable<'a>(
     stage: &Stage<'_>,
     buffer: &'a mut Option<wgpu::Buffer>,
     label: &str,
@@ -200,9 +200,9 @@ fn compute_entry_with(
 
 /// Dispatches at least `threads` threads in workgroups of 64, in two dimensions if one exceeds WebGPU's limit.
 pub(crate) fn dispatch_threads(pass: &mut wgpu::ComputePass<'_>, threads: u32) {
-    const MOST_IN_ONE_DIMENSION: u32 = 65_535;
+    const MAX_IN_ONE_DIMENSION: u32 = 65_535;
     let workgroups = threads.div_ceil(64);
-    pass.dispatch_workgroups(workgroups.min(MOST_IN_ONE_DIMENSION), workgroups.div_ceil(MOST_IN_ONE_DIMENSION), 1);
+    pass.dispatch_workgroups(workgroups.min(MAX_IN_ONE_DIMENSION), workgroups.div_ceil(MAX_IN_ONE_DIMENSION), 1);
 }
 
 /// Creates a pipeline that draws to all `targets` with the entry points `vertex` and `draw` of a linked shader.

@@ -62,7 +62,7 @@ impl Gpu {
 
     /// Number of objects that the library has created on the device, through this handle and its clones. Frames with only
     /// motion create none.
-    pub fn objects_made(&self) -> ObjectCounts {
+    pub fn objects_created(&self) -> ObjectCounts {
         self.device.counts()
     }
 
@@ -87,7 +87,7 @@ impl Gpu {
 
     /// Last line of wgpu's validation error about what `run` does, or `None`; `None` also if the device, in a browser, does not
     /// answer at once.
-    pub(crate) fn complaint(&self, run: impl FnOnce()) -> Option<String> {
+    pub(crate) fn validation_error(&self, run: impl FnOnce()) -> Option<String> {
         let scope = self.device().push_error_scope(wgpu::ErrorFilter::Validation);
         run();
         let mut answer = Box::pin(scope.pop());

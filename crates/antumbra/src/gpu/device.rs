@@ -61,8 +61,8 @@ struct Programs {
     plan_of: Option<Device>,
     pipeline_cache: Option<wgpu::PipelineCache>,
     uniforms: UniformAccess,
-    /// Result of [`quirks::most_turns`].
-    most_turns: u32,
+    /// Result of [`quirks::max_iterations`].
+    max_iterations: u32,
     bind_group_layouts: DescriptorCache<LayoutKey, wgpu::BindGroupLayout>,
     pipeline_layouts: DescriptorCache<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
     /// By address and length of the linked text, which is static.
@@ -100,7 +100,7 @@ impl Device {
         let programs = Programs {
             pipeline_cache: pipeline_cache.cloned(),
             uniforms: UniformAccess::of(device),
-            most_turns: quirks::most_turns(&device.adapter_info()),
+            max_iterations: quirks::max_iterations(&device.adapter_info()),
             ..Programs::default()
         };
         Self { device: device.clone(), programs: Arc::new(programs) }
@@ -111,7 +111,7 @@ impl Device {
         let programs = Programs {
             plan_of: Some(of.clone()),
             uniforms: of.programs.uniforms,
-            most_turns: of.programs.most_turns,
+            max_iterations: of.programs.max_iterations,
             budget: Arc::new(of.budget().left()),
             ..Programs::default()
         };
@@ -124,8 +124,8 @@ impl Device {
     }
 
     /// Loop iterations of an invocation after which a pass of unbounded work leaves the rest to the next pass.
-    pub(crate) fn most_turns(&self) -> u32 {
-        self.programs.most_turns
+    pub(crate) fn max_iterations(&self) -> u32 {
+        self.programs.max_iterations
     }
 
     /// Whether lights of this device may read resources of `other`: a clone, or the device that this one plans for.

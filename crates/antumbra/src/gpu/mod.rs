@@ -34,8 +34,8 @@ mod uniforms;
 pub(crate) use bindings::{Bindings, bindings, samples, texels};
 pub(crate) use buffers::{
     GpuField, GpuStruct, color_pipeline, compute_entry, compute_pipeline, compute_pipeline_without_zeroing,
-    create_uniform, dispatch_threads, gpu_structs, shader_module, shared_table, sized_buffer, upload_storage,
-    upload_with_room, write_uniform,
+    create_uniform, dispatch_threads, gpu_structs, shader_module, shared_table, sized_buffer, upload_growable,
+    upload_storage, write_uniform,
 };
 pub(crate) use cached::Cached;
 pub(crate) use commands::{Commands, CommandsEnd};
@@ -55,6 +55,6 @@ pub(crate) use scratch::{Scratch, passed_texture};
 pub(crate) use shared_constants::shared_constants;
 pub(crate) use shared_values::SharedValues;
 pub use stage::Stage;
-pub(crate) use stage::{Keep, Resource, StagedUploads};
+pub(crate) use stage::{Resource, RetainedState, StagedUploads};
 pub(crate) use textures::{array_view, slice_views, texture_of, white_texture};
-pub(crate) use trial::{ViewKind, storage_complaint};
+pub(crate) use trial::{ViewKind, storage_validation_error};

@@ -6,7 +6,7 @@
 /// graphics card a pass costs more than its iterations: with fifty times as many, an NVIDIA H200 took .63 and .75 of the time
 /// for `sample_based` (`knot`, `street`, 1920 × 1080), some 3 ms per million iterations. With a million, even a card a hundred
 /// times slower stays below the seconds after which a system considers it hung.
-pub(super) fn most_turns(adapter: &wgpu::AdapterInfo) -> u32 {
+pub(super) fn max_iterations(adapter: &wgpu::AdapterInfo) -> u32 {
     // A browser reveals neither driver nor type, and may render in software.
     let is_card = matches!(adapter.device_type, wgpu::DeviceType::DiscreteGpu | wgpu::DeviceType::IntegratedGpu);
     if is_card { 1_000_000 } else { 60_000 }

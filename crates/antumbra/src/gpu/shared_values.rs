@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(crate) struct SharedValues(Mutex<Vec<Arc<dyn Any + Send + Sync>>>);
 
 /// Capacity: about the number of views and anchors of a frame.
-const MOST_KEPT: usize = 16;
+const MAX_KEPT: usize = 16;
 
 impl SharedValues {
     /// Returns a key and its value, computed if not cached.
@@ -33,7 +33,7 @@ impl SharedValues {
         let value = make(&key);
         let made = Arc::new((key, value));
         let mut kept = lock();
-        if kept.len() == MOST_KEPT {
+        if kept.len() == MAX_KEPT {
             kept.remove(0);
         }
         kept.push(Arc::<(K, V)>::clone(&made));
@@ -43,7 +43,7 @@ impl SharedValues {
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST_KEPT, SharedValues};
+    use super::{MAX_KEPT, SharedValues};
 
     #[test]
     fn a_value_is_made_once_while_it_is_used() {
@@ -57,16 +57,16 @@ mod tests {
             assert_eq!(*pair, (key, 10 * key));
         };
         for _ in 0..3 {
-            (0..MOST_KEPT).for_each(get);
+            (0..MAX_KEPT).for_each(get);
         }
-        assert_eq!(made.get(), MOST_KEPT);
+        assert_eq!(made.get(), MAX_KEPT);
         // One more entry evicts the least recently used.
         get(0);
-        get(MOST_KEPT);
+        get(MAX_KEPT);
         get(0);
-        assert_eq!(made.get(), MOST_KEPT + 1);
+        assert_eq!(made.get(), MAX_KEPT + 1);
         get(1);
-        assert_eq!(made.get(), MOST_KEPT + 2);
+        assert_eq!(made.get(), MAX_KEPT + 2);
         // The same key with another value type is a separate entry.
         assert_eq!(values.get_or_make(0usize, |_| "text").1, "text");
     }

@@ -21,7 +21,7 @@ use hashbrown::{DefaultHashBuilder, HashTable};
 use super::Gpu;
 use crate::contract::CastersKey;
 pub(crate) use bind_groups::Resource;
-use bind_groups::{KeptGroup, KeptView};
+use bind_groups::{CachedGroup, CachedView};
 pub(crate) use uploads::StagedUploads;
 use uploads::{Copy, Staging, Uploads};
 
@@ -29,7 +29,7 @@ use uploads::{Copy, Staging, Uploads};
 #[derive(Debug)]
 pub struct Stage<'a> {
     gpu: &'a Gpu,
-    keep: RefCell<Keep>,
+    keep: RefCell<RetainedState>,
     /// Key of the frame's casters; `None` if their changes are unknown.
     casters: Option<CastersKey>,
     /// Origin of the frame's positions, world space.
@@ -55,12 +55,12 @@ impl Deref for Stage<'_> {
 
 /// State of a light that is retained between frames.
 #[derive(Debug, Default)]
-pub(crate) struct Keep {
+pub(crate) struct RetainedState {
     /// Number of frames prepared.
     frame: u64,
     hashes: DefaultHashBuilder,
-    groups: HashTable<KeptGroup>,
-    views: HashTable<KeptView>,
+    groups: HashTable<CachedGroup>,
+    views: HashTable<CachedView>,
     /// Buffers by label and usage, in the order in which a frame requests them.
     buffers: HashMap<(&'static str, wgpu::BufferUsages), BufferRow>,
     uploads: Uploads,
@@ -85,7 +85,7 @@ struct BufferRow {
 }
 
 /// Frames after which unused resources are dropped: hosts may alternate between as many depth buffers and masks.
-const KEPT_FRAMES: u64 = 8;
+const RETAINED_FRAMES: u64 = 8;
 
 /// Usage of buffers from [`Stage::uniform`].
 const UNIFORM: wgpu::BufferUsages = wgpu::BufferUsages::UNIFORM.union(wgpu::BufferUsages::COPY_DST);
@@ -95,7 +95,7 @@ const STORAGE: wgpu::BufferUsages = wgpu::BufferUsages::STORAGE.union(wgpu::Buff
 
 impl<'a> Stage<'a> {
     /// Creates a stage for the next frame.
-    pub(crate) fn new(gpu: &'a Gpu, mut keep: Keep, casters: Option<CastersKey>) -> Self {
+    pub(crate) fn new(gpu: &'a Gpu, mut keep: RetainedState, casters: Option<CastersKey>) -> Self {
         keep.frame += 1;
         let auto_texels_before = keep.auto_texels.take();
         keep.uploads.bytes.clear();
@@ -116,7 +116,7 @@ impl<'a> Stage<'a> {
 
     /// Creates a stage for one part of the frame with a state of its own; [`finish_part`](Self::finish_part) ends it. Maps
     /// are fitted to the box with the given corners, if any, so that their texels do not move.
-    pub(crate) fn of_part(&self, keep: Keep, stable_box: Option<[Vec3; 8]>) -> Self {
+    pub(crate) fn of_part(&self, keep: RetainedState, stable_box: Option<[Vec3; 8]>) -> Self {
         Self {
             anchor: self.anchor,
             noise_frame: self.noise_frame,
@@ -130,7 +130,7 @@ impl<'a> Stage<'a> {
     /// Creates a stage for one frame whose uploads are queued at once.
     #[cfg(test)]
     pub(crate) fn at_once(gpu: &'a Gpu) -> Self {
-        Self { is_at_once: true, ..Self::new(gpu, Keep::default(), None) }
+        Self { is_at_once: true, ..Self::new(gpu, RetainedState::default(), None) }
     }
 
     /// Sets the anchor: the origin of all positions of the frame except those of caster vertices and instances.
@@ -183,28 +183,28 @@ impl<'a> Stage<'a> {
 
     /// Key of the frame's casters and their version, relative to the anchor; `None` if changes are unknown.
     pub(crate) fn casters(&self) -> Option<CastersKey> {
-        self.casters.map(|casters| casters.counted_from(self.anchor))
+        self.casters.map(|casters| casters.relative_to(self.anchor))
     }
 
     /// Ends the frame. Returns the retained state and the uploads.
-    pub(crate) fn finish(self) -> (Keep, StagedUploads) {
+    pub(crate) fn finish(self) -> (RetainedState, StagedUploads) {
         let gpu = self.gpu;
-        let mut keep = self.into_keep();
+        let mut keep = self.into_retained();
         let staged = keep.stage_uploads(gpu);
         (keep, staged)
     }
 
     /// Ends a part of a frame. Returns its retained state; its uploads, to buffers of its own, join the frame's.
-    pub(crate) fn finish_part(self, of_frame: &Stage<'_>) -> Keep {
-        let mut keep = self.into_keep();
+    pub(crate) fn finish_part(self, of_frame: &Stage<'_>) -> RetainedState {
+        let mut keep = self.into_retained();
         of_frame.keep.borrow_mut().uploads.append(&mut keep.uploads);
         keep
     }
 
     /// Returns the state retained for the next frame, without long-unused resources.
-    fn into_keep(self) -> Keep {
+    fn into_retained(self) -> RetainedState {
         let mut keep = self.keep.into_inner();
-        let oldest = keep.frame.saturating_sub(KEPT_FRAMES);
+        let oldest = keep.frame.saturating_sub(RETAINED_FRAMES);
         keep.groups.retain(|kept| kept.group.frame >= oldest);
         keep.views.retain(|kept| kept.view.frame >= oldest);
         for row in keep.buffers.values_mut() {
@@ -279,7 +279,7 @@ impl<'a> Stage<'a> {
     }
 }
 
-impl Keep {
+impl RetainedState {
     /// Memory of the frame's own buffers and of staging buffers, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
         let of_frame = self.buffers.values().flat_map(|row| &row.buffers).map(|buffer| buffer.value.size());

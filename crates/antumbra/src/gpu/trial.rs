@@ -18,8 +18,8 @@ pub(crate) enum ViewKind {
 
 impl ViewKind {
     /// Validation error that wgpu reports for a view of this kind, or `None`; `None` also if a browser does not answer at once.
-    pub(crate) fn complaint(self, gpu: &Gpu, view: &wgpu::TextureView) -> Option<String> {
-        complaint(gpu, self.binding_type(), wgpu::BindingResource::TextureView(view))
+    pub(crate) fn validation_error(self, gpu: &Gpu, view: &wgpu::TextureView) -> Option<String> {
+        validation_error(gpu, self.binding_type(), wgpu::BindingResource::TextureView(view))
     }
 
     fn binding_type(self) -> wgpu::BindingType {
@@ -37,19 +37,19 @@ impl ViewKind {
 }
 
 /// Validation error that wgpu reports for a storage buffer; `None` as for [`ViewKind::complaint`].
-pub(crate) fn storage_complaint(gpu: &Gpu, buffer: &wgpu::Buffer) -> Option<String> {
+pub(crate) fn storage_validation_error(gpu: &Gpu, buffer: &wgpu::Buffer) -> Option<String> {
     let ty = wgpu::BufferBindingType::Storage { read_only: false };
     let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    complaint(gpu, ty, buffer.as_entire_binding())
+    validation_error(gpu, ty, buffer.as_entire_binding())
 }
 
-fn complaint(gpu: &Gpu, ty: wgpu::BindingType, resource: wgpu::BindingResource<'_>) -> Option<String> {
+fn validation_error(gpu: &Gpu, ty: wgpu::BindingType, resource: wgpu::BindingResource<'_>) -> Option<String> {
     let visibility = wgpu::ShaderStages::COMPUTE;
     let entry = wgpu::BindGroupLayoutEntry { binding: 0, visibility, ty, count: None };
     let label = Some("antumbra trial");
     let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &[entry] });
     let entries = [wgpu::BindGroupEntry { binding: 0, resource }];
-    gpu.complaint(|| {
+    gpu.validation_error(|| {
         gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label, layout: &layout, entries: &entries });
     })
 }

@@ -4,14 +4,14 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::Vec3;
 
 use super::light_spread::LightSpread;
-use super::light_view::{FitTo, Followed, LightView, ViewFit, WindowShape};
+use super::light_view::{FitTo, FollowedLight, LightView, ViewFit, WindowShape};
 use super::occluding_bounds::Between;
 use crate::contract::SeenPoint;
 
 /// Returns the light's view with a square window, fitted to casters' boxes and receivers' corners.
 pub(crate) fn fit_light_view(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
     let fit = FitTo { casters, receivers, window: WindowShape::Square };
-    fit_central_view_within(light, Followed::Middle, central_reach(light), &fit)
+    fit_central_view_within(light, FollowedLight::Center, central_reach(light), &fit)
 }
 
 /// Radius of the light about the origin of its views, metres, for a sun a tangent. The origin is the light's centre, or the mean
@@ -26,7 +26,7 @@ pub(crate) fn central_reach(light: &Light) -> f32 {
 /// Fit target of views from the light's centre, for any window; `reach` as in [`fit_central_view_within`].
 pub(crate) fn central_fit(
     light: &Light,
-    followed: Followed,
+    followed: FollowedLight,
     reach: f32,
     casters: &[Aabb],
     receivers: &[Vec3],
@@ -40,13 +40,18 @@ pub(crate) fn central_fit(
             frame.center = light.moments().mean_in_world(&frame);
         }
         let depth_m = LightSpread::of(light).extent_axis;
-        ViewFit::perspective(frame, followed, reach, depth_m, light.reach_tangent(), casters, receivers)
+        ViewFit::perspective(frame, followed, reach, depth_m, light.max_angle_tangent(), casters, receivers)
     }
 }
 
 /// Returns the view from the centre of a light that extends at most `reach` from it along either of the window's axes:
 /// metres, for a sun a tangent.
-pub(crate) fn fit_central_view_within(light: &Light, followed: Followed, reach: f32, fit: &FitTo<'_>) -> LightView {
+pub(crate) fn fit_central_view_within(
+    light: &Light,
+    followed: FollowedLight,
+    reach: f32,
+    fit: &FitTo<'_>,
+) -> LightView {
     central_fit(light, followed, reach, fit.casters, fit.receivers).view(fit.window)
 }
 

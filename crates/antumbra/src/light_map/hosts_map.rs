@@ -7,7 +7,7 @@ use super::light_view::{LightViewGpu, light_view_of_matrix};
 use crate::contract::{DepthMapCaster, Error, PreparedFrame};
 
 /// Smallest range of a map, as a fraction of its near plane's distance, if no receiver lies beyond the near plane.
-const LEAST_RANGE: f32 = 1e-3;
+const MIN_RANGE: f32 = 1e-3;
 
 /// Returns the view of `map`. Its range ends with the receivers; if these are unknown, at the matrix's far plane, or at
 /// [`f32::MAX`] if that is at infinity.
@@ -35,6 +35,6 @@ pub(crate) fn view_of_hosts_map(
     if along == f32::NEG_INFINITY {
         return Ok(view);
     }
-    let farthest = along.max(view.near_m + LEAST_RANGE * view.near_m.abs());
-    Ok(LightViewGpu { far_m: view.far_m.min(farthest + LEAST_RANGE * (farthest - view.near_m)), ..view })
+    let farthest = along.max(view.near_m + MIN_RANGE * view.near_m.abs());
+    Ok(LightViewGpu { far_m: view.far_m.min(farthest + MIN_RANGE * (farthest - view.near_m)), ..view })
 }

@@ -12,7 +12,7 @@ use super::depth_layers::behind::LayersBehind;
 use super::depth_pyramid::DepthPyramid;
 use super::hosts_map::view_of_hosts_map;
 use super::light_spread::LightSpread;
-use super::light_view::{FitTo, Followed, LightView, LightViewGpu, WindowShape};
+use super::light_view::{FitTo, FollowedLight, LightView, LightViewGpu, WindowShape};
 use super::map_texels::map_texels;
 use super::stable_fit::{corners_to_hold, in_whole_texels};
 use crate::contract::{CastersKey, DrawnMap, Error, MapSize, PreparedCasters, PreparedFrame};
@@ -35,22 +35,22 @@ pub(crate) enum MapWindow {
 
 /// Settings of a map rendered here and of the layers behind it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OwnMapSettings {
+pub(crate) struct MapSettings {
     /// Texels along a side.
     pub(crate) size: MapSize,
     pub(crate) window: MapWindow,
     /// Receiver-to-light segments that the window must contain.
-    pub(crate) followed: Followed,
+    pub(crate) followed: FollowedLight,
     /// Number of depth layers, including the map itself; 1 unless the search is [`MapSearch::Layers`].
     pub(crate) layers: u32,
     /// Bytes per map texel of what the technique derives from the map, which limit an automatic map size.
-    pub(crate) more_bytes_per_texel: u32,
+    pub(crate) derived_bytes_per_texel: u32,
 }
 
-impl OwnMapSettings {
+impl MapSettings {
     /// Square map of the nearest casters, without further layers.
     pub(crate) fn square(size: MapSize) -> Self {
-        Self { size, window: MapWindow::Square, followed: Followed::All, layers: 1, more_bytes_per_texel: 0 }
+        Self { size, window: MapWindow::Square, followed: FollowedLight::Whole, layers: 1, derived_bytes_per_texel: 0 }
     }
 
     /// [`Self::square`] with the window [`MapWindow::Narrow`].
@@ -194,7 +194,7 @@ impl LightMap {
         &mut self,
         stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
-        settings: OwnMapSettings,
+        settings: MapSettings,
     ) -> Result<PreparedMap, Error> {
         let technique = self.technique;
         let layers = settings.layers;
@@ -249,9 +249,9 @@ impl LightMap {
     }
 
     /// Bytes of a map of `size`² texels with its layers, its pyramid, and what the technique derives from it.
-    fn bytes_of(&self, settings: OwnMapSettings, size: u32) -> u64 {
+    fn bytes_of(&self, settings: MapSettings, size: u32) -> u64 {
         let of_pyramid = if self.pyramid.is_some() { DepthPyramid::bytes_of(UVec2::splat(size)) } else { 0 };
-        let of_more = u64::from(settings.more_bytes_per_texel) * u64::from(size).pow(2);
+        let of_more = u64::from(settings.derived_bytes_per_texel) * u64::from(size).pow(2);
         LayersBehind::bytes_of(size, settings.layers) + of_pyramid + of_more
     }
 
@@ -314,7 +314,7 @@ impl LightMap {
 }
 
 /// Returns the view of a map rendered here, before [`in_whole_texels`] aligns its texels.
-fn own_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>, casters: &[Aabb], settings: OwnMapSettings) -> LightView {
+fn own_view(stage: &Stage<'_>, frame: &PreparedFrame<'_>, casters: &[Aabb], settings: MapSettings) -> LightView {
     let window = settings.window;
     let (followed, reach) = (settings.followed, central_reach(frame.light));
     if stage.stable_box().is_some() {

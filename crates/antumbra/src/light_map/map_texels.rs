@@ -28,7 +28,7 @@ const STAYS_FOR: f32 = 0.25;
 const STAYS_UNSEEN_FOR: f32 = 1.0;
 
 /// Largest size, whatever the budget: drawing a larger map would take longer than everything else.
-const MOST_TEXELS: u32 = 4096;
+const MAX_TEXELS: u32 = 4096;
 
 /// Size if no camera sees the receivers, and the smallest size, whatever the budget: fewer texels are worse ([`PIXELS`]).
 const USUAL_TEXELS: u32 = 1024;
@@ -52,7 +52,7 @@ pub(crate) fn map_texels(
     if let MapSize::Texels(texels) = size {
         return texels;
     }
-    let most = most_texels(stage.auto_map_bytes(), bytes_of, stage.device.limits().max_texture_dimension_2d);
+    let most = max_texels(stage.auto_map_bytes(), bytes_of, stage.device.limits().max_texture_dimension_2d);
     // A budget shared by many lights or parts leaves no choice.
     if most <= USUAL_TEXELS {
         stage.note_auto_texels(most);
@@ -87,8 +87,8 @@ fn without_repeats(mut corners: Vec<Vec3>) -> Vec<Vec3> {
 }
 
 /// Returns the largest size that fits `bytes`, at least [`USUAL_TEXELS`], and at most the device's `limit`.
-fn most_texels(bytes: u64, bytes_of: impl Fn(u32) -> u64, limit: u32) -> u32 {
-    let steps = (0..=(MOST_TEXELS as f32).log2() as u32 * STEPS_IN_OCTAVE as u32).rev();
+fn max_texels(bytes: u64, bytes_of: impl Fn(u32) -> u64, limit: u32) -> u32 {
+    let steps = (0..=(MAX_TEXELS as f32).log2() as u32 * STEPS_IN_OCTAVE as u32).rev();
     let affordable = steps.map(|step| texels_of(step as f32)).find(|texels| bytes_of(*texels) <= bytes);
     affordable.unwrap_or(0).max(USUAL_TEXELS).min(limit)
 }
@@ -216,10 +216,10 @@ mod tests {
         for (bytes, per_texel, texels) in
             [(64 << 20, 15, 2048), (63 << 20, 16, 1448), (64 << 20, 50, 1024), (0, 50, 1024)]
         {
-            assert_eq!(most_texels(bytes, of(per_texel), 8192), texels);
+            assert_eq!(max_texels(bytes, of(per_texel), 8192), texels);
         }
-        assert_eq!(most_texels(u64::MAX, of(1), 8192), MOST_TEXELS);
-        assert_eq!(most_texels(u64::MAX, of(1), 2048), 2048);
+        assert_eq!(max_texels(u64::MAX, of(1), 8192), MAX_TEXELS);
+        assert_eq!(max_texels(u64::MAX, of(1), 2048), 2048);
         assert_eq!(texels_of(22.0), 2048);
     }
 }

@@ -74,7 +74,7 @@ mod tests {
         let frame = LightFrame { center: origin, ..sun.frame() };
         let half_size = half_size * Vec2::new(1.0, 0.64);
         let window = Window { center, half_size, ..Window::square(1.0) };
-        LightView { frame, perspective: false, window, near_m, far_m, held_from_m: 0.0 }
+        LightView { frame, perspective: false, window, near_m, far_m, complete_from_m: 0.0 }
     }
 
     /// Position of `x` in the view's map, in texels.

@@ -122,7 +122,7 @@ pub(super) fn cascades_of(
         let begins = found.has(power).then(|| beyond(power));
         let ends = found.has(power + 1).then(|| -beyond(power + 1));
         let planes = begins.into_iter().chain(ends).collect();
-        Cascade { id: (power - LEAST_POWER) as u32, region: Region::of_planes(eye, planes) }
+        Cascade { id: (power - MIN_POWER) as u32, region: Region::of_planes(eye, planes) }
     };
     (found.first - 1..=found.last).map(cascade).collect()
 }
@@ -133,7 +133,7 @@ fn end_m(power: i32) -> f32 {
 }
 
 /// Power below that of any depth in single precision.
-const LEAST_POWER: i32 = -128;
+const MIN_POWER: i32 = -128;
 
 /// Returns the nearest and farthest depth of receivers, metres, without a few nearer ones. `corners` span all receivers.
 fn depths_of(receivers: &PreparedReceivers<'_>, corners: &[Vec3], eye: Vec3, forward: Vec3) -> (f32, f32) {

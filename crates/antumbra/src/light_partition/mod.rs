@@ -103,7 +103,7 @@ pub(crate) fn parts_of(
     let meshes = if let PreparedCasters::Draws(meshes) = casters { meshes } else { &[][..] };
     let end = receivers.shadow_end_plane();
     let corners = corners_of(receivers, meshes);
-    let does = does_as_it_is(frame, coverage, &corners);
+    let does = undivided_light_suffices(frame, coverage, &corners);
     if does && end.is_none() {
         return Vec::new();
     }
@@ -143,9 +143,9 @@ pub(crate) fn parts_of(
 
 /// Whether the undivided light suffices for all receivers, whose convex hull these corners span. Does not consider which
 /// receivers the camera sees.
-fn does_as_it_is(frame: &PreparedFrame<'_>, coverage: Coverage, corners: &[Vec3]) -> bool {
+fn undivided_light_suffices(frame: &PreparedFrame<'_>, coverage: Coverage, corners: &[Vec3]) -> bool {
     let light = frame.light;
-    let is_open = light.shines_all_around() || light.is_distant();
+    let is_open = light.is_omnidirectional() || light.is_distant();
     let enough = if is_open { Coverage::Everything } else { Coverage::HalfSpace };
     let is_hosts_map = !matches!(frame.casters, PreparedCasters::Draws(_));
     is_hosts_map || coverage >= enough || light.validate().is_err() || one_map_holds(light, corners)
@@ -155,12 +155,12 @@ fn does_as_it_is(frame: &PreparedFrame<'_>, coverage: Coverage, corners: &[Vec3]
 /// casters, and receivers outside the map are lit.
 fn one_view_suffices(light: &Light, parts: &[Part], meshes: &[MeshCaster<'_>]) -> bool {
     let has_casters = |part: &&Part| !part.casters_of(meshes).is_empty();
-    !light.is_distant() && !light.shines_all_around() && parts.iter().filter(has_casters).count() <= 1
+    !light.is_distant() && !light.is_omnidirectional() && parts.iter().filter(has_casters).count() <= 1
 }
 
 /// Whether one map holds all that a lamp reaches of the hull of some corners; `false` for suns.
 fn one_map_holds(light: &Light, corners: &[Vec3]) -> bool {
-    let reaches_no_farther = light.reach_tangent().is_some_and(|tangent| tangent <= MIDDLE_TANGENT);
+    let reaches_no_farther = light.max_angle_tangent().is_some_and(|tangent| tangent <= MIDDLE_TANGENT);
     !light.is_distant() && (reaches_no_farther || is_within(corners, &middle_frame(light), MIDDLE_TANGENT))
 }
 
@@ -178,7 +178,7 @@ fn sectors_of(
         cascades.map(|cascade| (cascade.id, sector(cascade.region))).collect()
     } else if one_map_holds(light, body.corners()) {
         Vec::new()
-    } else if light.shines_all_around() {
+    } else if light.is_omnidirectional() {
         (0..).zip(cube_of(light, &middle_frame(light))).collect()
     } else {
         (0..).zip(rings_of(light, &middle_frame(light))).collect()
@@ -283,7 +283,7 @@ fn rings_of(light: &Light, frame: &LightFrame) -> Vec<Sector> {
     let LightFrame { center, right, up, axis } = *frame;
     // Plane in front of which points are farther off the axis than a tangent, along a direction.
     let beyond = |tangent: f32, along: Vec3| along - tangent * axis;
-    let reach = light.reach_tangent().unwrap_or(f32::INFINITY);
+    let reach = light.max_angle_tangent().unwrap_or(f32::INFINITY);
     let sides = [right, up, -right, -up];
     let mut regions = vec![(Region::cone(center, &sides.map(|side| -beyond(MIDDLE_TANGENT, side))), axis)];
     let mut from = MIDDLE_TANGENT;

@@ -9,14 +9,14 @@ use crate::contract::{MeshCaster, PreparedReceivers};
 use crate::gpu::{SharedValues, gpu_structs};
 
 /// Largest number of a region's planes, as in `light_partition/region.wesl`.
-const MOST_PLANES: usize = 6;
+const MAX_PLANES: usize = 6;
 
 gpu_structs! {
     /// [`Region`] for the shaders.
     pub(crate) struct RegionGpu {
         origin_in_world: Vec3,
         plane_count: u32,
-        planes: [Vec4; MOST_PLANES],
+        planes: [Vec4; MAX_PLANES],
     }
 }
 
@@ -33,25 +33,25 @@ pub(crate) struct Region {
 impl Region {
     /// Region in front of planes through the origin with these normals, of any length.
     pub(crate) fn cone(origin: Vec3, normals: &[Vec3]) -> Self {
-        debug_assert!(normals.len() <= MOST_PLANES, "{} planes", normals.len());
+        debug_assert!(normals.len() <= MAX_PLANES, "{} planes", normals.len());
         Self { origin, planes: normals.iter().map(|normal| normal.extend(0.0)).collect() }
     }
 
     /// Region in front of planes given relative to the origin.
     pub(crate) fn of_planes(origin: Vec3, planes: Vec<Vec4>) -> Self {
-        debug_assert!(planes.len() <= MOST_PLANES, "{} planes", planes.len());
+        debug_assert!(planes.len() <= MAX_PLANES, "{} planes", planes.len());
         Self { origin, planes }
     }
 
     /// Cuts off what is behind a world-space plane.
     pub(crate) fn add(&mut self, plane: DVec4) {
-        debug_assert!(self.planes.len() < MOST_PLANES, "{} planes and one more", self.planes.len());
+        debug_assert!(self.planes.len() < MAX_PLANES, "{} planes and one more", self.planes.len());
         let normal = plane.truncate();
         self.planes.push(normal.as_vec3().extend((plane.w + normal.dot(self.origin.as_dvec3())) as f32));
     }
 
     pub(crate) fn to_gpu(&self) -> RegionGpu {
-        let mut planes = [Vec4::ZERO; MOST_PLANES];
+        let mut planes = [Vec4::ZERO; MAX_PLANES];
         for (to, plane) in planes.iter_mut().zip(&self.planes) {
             *to = *plane;
         }

@@ -17,7 +17,7 @@ fn unit(i: u32) -> Vec3 {
 /// All sectors that a light may have.
 fn all_parts(light: &Light) -> Vec<Sector> {
     let frame = middle_frame(light);
-    if light.shines_all_around() { cube_of(light, &frame) } else { rings_of(light, &frame) }
+    if light.is_omnidirectional() { cube_of(light, &frame) } else { rings_of(light, &frame) }
 }
 
 #[test]

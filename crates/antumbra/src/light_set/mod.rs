@@ -84,7 +84,7 @@ impl RangedLight {
     }
 
     fn check(&self) -> Result<(), Error> {
-        self.light.validate().map_err(|source| Error::Light { technique: WHO, source })?;
+        self.light.validate().map_err(|source| Error::Light { technique: ERROR_SOURCE, source })?;
         let range_m = self.range_m;
         if range_m.is_nan() || range_m <= 0.0 {
             return bad("a light's range", format!("{range_m} m"), "above 0 m, infinite for none");
@@ -168,7 +168,7 @@ pub struct PreparedLights<'a> {
 }
 
 /// Name in errors, in place of a technique's.
-const WHO: &str = "light set";
+const ERROR_SOURCE: &str = "light set";
 
 impl LightSet {
     /// Creates an empty set.
@@ -396,9 +396,9 @@ fn check_budget(budget: Budget) -> Result<(), Error> {
 
 fn gone() -> Error {
     let (had, needed) = ("not in this set".into(), "one that was added and not removed".into());
-    Error::BadFrame { technique: WHO, what: "the light", had, needed }
+    Error::BadFrame { technique: ERROR_SOURCE, what: "the light", had, needed }
 }
 
 fn bad(what: &'static str, had: impl Into<String>, needed: &str) -> Result<(), Error> {
-    Err(Error::BadFrame { technique: WHO, what, had: had.into(), needed: needed.into() })
+    Err(Error::BadFrame { technique: ERROR_SOURCE, what, had: had.into(), needed: needed.into() })
 }

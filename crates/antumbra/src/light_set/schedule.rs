@@ -39,16 +39,16 @@ pub(super) struct Candidate {
 }
 
 /// Minimum area in the rank, as a fraction of the image, so that small lights are redrawn some time, too.
-const LEAST_AREA: f32 = 0.01;
+const MIN_AREA: f32 = 0.01;
 
 /// Number of rounds after which a waiting candidate goes first. A round is the number of frames in which all candidates could be
 /// redrawn once.
-const MOST_ROUNDS: u64 = 4;
+const MAX_ROUNDS: u64 = 4;
 
 impl Candidate {
     fn rank(&self) -> f32 {
         // The area is NaN if the camera's matrices are; the comparison is then false.
-        let area = if self.area > LEAST_AREA { self.area } else { LEAST_AREA };
+        let area = if self.area > MIN_AREA { self.area } else { MIN_AREA };
         self.change.weight() * area * self.waits as f32
     }
 }
@@ -58,7 +58,7 @@ pub(super) fn chosen(candidates: &[Candidate], budget: u64) -> Vec<usize> {
     let all = candidates.iter().fold(0u64, |sum, candidate| sum.saturating_add(candidate.cost));
     let rounds = all.div_ceil(budget.max(1));
     let overdue = |candidate: &Candidate| {
-        if u64::from(candidate.waits) > MOST_ROUNDS.saturating_mul(rounds) { candidate.waits } else { 0 }
+        if u64::from(candidate.waits) > MAX_ROUNDS.saturating_mul(rounds) { candidate.waits } else { 0 }
     };
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.sort_by(|a, b| {
@@ -106,17 +106,17 @@ mod tests {
         assert_eq!(chosen(&of([u64::MAX, 1, u64::MAX, 2]), u64::MAX), [0, 1, 2, 3]);
     }
 
-    /// Lights that change in every frame are all redrawn again and again, for any areas and costs: after [`MOST_ROUNDS`] rounds
+    /// Lights that change in every frame are all redrawn again and again, for any areas and costs: after [`MAX_ROUNDS`] rounds
     /// they are overdue, and each frame draws at least the overdue light that has waited longest.
     #[test]
     fn none_waits_for_ever() {
-        for (count, budget, most_cost) in [(16, 1, 1), (16, 5, 1), (64, 4, 1), (64, 1, 1), (24, 30, 20), (24, 7, 20)] {
+        for (count, budget, max_cost) in [(16, 1, 1), (16, 5, 1), (64, 4, 1), (64, 1, 1), (24, 30, 20), (24, 7, 20)] {
             let area = |i: usize| if i == 0 { 1.0 } else { 0.9 / (i * i) as f32 };
-            let cost = |i: usize| 1 + i as u64 % most_cost;
+            let cost = |i: usize| 1 + i as u64 % max_cost;
             let mut waits = vec![0; count];
             let mut drawn = vec![0; count];
             let all: u64 = (0..count).map(cost).sum();
-            let most = (MOST_ROUNDS * all.div_ceil(budget)) as u32 + count as u32;
+            let most = (MAX_ROUNDS * all.div_ceil(budget)) as u32 + count as u32;
             for _ in 0..20 * most {
                 waits.iter_mut().for_each(|waits| *waits += 1);
                 let of = |i: usize| Candidate { cost: cost(i), ..candidate(area(i), Change::Shadows, waits[i]) };

@@ -51,7 +51,7 @@ gpu_structs! {
         axis_in_world: Vec3,
         half_axis: f32,
         /// Tangent of the frustum's half-angle; 0 if the frustum is unbounded.
-        reach_tangent: f32,
+        max_angle_tangent: f32,
         /// Number of entries in the data buffer: positions of a list of points.
         point_count: u32,
         /// Size of the emission texture in the data buffer; 0 for uniform emission.
@@ -127,7 +127,7 @@ fn light_source(light: &Light) -> LightSource {
         half_up: half.y,
         axis_in_world: frame.axis,
         half_axis: half.z,
-        reach_tangent: light.fov_rad.map_or(0.0, |fov| (0.5 * fov).tan()),
+        max_angle_tangent: light.fov_rad.map_or(0.0, |fov| (0.5 * fov).tan()),
         point_count,
         emission_size,
         cone_cosine: light.cone.map_or(-1.0, |cone| cone.outer_rad.cos()),

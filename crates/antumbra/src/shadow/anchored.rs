@@ -13,7 +13,7 @@ use crate::contract::{
 use crate::light_map::occluding_bounds::{KNOWN_REACH_M, is_known};
 
 /// Maximum distance of a box's sides from the anchor, metres.
-const MOST_REACH_M: f32 = 10.0 * KNOWN_REACH_M;
+const MAX_REACH_M: f32 = 10.0 * KNOWN_REACH_M;
 
 /// Assumed distance of receivers from the camera, metres, if the bounds of neither receivers nor casters are known.
 const UNKNOWN_RECEIVERS_M: f32 = 1000.0;
@@ -54,7 +54,7 @@ impl<'a> Anchored<'a> {
     /// Converts a frame's positions.
     pub(super) fn new(anchor: Vec3, frame: &PreparedFrame<'_>, meshes: Option<&[MeshCaster<'a>]>) -> Self {
         let near = |points: &[Vec3]| points.iter().map(|x| *x - anchor).collect();
-        let light = frame.light.counted_from(anchor);
+        let light = frame.light.relative_to(anchor);
         let mesh_near = |mesh: &MeshCaster<'a>| MeshCaster { bounds: finite(moved(mesh.bounds, anchor)), ..*mesh };
         let meshes: Option<Vec<_>> = meshes.map(|meshes| meshes.iter().map(mesh_near).collect());
         let given = frame.receivers.bounds.map(|bounds| moved(bounds, anchor));
@@ -104,7 +104,7 @@ fn finite(bounds: Aabb) -> Aabb {
     if bounds.is_empty() {
         return bounds;
     }
-    let most = Vec3::splat(MOST_REACH_M);
+    let most = Vec3::splat(MAX_REACH_M);
     Aabb { min: bounds.min.clamp(-most, most), max: bounds.max.clamp(-most, most) }
 }
 

@@ -3,14 +3,14 @@
 use glam::Vec3;
 
 use crate::contract::{DrawnLists, DrawnMap, Error, MeshCaster, Overflow, Params, PreparedCasters, PreparedFrame};
-use crate::gpu::{Gpu, Keep, Recorder, Stage};
+use crate::gpu::{Gpu, Recorder, RetainedState, Stage};
 use crate::light_partition::part_images::{PartImages, PreparedPartImages};
 use crate::light_partition::stable_boxes::StableBoxes;
 use crate::light_partition::{Part, parts_of};
 use crate::techniques::Technique;
 
 /// State of a light's parts.
-pub(super) struct Parted<T> {
+pub(super) struct PartitionedState<T> {
     images: PartImages,
     /// Parts of the frame prepared last; empty if the technique covers all that the light reaches.
     parts: Vec<Part>,
@@ -25,7 +25,7 @@ struct PartState<T> {
     /// Whether the part ever had casters, so that its maps keep their size while casters come and go.
     has_cast: bool,
     technique: T,
-    keep: Keep,
+    keep: RetainedState,
 }
 
 /// Inputs for preparing a part.
@@ -37,7 +37,7 @@ struct PartStage<'a> {
 }
 
 /// Passes of all parts in one frame; `P` is the technique's prepared work.
-pub(super) struct PartedPasses<'a, P> {
+pub(super) struct PartitionedPasses<'a, P> {
     images: PreparedPartImages,
     parts: Vec<PartPasses<'a, P>>,
 }
@@ -47,7 +47,7 @@ struct PartPasses<'a, P> {
     technique: P,
 }
 
-impl<T: Technique> Parted<T> {
+impl<T: Technique> PartitionedState<T> {
     /// Prepares a frame in parts. Does nothing and returns `None` if the technique covers all that the light reaches.
     pub(super) fn prepare<'a>(
         earlier: &mut Option<Self>,
@@ -55,7 +55,7 @@ impl<T: Technique> Parted<T> {
         frame: &PreparedFrame<'_>,
         meshes: &[MeshCaster<'a>],
         params: &T::Params,
-    ) -> Result<Option<PartedPasses<'a, T::Prepared>>, Error> {
+    ) -> Result<Option<PartitionedPasses<'a, T::Prepared>>, Error> {
         let mut stable_boxes =
             earlier.as_mut().map(|earlier| std::mem::take(&mut earlier.stable_boxes)).unwrap_or_default();
         let parts =
@@ -92,7 +92,7 @@ impl<T: Technique> Parted<T> {
             };
             passes.push(PartPasses { casters, technique });
         }
-        Ok(Some(PartedPasses { images, parts: passes }))
+        Ok(Some(PartitionedPasses { images, parts: passes }))
     }
 
     /// Records a frame, part by part.
@@ -100,9 +100,9 @@ impl<T: Technique> Parted<T> {
         &self,
         recorder: &mut Recorder<'_>,
         frame: &PreparedFrame<'_>,
-        passes: PartedPasses<'_, T::Prepared>,
+        passes: PartitionedPasses<'_, T::Prepared>,
     ) {
-        let PartedPasses { images, parts } = passes;
+        let PartitionedPasses { images, parts } = passes;
         for (i, (part, passes)) in self.parts.iter().zip(parts).enumerate() {
             let Some(state) = self.states.iter().find(|state| state.id == part.id) else { continue };
             images.pick(recorder, i);
@@ -177,7 +177,7 @@ impl<T: Technique> PartState<T> {
         let place = match states.iter().position(|state| state.id == id) {
             Some(place) => place,
             None => {
-                states.push(Self { id, has_cast: false, technique: T::new(gpu)?, keep: Keep::default() });
+                states.push(Self { id, has_cast: false, technique: T::new(gpu)?, keep: RetainedState::default() });
                 states.len() - 1
             }
         };

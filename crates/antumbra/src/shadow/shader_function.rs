@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Shadow;
 use crate::contract::Error;
-use crate::gpu::{Embeddable, Keep, ShaderFunction, Stage};
+use crate::gpu::{Embeddable, RetainedState, ShaderFunction, Stage};
 use crate::techniques::Technique;
 
 #[cfg(test)]
@@ -13,7 +13,7 @@ mod tests;
 /// State of a light's shader functions.
 #[derive(Debug, Default)]
 pub(super) struct ShaderFunctions {
-    keep: Keep,
+    keep: RetainedState,
     /// Text of the last function, with its key.
     text: Option<(TextKey, Arc<str>)>,
 }

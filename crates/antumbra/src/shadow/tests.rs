@@ -216,16 +216,16 @@ fn frames_that_only_move_make_no_objects(gpu: &Gpu, case: &Case, kind: Technique
             });
             gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
         }
-        gpu.objects_made()
+        gpu.objects_created()
     };
     assert!(draw(0..6).total() > 0, "{kind}: nothing is counted");
     // Tests share the device: if another test's poll has taken the callback that frees a staging buffer but not yet called it, the
     // next frame creates a second one. Resources that frames always create would appear in every round.
     let mut rounds = [6..10, 6..10, 6..10].into_iter().map(|frames| {
-        let before = gpu.objects_made();
+        let before = gpu.objects_created();
         (before, draw(frames))
     });
-    assert!(rounds.any(|(before, after)| before == after), "{kind}: {:?}", gpu.objects_made());
+    assert!(rounds.any(|(before, after)| before == after), "{kind}: {:?}", gpu.objects_created());
 }
 
 /// Automatic map sizes are those that are drawn, at least 1024 texels for any image. They stay while the light moves a little. None
@@ -404,7 +404,7 @@ fn warm_up_steps_compile_a_part_each() {
         of(&at_once).warm_up(what).expect("any device");
         let mut steps = of(&in_steps).warm_up_steps(what);
         let all = steps.len();
-        let made = || in_steps.objects_made().programs;
+        let made = || in_steps.objects_created().programs;
         let (first, mut parts) = (made(), 0);
         for left in (0..all).rev() {
             let before = made();
@@ -416,7 +416,7 @@ fn warm_up_steps_compile_a_part_each() {
         // Pipelines that techniques share exist after the first technique.
         let least = if kind == TechniqueKind::Pcss { 3 } else { 1 };
         assert!(parts >= least, "{kind}: {parts} of {all} steps compile anything");
-        assert_eq!(made(), at_once.objects_made().programs, "{kind}");
+        assert_eq!(made(), at_once.objects_created().programs, "{kind}");
     }
 }
 
@@ -426,7 +426,7 @@ fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
     let gpu = &Gpu::new(gpu.device(), gpu.queue());
     let (mut set, ids) = set_of(gpu, case);
     small(gpu, kind).warm_up(WarmUp::default()).expect("any device");
-    let programs = gpu.objects_made().programs;
+    let programs = gpu.objects_created().programs;
     assert!(programs > 0, "{kind}: nothing is counted");
     let of = |transmitted| Surface::Translucent { coverage: SurfaceCoverage::Alpha(0.5), transmitted, texture: None };
     for (surface, channels) in [
@@ -445,7 +445,7 @@ fn warm_frames_compile_nothing(gpu: &Gpu, case: &Case, kind: TechniqueKind) {
             drop(small(gpu, kind).prepare(&Frame { light: &ball, mask: &mask, ..*frame }));
         });
     }
-    assert_eq!(gpu.objects_made().programs, programs, "{kind}: a frame compiled something");
+    assert_eq!(gpu.objects_created().programs, programs, "{kind}: a frame compiled something");
 }
 
 /// Shadows are unchanged up to where the fade begins, fade as [`ShadowDistance`] defines, and are gone beyond its end: for

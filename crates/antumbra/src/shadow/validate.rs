@@ -71,8 +71,8 @@ impl Validator {
         check.point_places()?;
         check.casters(&frame.casters)?;
         check.host_map(self, &frame.casters)?;
-        let Some(Denoise { most_frames, .. }) = denoise else { return Ok(()) };
-        check.bad("`denoise`", format!("of {most_frames} frames"), "`None` for points, which have no neighbours")
+        let Some(Denoise { max_frames, .. }) = denoise else { return Ok(()) };
+        check.bad("`denoise`", format!("of {max_frames} frames"), "`None` for points, which have no neighbours")
     }
 }
 
@@ -109,9 +109,11 @@ impl<F> Check<'_, F> {
         if !view.texture().usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
             return self.bad(what, "a texture without the usage TEXTURE_BINDING", "one with it");
         }
-        let trial = |(view, kind): &(wgpu::TextureView, ViewKind)| kind.complaint(self.gpu, view);
-        let complaint = validator.views.complaint((view.clone(), kind), trial);
-        complaint.map_or(Ok(()), |complaint| self.bad(what, format!("one that cannot be bound ({complaint})"), needed))
+        let trial = |(view, kind): &(wgpu::TextureView, ViewKind)| kind.validation_error(self.gpu, view);
+        let validation_error = validator.views.validation_error((view.clone(), kind), trial);
+        validation_error.map_or(Ok(()), |validation_error| {
+            self.bad(what, format!("one that cannot be bound ({validation_error})"), needed)
+        })
     }
 
     fn casters(&self, casters: &Casters<'_>) -> Result<(), Error> {

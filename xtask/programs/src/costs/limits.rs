@@ -5,7 +5,7 @@ use serde::Deserialize;
 use super::table::{Counts, Table};
 
 /// Vector registers of a thread. With more, a SIMD unit of RDNA 2 holds fewer than eight waves, in Mesa's count: too few to hide loads.
-pub const MOST_REGISTERS: u32 = 128;
+pub const MAX_REGISTERS: u32 = 128;
 
 /// The exceptions of the repository.
 const EXCEPTIONS: &str = include_str!("../../exceptions.toml");
@@ -74,11 +74,11 @@ impl Exceptions {
             for row in &table.rows {
                 let exception = self.of(&row.name.label);
                 let Counts { registers, spills, scalar_spills, scratch_bytes, .. } = row.counts;
-                let most_registers = exception.and_then(|exception| exception.registers).unwrap_or(MOST_REGISTERS);
-                let most_spills = exception.and_then(|exception| exception.scalar_spills).unwrap_or(0);
+                let max_registers = exception.and_then(|exception| exception.registers).unwrap_or(MAX_REGISTERS);
+                let max_spills = exception.and_then(|exception| exception.scalar_spills).unwrap_or(0);
                 let counted = [
-                    ("vector registers", registers, most_registers),
-                    ("spilled scalar registers", scalar_spills, most_spills),
+                    ("vector registers", registers, max_registers),
+                    ("spilled scalar registers", scalar_spills, max_spills),
                     ("spilled vector registers", spills, 0),
                     ("bytes of scratch memory", scratch_bytes, 0),
                 ];
@@ -102,7 +102,7 @@ impl Exception {
             rows.map(|row| count(&row.counts)).max().unwrap_or(0)
         };
         let limits = [
-            ("registers", self.registers, most(|counts| counts.registers), MOST_REGISTERS),
+            ("registers", self.registers, most(|counts| counts.registers), MAX_REGISTERS),
             ("scalar_spills", self.scalar_spills, most(|counts| counts.scalar_spills), 0),
         ];
         let is_empty = self.registers.is_none() && self.scalar_spills.is_none();

@@ -1,7 +1,7 @@
 //! The page `bench/gpu-cost.md`.
 
 use super::frames::{Frame, SCENE, SIZE};
-use super::limits::{Exceptions, MOST_REGISTERS};
+use super::limits::{Exceptions, MAX_REGISTERS};
 use super::log::Log;
 use super::table::{Counts, Name, Row, Table};
 
@@ -23,7 +23,7 @@ pub fn page(logs: &[(Title, Log)], frames: &[Frame], exceptions: &Exceptions) ->
          Registers, waves, instructions and workgroup memory of every pipeline, as the compiler of {driver} counts them for\n\
          {}. `cargo xtask gpu-cost` writes this page. It needs no GPU: nothing is run, and nothing\n\
          is timed. Compare a pipeline with its own past, by `cargo xtask gpu-cost --diff TABLE`. Other vendors' compilers count otherwise.\n\n\
-         - Registers: vector registers of a thread. With more than {MOST_REGISTERS}, too few waves remain to hide loads, and \
+         - Registers: vector registers of a thread. With more than {MAX_REGISTERS}, too few waves remain to hide loads, and \
          `cargo xtask gpu-cost --check`\n  fails, except for the pipelines at the end of this page.\n\
          - Waves: how many a SIMD unit holds at a time, in Mesa's count, which ends at 32.\n\
          - Instructions: those of the program, however often a loop runs them.\n\n",
@@ -178,7 +178,7 @@ fn exceptions_of(logs: &[(Title, Log)], exceptions: &Exceptions) -> String {
     }
     labels.sort_unstable();
     let mut text = format!(
-        "\n## Exceptions\n\nPipelines with more than {MOST_REGISTERS} registers or with scalar registers spilled, \
+        "\n## Exceptions\n\nPipelines with more than {MAX_REGISTERS} registers or with scalar registers spilled, \
          from `xtask/programs/exceptions.toml`. Vector registers are never\nspilled, and no memory is used for them.\n\n"
     );
     text += &head(logs, &["label"], &["registers", "spilled scalars"], &["why"]);

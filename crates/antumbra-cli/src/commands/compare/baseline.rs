@@ -39,7 +39,7 @@ pub(super) struct BaselineFile {
 /// Refuses a baseline of another scene or view.
 pub(super) fn check_view(path: &Path, baseline: &Baseline, request: &CompareRequest<'_>) -> Result<(), LabError> {
     let name = request.scene_name();
-    let setup = request.setup.counted_from(-request.anchor).to_toml();
+    let setup = request.setup.relative_to(-request.anchor).to_toml();
     let view = [("name", json!(name)), ("size", json!(request.size_px.to_array())), ("setup", json!(setup))];
     baseline.check_view(path, &view)
 }

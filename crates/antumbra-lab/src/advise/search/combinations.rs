@@ -6,7 +6,7 @@ const TARGETS: [f64; 3] = [0.97, 0.8, 0.6];
 const WORTH: f64 = 0.003;
 const WORTH_SAVING: f64 = 0.08;
 /// Maximum number of partial sums kept.
-const MOST_SUMS: usize = 48;
+const MAX_SUMS: usize = 48;
 
 /// A step of one parameter with its measured effect.
 #[derive(Clone, Debug)]
@@ -48,12 +48,12 @@ pub(super) fn combinations(moves: &[Move], load: f64) -> Vec<Vec<Move>> {
         sums.extend(longer);
         sums = front(sums);
     }
-    let least_error = |within: f64| {
+    let min_error = |within: f64| {
         let fits = sums.iter().filter(|sum| load + sum.load <= within);
         fits.min_by(|a, b| a.error.total_cmp(&b.error))
     };
     let cheapest = || sums.iter().min_by(|a, b| a.load.total_cmp(&b.load));
-    let mut chosen: Vec<&Sum> = TARGETS.iter().filter_map(|target| least_error(*target)).collect();
+    let mut chosen: Vec<&Sum> = TARGETS.iter().filter_map(|target| min_error(*target)).collect();
     if chosen.is_empty() {
         chosen.extend(cheapest());
     }
@@ -74,10 +74,10 @@ fn front(mut sums: Vec<Sum>) -> Vec<Sum> {
         is_front
     });
     let count = sums.len();
-    if count <= MOST_SUMS {
+    if count <= MAX_SUMS {
         return sums;
     }
-    (0..MOST_SUMS).map(|i| sums[i * (count - 1) / (MOST_SUMS - 1)].clone()).collect()
+    (0..MAX_SUMS).map(|i| sums[i * (count - 1) / (MAX_SUMS - 1)].clone()).collect()
 }
 
 #[cfg(test)]
@@ -123,6 +123,6 @@ mod tests {
     fn fronts_are_thinned_but_keep_their_ends() {
         let sum = |i: usize| Sum { error: -(i as f64), load: i as f64, moves: Vec::new() };
         let thinned = front((0..1000).map(sum).chain([Sum { error: 0.5, load: 3.0, moves: Vec::new() }]).collect());
-        assert_eq!((thinned.len(), thinned[0].load, thinned[MOST_SUMS - 1].load), (MOST_SUMS, 0.0, 999.0));
+        assert_eq!((thinned.len(), thinned[0].load, thinned[MAX_SUMS - 1].load), (MAX_SUMS, 0.0, 999.0));
     }
 }

@@ -14,7 +14,7 @@ use crate::error::LabError;
 const RELEVANT: f64 = 0.01;
 const RELEVANT_SAVING: f64 = 0.08;
 /// Maximum number of a technique's parameters tried again, those with the largest effect.
-const MOST_RELEVANT: usize = 6;
+const MAX_RELEVANT: usize = 6;
 /// Score ratio below which the refinement at full size restarts from the better configuration.
 const LEADS_ON: f64 = 0.95;
 /// Multiple of the budget above which only cheaper settings are tried, and the number of such descents.
@@ -60,7 +60,7 @@ impl Search<'_, '_> {
             of_key.map(|step| step.error.abs().max(-step.load)).fold(0.0, f64::max)
         };
         relevant.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
-        relevant.truncate(MOST_RELEVANT);
+        relevant.truncate(MAX_RELEVANT);
         // At full size, refine again from a clearly better configuration.
         if rung == FULL
             && let Some((_, better)) = self.best(kind, rung, 1).pop()

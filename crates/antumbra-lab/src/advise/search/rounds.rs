@@ -18,13 +18,13 @@ const HOPELESS: f64 = 1.3;
 const FAR_BEHIND: f64 = 2.0;
 const LAGGING: f64 = 0.1;
 /// Minimum number of techniques kept in each round.
-const LEAST_KEPT: [usize; 3] = [4, 3, 2];
+const MIN_KEPT: [usize; 3] = [4, 3, 2];
 /// Maximum score ratio to the best beyond that minimum: moves gain less from round to round.
 const WITHIN_REACH: [f64; 3] = [3.0, 2.0, 1.5];
 /// Maximum load of one technique that is always kept, because the others' times at full size are not known yet.
 const SURELY_FITS: f64 = 0.7;
 /// Maximum number of fallbacks tried at full size when no candidate keeps the budget there.
-const MOST_FALLBACKS: usize = 8;
+const MAX_FALLBACKS: usize = 8;
 /// Number of techniques of which all parameters are tried.
 const LOOKED_AT_IN_FULL: usize = 2;
 
@@ -130,7 +130,7 @@ impl Search<'_, '_> {
 
     /// Measures, at full size, the configurations that kept the budget on smaller images, until one keeps it there too.
     fn fall_back(&mut self, kinds: &[TechniqueKind]) -> Result<(), LabError> {
-        for _ in 0..MOST_FALLBACKS {
+        for _ in 0..MAX_FALLBACKS {
             if self.first_that_fits(kinds, FULL, 1.0).is_some() {
                 return Ok(());
             }
@@ -184,7 +184,7 @@ fn goes_on(seen: &[Step], least: f64) -> bool {
 fn count_kept(scores: &[f64], count: usize, round: usize) -> usize {
     let best = scores.first().copied().unwrap_or(0.0);
     let within = scores.iter().filter(|score| **score <= WITHIN_REACH[round] * best).count();
-    within.min(count.div_ceil(2)).max(LEAST_KEPT[round])
+    within.min(count.div_ceil(2)).max(MIN_KEPT[round])
 }
 
 fn keys_of_qualities(kind: TechniqueKind) -> Vec<&'static str> {

@@ -43,7 +43,7 @@ pub(super) fn table(report: &Report, rows: &[Measured]) -> String {
         rows.iter().filter_map(|row| values(row.measured)).min_by(f64::total_cmp)
     };
     let memory_of = |measured: &Measurement| measured.memory_bytes.map(|count| count as f64);
-    let (least_ms, least_memory) = (least(&|m| m.total_ms), least(&memory_of));
+    let (min_ms, min_memory) = (least(&|m| m.total_ms), least(&memory_of));
 
     let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"numbers-title\"><table \
      class=\"numbers\" id=\"table\"><thead><tr><th scope=\"col\" data-key=\"technique\">Technique</th>"
@@ -76,14 +76,14 @@ pub(super) fn table(report: &Report, rows: &[Measured]) -> String {
             escape(&row.row.title)
         );
         let Measurement { total_ms, count, .. } = *row.measured;
-        let is_least = rows.len() > 1 && total_ms.is_some() && total_ms == least_ms;
+        let is_least = rows.len() > 1 && total_ms.is_some() && total_ms == min_ms;
         html += &cell_with(total_ms, three_figures, is_least, &format!("<br><small>{count}</small>"));
         for (info, best) in METRICS.iter().zip(&best) {
             let value = (info.value)(&row.measured.metrics);
             html += &cell(value, metric_text, value.is_some() && value.map(metric_text) == *best);
         }
         let memory = memory_of(row.measured);
-        html += &cell(memory, |b| bytes(b as u64), rows.len() > 1 && memory.is_some() && memory == least_memory);
+        html += &cell(memory, |b| bytes(b as u64), rows.len() > 1 && memory.is_some() && memory == min_memory);
         html += "</tr>";
     }
     for row in &report.rows {

@@ -490,7 +490,7 @@ fn cameras_and_lights_get_the_formats_sizes() {
     assert_eq!((cone.outer_rad, l[0].fov_rad, l[0].intensity), (0.5, None, 1.0));
     let given: Vec<_> = l.iter().map(|light| light.candela_or_lux).collect();
     assert_eq!(given, [Some(50.0), Some(100.0), Some(3.0), Some(25.0), None, Some(6.0)], "candela, or a sun's lux");
-    assert!(l[1].shines_all_around() && !l[0].shines_all_around());
+    assert!(l[1].is_omnidirectional() && !l[0].is_omnidirectional());
     assert!(l[0].axis.abs_diff_eq(Vec3::NEG_Y, 1e-6));
     assert_eq!(l[1].shape, LightShape::Sphere { radius_m: 0.05 });
     assert_eq!((l[1].color, l[1].intensity), (Vec3::new(1.0, 0.5, 0.0), 1.0));

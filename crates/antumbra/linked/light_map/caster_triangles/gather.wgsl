@@ -65,10 +65,10 @@ struct runs_TriangleRun {
 
 const runs_RUNS_LOG2 = 9u;
 
-const runs_MOST_RUNS = 1u << runs_RUNS_LOG2;
+const runs_MAX_RUNS = 1u << runs_RUNS_LOG2;
 
 @group(1) @binding(0)
-var<uniform> runs_runs: array<runs_TriangleRun, runs_MOST_RUNS>;
+var<uniform> runs_runs: array<runs_TriangleRun, runs_MAX_RUNS>;
 
 @group(1) @binding(1)
 var<storage, read> runs_mesh_positions: array<f32>;
@@ -90,7 +90,7 @@ struct runs_Triangle {
 fn runs_run_of(thread: u32) -> runs_TriangleRun {
     var run = 0u;
     for (var halving = 1u; halving <= runs_RUNS_LOG2; halving++) {
-        let step = runs_MOST_RUNS >> halving;
+        let step = runs_MAX_RUNS >> halving;
         if runs_runs[run + step].first_thread <= thread {
             run += step;
         }

@@ -1,6 +1,6 @@
 // Linked from src/light_map/caster_triangles/join.wesl by `cargo xtask shaders`: edit that, not this.
 
-const MOST_LINKS = 256u;
+const MAX_LINKS = 256u;
 
 fn corner(triangle: u32, k: u32) -> vec3f {
     let word = triangles_first_word(triangle, k % 3u);
@@ -14,7 +14,7 @@ fn neighbour_of(triangle: u32, k: u32) -> u32 {
     var onward = triangles_NO_NEIGHBOUR;
     var turned = triangles_NO_NEIGHBOUR;
     var link = atomicLoad(&gather_slots[edges_edge_slot(from_corner, to_corner, arrayLength(&gather_slots))]);
-    for (var i = 0u; i < MOST_LINKS && link != 0u; i++) {
+    for (var i = 0u; i < MAX_LINKS && link != 0u; i++) {
         let other = (link - 1u) / 3u;
         let j = (link - 1u) % 3u;
         link = gather_links[link - 1u];
@@ -82,10 +82,10 @@ struct runs_TriangleRun {
 
 const runs_RUNS_LOG2 = 9u;
 
-const runs_MOST_RUNS = 1u << runs_RUNS_LOG2;
+const runs_MAX_RUNS = 1u << runs_RUNS_LOG2;
 
 @group(1) @binding(0)
-var<uniform> runs_runs: array<runs_TriangleRun, runs_MOST_RUNS>;
+var<uniform> runs_runs: array<runs_TriangleRun, runs_MAX_RUNS>;
 
 fn runs_thread_index(id: vec3u, group_counts: vec3u) -> u32 {
     return id.y * group_counts.x * 64u + id.x;

@@ -20,9 +20,9 @@ struct Varyings {
     id: u32
 }
 
-const LEAST_TEXELS = 1.0;
+const MIN_TEXELS = 1.0;
 
-const MOST_MITRE = 2.0;
+const MAX_MITRE = 2.0;
 
 fn clip_of_corner(i: u32) -> vec4f {
     return opaque_caster_view.clip_from_world * vec4f(triangles_corner_of(triangles[i]), 1.0);
@@ -39,8 +39,8 @@ fn widened(here: vec4f, ahead: vec4f, behind: vec4f) -> vec4f {
     let area = to_ahead.x * to_behind.y - to_ahead.y * to_behind.x;
     let lengths = vec3f(length(to_ahead), length(to_behind), length(to_ahead - to_behind));
     let longest = max(lengths.x, max(lengths.y, lengths.z));
-    let out_by = 0.5 * (LEAST_TEXELS - abs(area) / max(longest, 1e-6));
-    if out_by <= 0.0 || longest < LEAST_TEXELS || min(lengths.x, lengths.y) < 1e-6 {
+    let out_by = 0.5 * (MIN_TEXELS - abs(area) / max(longest, 1e-6));
+    if out_by <= 0.0 || longest < MIN_TEXELS || min(lengths.x, lengths.y) < 1e-6 {
         return here;
     }
     let along_ahead = to_ahead / lengths.x;
@@ -48,9 +48,9 @@ fn widened(here: vec4f, ahead: vec4f, behind: vec4f) -> vec4f {
     let turn = select(-1.0, 1.0, area >= 0.0);
     let outward = turn * (vec2f(along_ahead.y, -along_ahead.x) + vec2f(-along_behind.y, along_behind.x));
     var mitre = outward * (2.0 / max(dot(outward, outward), 1e-12));
-    if dot(mitre, mitre) > MOST_MITRE * MOST_MITRE {
+    if dot(mitre, mitre) > MAX_MITRE * MAX_MITRE {
         let onward = -along_ahead - along_behind;
-        mitre = MOST_MITRE * onward * inverseSqrt(max(dot(onward, onward), 1e-12));
+        mitre = MAX_MITRE * onward * inverseSqrt(max(dot(onward, onward), 1e-12));
     }
     return vec4f(here.xy + mitre * (out_by / texels * here.w), here.zw);
 }

@@ -24,7 +24,7 @@ const PARTS = 16777216.0;
 
 const MATTERS = 4096u;
 
-const MOST_OF_NODE = 65536.0;
+const MAX_OF_NODE = 65536.0;
 
 const MUST_GAIN = 2.0;
 
@@ -37,7 +37,7 @@ fn parts_hidden(node: vec2u, z: f32) -> u32 {
     let from_center = space_warped_plane(halving_view, uv) / space_inverse_divisor(halving_view, uv);
     let width = space_texel_in_plane_at(halving_view, from_center) * light.node_texels * z;
     let share = min(width / (2.0 * light.half_extent), vec2f(1.0));
-    return u32(ceil(min(share.x * share.y * PARTS, MOST_OF_NODE)));
+    return u32(ceil(min(share.x * share.y * PARTS, MAX_OF_NODE)));
 }
 
 fn bin_of(z: f32) -> u32 {
@@ -199,7 +199,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }

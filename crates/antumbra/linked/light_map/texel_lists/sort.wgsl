@@ -45,14 +45,14 @@ fn is_before(a: vec2u, b: vec2u) -> bool {
 
 const GAP_FACTOR = 3u;
 
-const MOST_GAPS = 20u;
+const MAX_GAPS = 20u;
 
 fn sort(first: u32, count: u32) {
     var gap = 1u;
-    for (var i = 0u; i < MOST_GAPS && GAP_FACTOR * gap + 1u < count; i++) {
+    for (var i = 0u; i < MAX_GAPS && GAP_FACTOR * gap + 1u < count; i++) {
         gap = GAP_FACTOR * gap + 1u;
     }
-    for (var k = 0u; k < MOST_GAPS + 1u && gap > 0u; k++) {
+    for (var k = 0u; k < MAX_GAPS + 1u && gap > 0u; k++) {
         for (var i = gap; i < count; i++) {
             let moved = fragments[first + i];
             var place = i;
@@ -70,7 +70,7 @@ fn sort(first: u32, count: u32) {
     }
 }
 
-fn with_near_ones(first: u32, index: u32, count: u32) -> fragments_GatheredFragment {
+fn merge_adjoining(first: u32, index: u32, count: u32) -> fragments_GatheredFragment {
     var whole = fragments_unpack_gathered(fragments[first + index], COLORED);
     if whole.samples == fragments_ALL_SAMPLES || whole.samples == 0u {
         return whole;
@@ -107,7 +107,7 @@ fn cover(first: u32, count: u32) -> u32 {
     var sample_count = 0u;
     var samples_covered = 0u;
     for (var i = 0u; i < count; i++) {
-        let gathered = with_near_ones(first, i, count);
+        let gathered = merge_adjoining(first, i, count);
         if gathered.samples == 0u {
             continue;
         }

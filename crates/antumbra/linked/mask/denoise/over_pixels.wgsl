@@ -37,7 +37,7 @@ struct Window {
     falloff: f32,
     value: f32,
     slope: vec2f,
-    most_off: f32
+    max_off: f32
 }
 
 fn fit(place: tile_Place, surface: surface_Surface, window: Window) -> Fit {
@@ -50,7 +50,7 @@ fn fit(place: tile_Place, surface: surface_Surface, window: Window) -> Fit {
                 continue;
             }
             let at = vec2f(f32(x), f32(y));
-            if abs(known.x - window.value - dot(window.slope, at)) > window.most_off {
+            if abs(known.x - window.value - dot(window.slope, at)) > window.max_off {
                 continue;
             }
             let share = exp(-window.falloff * dot(at, at));
@@ -92,7 +92,7 @@ const TELLING_FRAMES = 4.0;
 
 const OF_PENUMBRA = 0.125;
 
-const MOST_DEVIATION = 2.0;
+const MAX_DEVIATION = 2.0;
 
 const NOISE_LEFT = 0.01;
 
@@ -100,7 +100,7 @@ const ROOT_4_PI = 3.5449077;
 
 const ALIKE_DEVIATIONS = 3.0;
 
-const LEAST_DEVIATION = 0.3;
+const MIN_DEVIATION = 0.3;
 
 fn smoothed(place: tile_Place, known: vec3f) -> f32 {
     var differs = false;
@@ -115,13 +115,13 @@ fn smoothed(place: tile_Place, known: vec3f) -> f32 {
     let ramp = plane_of(wide);
     let own_variance = max(known.y - known.x * known.x, 0.0) / (known.z * sqrt(known.z));
     let variance = select(own_variance, ramp.variance, known.z < TELLING_FRAMES);
-    let deviation = min(MOST_DEVIATION, min(OF_PENUMBRA / max(length(ramp.slope), 0.0001), sqrt(variance) / (NOISE_LEFT * ROOT_4_PI)));
-    if deviation < LEAST_DEVIATION {
+    let deviation = min(MAX_DEVIATION, min(OF_PENUMBRA / max(length(ramp.slope), 0.0001), sqrt(variance) / (NOISE_LEFT * ROOT_4_PI)));
+    if deviation < MIN_DEVIATION {
         return known.x;
     }
     let reach = i32(ceil(1.5 * deviation));
-    let most_off = ALIKE_DEVIATIONS * sqrt(variance) + NOISE_LEFT;
-    let sums = fit(place, surface, Window(reach, 0.5 / (deviation * deviation), known.x, ramp.slope, most_off));
+    let max_off = ALIKE_DEVIATIONS * sqrt(variance) + NOISE_LEFT;
+    let sums = fit(place, surface, Window(reach, 0.5 / (deviation * deviation), known.x, ramp.slope, max_off));
     return clamp(plane_of(sums).value, sums.low, sums.high);
 }
 
@@ -144,11 +144,11 @@ fn smooth_out(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) g
 struct surface_Surface {
     depth: f32,
     depth_step: vec2f,
-    most_off_m: f32,
-    most_off: f32
+    max_off_m: f32,
+    max_off: f32
 }
 
-const surface_MOST_OFF_PX = 0.05;
+const surface_MAX_OFF_PX = 0.05;
 
 const surface_ROUNDING = 0.0001;
 
@@ -164,13 +164,13 @@ fn surface_surface_of(pixel: vec2u, receiver: inputs_Receiver) -> surface_Surfac
     let step_ndc = vec2f(2.0, -2.0) / size;
     let corner = inputs_receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
     let pixel_m = distance(corner.xyz / corner.w, here.xyz / here.w);
-    let most_off_m = surface_MOST_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
-    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));
+    let max_off_m = surface_MAX_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
+    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, max_off_m, max_off_m / abs(in_clip.z * w));
 }
 
 fn surface_is_on_surface(surface: surface_Surface, away: vec2i, depth: f32) -> bool {
     let far = f32(max(abs(away.x), abs(away.y)));
-    return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.most_off * max(far, 1.0);
+    return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.max_off * max(far, 1.0);
 }
 
 fn surface_neighbour(pixel: vec2u, away: vec2i) -> vec2u {
@@ -366,7 +366,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -384,10 +384,10 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }

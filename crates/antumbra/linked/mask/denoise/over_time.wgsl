@@ -4,7 +4,7 @@ struct DenoiseFrame {
     clip_from_world_before: mat4x4f,
     world_from_clip_before: mat4x4f,
     background_depth_before: f32,
-    most_frames: f32,
+    max_frames: f32,
     has_before: u32,
     has_motion: u32
 }
@@ -107,7 +107,7 @@ fn position_before(pixel: vec2u, depth: f32) -> vec3f {
     return position.xyz / position.w;
 }
 
-const MOST_DEPTH_RATIO = 1.1;
+const MAX_DEPTH_RATIO = 1.1;
 
 fn was_same_surface(receiver: inputs_Receiver, surface: surface_Surface, depth: f32, pixel: vec2u) -> bool {
     if depth == denoise.background_depth_before {
@@ -117,12 +117,12 @@ fn was_same_surface(receiver: inputs_Receiver, surface: surface_Surface, depth: 
     if denoise.has_motion == 1u {
         let w = (denoise.clip_from_world_before * vec4f(position, 1.0)).w;
         let w_now = (denoise.clip_from_world_before * vec4f(receiver.pos_in_world, 1.0)).w;
-        return max(w, w_now) < MOST_DEPTH_RATIO * min(w, w_now);
+        return max(w, w_now) < MAX_DEPTH_RATIO * min(w, w_now);
     }
-    return abs(dot(receiver.normal_in_world, position - receiver.pos_in_world)) <= surface.most_off_m;
+    return abs(dot(receiver.normal_in_world, position - receiver.pos_in_world)) <= surface.max_off_m;
 }
 
-const LEAST_SHARE = 0.01;
+const MIN_SHARE = 0.01;
 
 fn before(pixel: vec2u, layer: u32, receiver: inputs_Receiver, surface: surface_Surface) -> Known {
     if denoise.has_before == 0u {
@@ -141,7 +141,7 @@ fn before(pixel: vec2u, layer: u32, receiver: inputs_Receiver, surface: surface_
         let tap = vec2i(low + step);
         let shares = select(1.0 - part, part, step > vec2f(0.5));
         let share = shares.x * shares.y;
-        if share < LEAST_SHARE || any(tap < vec2i(0)) || any(tap >= vec2i(inputs_receiver_view.size_px)) {
+        if share < MIN_SHARE || any(tap < vec2i(0)) || any(tap >= vec2i(inputs_receiver_view.size_px)) {
             continue;
         }
         if was_same_surface(receiver, surface, textureLoad(depth_before, tap, 0).x, vec2u(tap)) {
@@ -149,13 +149,13 @@ fn before(pixel: vec2u, layer: u32, receiver: inputs_Receiver, surface: surface_
             weights += share;
         }
     }
-    if weights < LEAST_SHARE {
+    if weights < MIN_SHARE {
         return NOTHING;
     }
     return Known(sum.x / weights, sum.y / weights, floor(sum.z + 0.5));
 }
 
-const MOST_DEVIATIONS = 1.5;
+const MAX_DEVIATIONS = 1.5;
 
 const STANDARD_ERRORS = 2.0;
 
@@ -168,12 +168,12 @@ fn kept(earlier: Known, seen: Around, now: f32) -> Known {
     let own_off = max((now - earlier.mean) * sign(off), 0.0);
     let unlikely = min(abs(off) - STANDARD_ERRORS * deviation * inverseSqrt(seen.count), 2.0 * own_off);
     let telling = select(earlier.frames, variance / (unlikely * unlikely), unlikely > 0.0);
-    let reach = MOST_DEVIATIONS * deviation;
+    let reach = MAX_DEVIATIONS * deviation;
     return Known(clamp(earlier.mean, min(seen.mean - reach, now), max(seen.mean + reach, now)), earlier.square, min(earlier.frames, telling));
 }
 
 fn joined(held: Known, now: f32) -> Known {
-    let frames = min(held.frames + 1.0, denoise.most_frames);
+    let frames = min(held.frames + 1.0, denoise.max_frames);
     return Known(held.mean + (now - held.mean) / frames, held.square + (now * now - held.square) / frames, max(floor(frames), 1.0));
 }
 
@@ -208,11 +208,11 @@ fn accumulate(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) g
 struct surface_Surface {
     depth: f32,
     depth_step: vec2f,
-    most_off_m: f32,
-    most_off: f32
+    max_off_m: f32,
+    max_off: f32
 }
 
-const surface_MOST_OFF_PX = 0.05;
+const surface_MAX_OFF_PX = 0.05;
 
 const surface_ROUNDING = 0.0001;
 
@@ -228,13 +228,13 @@ fn surface_surface_of(pixel: vec2u, receiver: inputs_Receiver) -> surface_Surfac
     let step_ndc = vec2f(2.0, -2.0) / size;
     let corner = inputs_receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
     let pixel_m = distance(corner.xyz / corner.w, here.xyz / here.w);
-    let most_off_m = surface_MOST_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
-    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));
+    let max_off_m = surface_MAX_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
+    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, max_off_m, max_off_m / abs(in_clip.z * w));
 }
 
 fn surface_is_on_surface(surface: surface_Surface, away: vec2i, depth: f32) -> bool {
     let far = f32(max(abs(away.x), abs(away.y)));
-    return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.most_off * max(far, 1.0);
+    return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.max_off * max(far, 1.0);
 }
 
 fn surface_neighbour(pixel: vec2u, away: vec2i) -> vec2u {
@@ -424,7 +424,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -442,10 +442,10 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }

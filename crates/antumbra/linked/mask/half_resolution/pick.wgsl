@@ -8,7 +8,7 @@ var half_normals: texture_storage_2d<rgba32float, write>;
 
 const EDGE_PX = 1.0;
 
-const MOST_CONTINUED_PX = 8.0;
+const MAX_CONTINUED_PX = 8.0;
 
 fn pixel_of(first: vec2u, i: u32) -> vec2u {
     return min(first + vec2u(i & 1u, i >> 1u), inputs_receiver_view.size_px - 1u);
@@ -20,7 +20,7 @@ fn is_background(depth: f32) -> bool {
 
 fn is_same(surface: surface_Surface, i: u32, depth: f32) -> bool {
     let on_plane = surface.depth + dot(surface.depth_step, vec2f(vec2u(i & 1u, i >> 1u)));
-    return abs(on_plane - depth) <= EDGE_PX / surface_MOST_OFF_PX * surface.most_off;
+    return abs(on_plane - depth) <= EDGE_PX / surface_MAX_OFF_PX * surface.max_off;
 }
 
 fn chosen_pixel(first: vec2u, is_nearest: bool) -> vec2u {
@@ -54,7 +54,7 @@ fn continued_depth(first: vec2u, pixel: vec2u, receiver: inputs_Receiver) -> f32
     let surface = surface_surface_of(pixel, receiver);
     let depth = surface.depth + dot(surface.depth_step, vec2f(first) - vec2f(pixel));
     let moved = distance(inputs_position_in_world(first, depth), receiver.pos_in_world);
-    let is_near = moved <= MOST_CONTINUED_PX / surface_MOST_OFF_PX * surface.most_off_m;
+    let is_near = moved <= MAX_CONTINUED_PX / surface_MAX_OFF_PX * surface.max_off_m;
     return select(surface.depth, depth, is_near && depth > 0.0 && depth < 1.0);
 }
 
@@ -77,11 +77,11 @@ fn pick(@builtin(global_invocation_id) id: vec3u) {
 struct surface_Surface {
     depth: f32,
     depth_step: vec2f,
-    most_off_m: f32,
-    most_off: f32
+    max_off_m: f32,
+    max_off: f32
 }
 
-const surface_MOST_OFF_PX = 0.05;
+const surface_MAX_OFF_PX = 0.05;
 
 const surface_ROUNDING = 0.0001;
 
@@ -97,8 +97,8 @@ fn surface_surface_of(pixel: vec2u, receiver: inputs_Receiver) -> surface_Surfac
     let step_ndc = vec2f(2.0, -2.0) / size;
     let corner = inputs_receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
     let pixel_m = distance(corner.xyz / corner.w, here.xyz / here.w);
-    let most_off_m = surface_MOST_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
-    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));
+    let max_off_m = surface_MAX_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
+    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, max_off_m, max_off_m / abs(in_clip.z * w));
 }
 
 const finite_EXPONENT_BITS = 2139095040u;
@@ -256,7 +256,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -274,10 +274,10 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }

@@ -13,11 +13,11 @@ const HALF_SLOPE = 0.1;
 
 const NORMAL_POWER = 11.0;
 
-const LEAST_WEIGHT = 0.2;
+const MIN_WEIGHT = 0.2;
 
-const LEAST_ABOUT = 0.01;
+const MIN_ABOUT = 0.01;
 
-const LEAST_FACING = 0.05;
+const MIN_FACING = 0.05;
 
 struct Sum {
     visibility: vec3f,
@@ -78,7 +78,7 @@ fn next_to(pixel: vec2u, receiver: inputs_Receiver) -> Sum {
 fn closeness(receiver: inputs_Receiver, half: vec2i, depth: f32) -> f32 {
     let away = place_of(half, depth) - receiver.pos_in_world;
     let facing = saturate(dot(receiver.normal_in_world, textureLoad(half_normals, half, 0).xyz));
-    return (LEAST_FACING + facing) / max(dot(away, away), 1e-20);
+    return (MIN_FACING + facing) / max(dot(away, away), 1e-20);
 }
 
 fn about(pixel: vec2u, receiver: inputs_Receiver) -> vec3f {
@@ -95,7 +95,7 @@ fn about(pixel: vec2u, receiver: inputs_Receiver) -> vec3f {
             close = sum_of(close, visibility, closeness(receiver, other, depth));
         }
     }
-    if on_surface.weight >= LEAST_ABOUT {
+    if on_surface.weight >= MIN_ABOUT {
         return on_surface.visibility / on_surface.weight;
     }
     return select(vec3f(1.0), close.visibility / close.weight, close.weight > 0.0);
@@ -107,7 +107,7 @@ fn upsampled(pixel: vec2u, receiver: inputs_Receiver) -> vec3f {
         return visibility_at(half);
     }
     let sum = next_to(pixel, receiver);
-    if sum.weight >= LEAST_WEIGHT {
+    if sum.weight >= MIN_WEIGHT {
         return sum.visibility / sum.weight;
     }
     return about(pixel, receiver);
@@ -301,7 +301,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -319,10 +319,10 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }

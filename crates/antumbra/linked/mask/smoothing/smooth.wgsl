@@ -13,11 +13,11 @@ const COUNT = 196u;
 
 const OF_HALF_WIDTH = 0.12;
 
-const MOST_DEVIATION_PX = 2.0;
+const MAX_DEVIATION_PX = 2.0;
 
-const LEAST_HEIGHT = 0.02;
+const MIN_HEIGHT = 0.02;
 
-const LEAST_SPREAD = 1e-6;
+const MIN_SPREAD = 1e-6;
 
 var<workgroup> values: array<u32, COUNT>;
 
@@ -64,11 +64,11 @@ fn thrown_light(pixel: vec2u, receiver: inputs_Receiver, surface: surface_Surfac
     let down = inputs_position_in_world(pixel + vec2u(0u, 1u), surface.depth + surface.depth_step.y) - position;
     let is_sun = inputs_light_source.kind == light_KIND_SUN;
     let to_light = select(normalize(inputs_light_source.center_in_world - position), -inputs_light_source.axis_in_world, is_sun);
-    let height = max(dot(n, to_light), LEAST_HEIGHT);
+    let height = max(dot(n, to_light), MIN_HEIGHT);
     let halves = vec3f(inputs_light_source.half_right, inputs_light_source.half_up, inputs_light_source.half_axis);
     let half = select(halves, vec3f(halves.x), inputs_light_source.kind == light_KIND_SPHERE);
     let axes = mat3x3f(inputs_light_source.right_in_world * half.x, inputs_light_source.up_in_world * half.y, inputs_light_source.axis_in_world * half.z);
-    var ellipse = vec3f(LEAST_SPREAD, 0.0, LEAST_SPREAD);
+    var ellipse = vec3f(MIN_SPREAD, 0.0, MIN_SPREAD);
     for (var i = 0; i < 3; i++) {
         let thrown = axes[i] - to_light * (dot(n, axes[i]) / height);
         let q = pixels_of(thrown, right, down);
@@ -108,7 +108,7 @@ fn smoothed(pixel: vec2u, center: i32) -> f32 {
             }
             let at = vec2f(away);
             let in_penumbra = dot(falloff, at.xxy * at.xyy * vec3f(1.0, 2.0, 1.0)) / max(magnification * magnification, 1e-12);
-            let share = exp(-0.5 * (in_penumbra + dot(at, at) / (MOST_DEVIATION_PX * MOST_DEVIATION_PX)));
+            let share = exp(-0.5 * (in_penumbra + dot(at, at) / (MAX_DEVIATION_PX * MAX_DEVIATION_PX)));
             weight += 2.0 * share;
             sum += share * (a.x + b.x);
         }
@@ -143,11 +143,11 @@ fn smooth_out(@builtin(workgroup_id) tile: vec3u, @builtin(local_invocation_id) 
 struct surface_Surface {
     depth: f32,
     depth_step: vec2f,
-    most_off_m: f32,
-    most_off: f32
+    max_off_m: f32,
+    max_off: f32
 }
 
-const surface_MOST_OFF_PX = 0.05;
+const surface_MAX_OFF_PX = 0.05;
 
 const surface_ROUNDING = 0.0001;
 
@@ -163,13 +163,13 @@ fn surface_surface_of(pixel: vec2u, receiver: inputs_Receiver) -> surface_Surfac
     let step_ndc = vec2f(2.0, -2.0) / size;
     let corner = inputs_receiver_view.view_from_clip * vec4f(ndc + step_ndc, depth, 1.0);
     let pixel_m = distance(corner.xyz / corner.w, here.xyz / here.w);
-    let most_off_m = surface_MOST_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
-    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, most_off_m, most_off_m / abs(in_clip.z * w));
+    let max_off_m = surface_MAX_OFF_PX * pixel_m + surface_ROUNDING * distance(receiver.pos_in_world, inputs_receiver_view.eye_in_world);
+    return surface_Surface(depth, -in_clip.xy / in_clip.z * step_ndc, max_off_m, max_off_m / abs(in_clip.z * w));
 }
 
 fn surface_is_on_surface(surface: surface_Surface, away: vec2i, depth: f32) -> bool {
     let far = f32(max(abs(away.x), abs(away.y)));
-    return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.most_off * max(far, 1.0);
+    return abs(surface.depth + dot(surface.depth_step, vec2f(away)) - depth) <= surface.max_off * max(far, 1.0);
 }
 
 const noisy_NO_MAGNIFICATION = 65504.0;
@@ -347,7 +347,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -365,10 +365,10 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }

@@ -19,20 +19,20 @@ var<storage, read_write> missing_dispatch: MissingDispatch;
 
 const MISSING_WORKGROUP = 64u;
 
-const MOST_WORKGROUPS = 65535u;
+const MAX_WORKGROUPS = 65535u;
 
 const HALF_SLOPE = 0.1;
 
 const NORMAL_POWER = 11.0;
 
-const LEAST_WEIGHT = 0.2;
+const MIN_WEIGHT = 0.2;
 
-const MOST_DIFFERENCE = 0.25;
+const MAX_DIFFERENCE = 0.25;
 
 fn list_as_missing(pixel: vec2u) {
     let place = atomicAdd(&missing_list.count, 1u);
     missing_list.pixels[place] = pixel.x | (pixel.y << 16u);
-    if place % MISSING_WORKGROUP == 0u && place / MISSING_WORKGROUP < MOST_WORKGROUPS {
+    if place % MISSING_WORKGROUP == 0u && place / MISSING_WORKGROUP < MAX_WORKGROUPS {
         atomicAdd(&missing_dispatch.x, 1u);
         atomicMax(&missing_dispatch.y, 1u);
         atomicMax(&missing_dispatch.z, 1u);
@@ -72,7 +72,7 @@ fn add(sum: Sum, receiver: inputs_Receiver, other: Known, share: f32) -> Sum {
 }
 
 fn write_or_list(pixel: vec2u, sum: Sum) {
-    if sum.weight < LEAST_WEIGHT || any(sum.high - sum.low > vec3f(MOST_DIFFERENCE)) {
+    if sum.weight < MIN_WEIGHT || any(sum.high - sum.low > vec3f(MAX_DIFFERENCE)) {
         list_as_missing(pixel);
         return;
     }
@@ -322,7 +322,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -340,10 +340,10 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }

@@ -7,7 +7,7 @@ struct LloydUniform {
     moved_first: u32,
     begins: u32,
     shift: f32,
-    least_gap: f32,
+    min_gap: f32,
     glide: f32
 }
 
@@ -124,7 +124,7 @@ fn teleport() {
     }
     let inertia = inertia_of(sums[heaviest]);
     let deviation = sqrt(inertia / max(sums[heaviest].x, 1.0));
-    if 0.75 * inertia <= 2.0 * merge_cost(cheapest) || 2.0 * deviation < lloyd.least_gap {
+    if 0.75 * inertia <= 2.0 * merge_cost(cheapest) || 2.0 * deviation < lloyd.min_gap {
         return;
     }
     let center = mean[heaviest];
@@ -182,7 +182,7 @@ fn relax(@builtin(local_invocation_index) id: u32) {
     }
     workgroupBarrier();
     if id == 0u {
-        let gap = min(lloyd.least_gap, 1.0 / f32(count + 1u));
+        let gap = min(lloyd.min_gap, 1.0 / f32(count + 1u));
         for (var i = 0u; i < count; i++) {
             let least = select(gap, mean[max(i, 1u) - 1u] + gap, i > 0u);
             mean[i] = clamp(mean[i] + lloyd.shift, least, 1.0 - gap * f32(count - i));

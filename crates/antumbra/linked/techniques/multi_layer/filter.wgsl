@@ -13,7 +13,7 @@ struct FilterStep {
     epsilon_m: f32,
     capacity: u32,
     z_limit_m: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     padding_0: u32
 }
 
@@ -89,7 +89,7 @@ fn reader_of(texel: vec2u, k: u32) -> Reader {
     let child = child_at(texel, k);
     let held = clamp(child, vec2i(0), vec2i(filter_step.source_size) - 1);
     let list = list_at(held);
-    let z_end = select(filter_step.held_from_m, NONE, all(held == child));
+    let z_end = select(filter_step.complete_from_m, NONE, all(held == child));
     return reader_at(list.x, min(list.x + list.y, arrayLength(&fragments)), z_end, 1.0);
 }
 

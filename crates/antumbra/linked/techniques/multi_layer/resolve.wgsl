@@ -1,8 +1,8 @@
 // Linked from src/techniques/multi_layer/resolve.wesl by `cargo xtask shaders`: edit that, not this.
 
-const MOST_LOOKUPS = 128u;
+const MAX_LOOKUPS = 128u;
 
-const LEAST_SINE_NEAR_LIGHT = 0.008;
+const MIN_SINE_NEAR_LIGHT = 0.008;
 
 const OPAQUE = 0.998;
 
@@ -50,8 +50,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> vec3f {
         return vec3f(0.0);
     }
     let nearness = nearness_to_plane(receiver);
-    let least_sine = mix(receiver_light_coarse_grazing_sine(receiver), LEAST_SINE_NEAR_LIGHT, nearness);
-    var plane = receiver_light_biased_plane_within(receiver, 0.0, least_sine);
+    let min_sine = mix(receiver_light_coarse_grazing_sine(receiver), MIN_SINE_NEAR_LIGHT, nearness);
+    var plane = receiver_light_biased_plane_within(receiver, 0.0, min_sine);
     plane.farthest_depth = plane.depth;
     let footprint = footprint_texels(receiver, pixel);
     let lookup = filter_size_Lookup(space_z_of_depth(map_light_view, saturate(plane.depth)), settings_multi_layer.filter_per_g, footprint * footprint, nearness);
@@ -111,7 +111,7 @@ fn occluded_share(lookup: filter_size_Lookup, plane: space_ReceiverPlane) -> vec
         }
         continuing {
             lookups++;
-            break if all(left == vec4u(0u)) | (lookups >= MOST_LOOKUPS);
+            break if all(left == vec4u(0u)) | (lookups >= MAX_LOOKUPS);
         }
     }
     return sum / f32(settings_LIGHT_PARTS);
@@ -201,7 +201,7 @@ fn horizon_horizon_share_of_points(receiver: inputs_Receiver) -> f32 {
 @group(1) @binding(0)
 var<uniform> map_light_view: space_LightViewGpu;
 
-const receiver_light_MOST_COARSE_SINE = 0.0175;
+const receiver_light_MAX_COARSE_SINE = 0.0175;
 
 fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
     let least = space_min_grazing_sine(map_light_view);
@@ -209,13 +209,13 @@ fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
         return least;
     }
     let rise = horizon_rise_above_center(horizon_half_axis_heights(receiver));
-    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MOST_COARSE_SINE);
+    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MAX_COARSE_SINE);
 }
 
-fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
-    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, min_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), min_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, min_sine);
 }
 
 struct space_LightViewGpu {
@@ -234,7 +234,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -286,7 +286,7 @@ fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, min_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -299,14 +299,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
+        let k_min = min_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
         faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        let nz = select(max(n.z, min_sine), min(n.z, -min_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
         faces_away = n.z > 0.0;
     }
@@ -626,7 +626,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -644,11 +644,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -852,8 +852,8 @@ fn lists_quad_at(rung: settings_MultiLayerRung, texel: vec2i) -> lists_Quad {
     let d = lists_lists[far_row + u32(far.x)];
     let is_inside = (vec4i(near.x, far.x, near.x, far.x) == vec4i(texel.x, texel.x + 1, texel.x, texel.x + 1)) & (vec4i(near.y, near.y, far.y, far.y) == vec4i(texel.y, texel.y, texel.y + 1, texel.y + 1));
     let first = vec4u(a.x, b.x, c.x, d.x);
-    let end = first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside | vec4<bool>(map_light_view.held_from_m > 0.0));
-    return lists_Quad(first, end, select(vec4f(map_light_view.held_from_m), vec4f(lists_NONE), is_inside));
+    let end = first + select(vec4u(0u), vec4u(a.y, b.y, c.y, d.y), is_inside | vec4<bool>(map_light_view.complete_from_m > 0.0));
+    return lists_Quad(first, end, select(vec4f(map_light_view.complete_from_m), vec4f(lists_NONE), is_inside));
 }
 
 struct lists_Found {
@@ -861,7 +861,7 @@ struct lists_Found {
     z_m: vec4f
 }
 
-const lists_MOST_HALVINGS = 33u;
+const lists_MAX_HALVINGS = 33u;
 
 fn lists_first_beyond(quad: lists_Quad, z_near: f32) -> lists_Found {
     var low = quad.first;
@@ -879,7 +879,7 @@ fn lists_first_beyond(quad: lists_Quad, z_near: f32) -> lists_Found {
         found = select(found, z_m, is_far);
         continuing {
             halvings++;
-            break if all(low >= high) | (halvings >= lists_MOST_HALVINGS);
+            break if all(low >= high) | (halvings >= lists_MAX_HALVINGS);
         }
     }
     return lists_Found(low, found);
@@ -1118,7 +1118,7 @@ const receiver_plane_OWN_SURFACE_TEXELS = 1.0;
 
 const receiver_plane_OTHER_SURFACE_TEXELS = 4.0;
 
-const receiver_plane_LEAST_IN_FRONT = 0.1;
+const receiver_plane_MIN_IN_FRONT = 0.1;
 
 fn receiver_plane_share_in_front(lookup: filter_size_Lookup, weight: vec4f, z_end: vec4f, z_m: f32) -> f32 {
     let is_in_front = vec4f(z_m) < z_end;
@@ -1128,7 +1128,7 @@ fn receiver_plane_share_in_front(lookup: filter_size_Lookup, weight: vec4f, z_en
     let share = dot(weight, select(vec4f(0.0), vec4f(1.0), is_in_front));
     let texel_m = map_light_view.texel_in_plane * select(1.0, lookup.z_m, map_light_view.perspective == 1u);
     let gap_texels = (lookup.z_m - z_m) / texel_m;
-    return mix(1.0, max(share, receiver_plane_LEAST_IN_FRONT), smoothstep(receiver_plane_OWN_SURFACE_TEXELS, receiver_plane_OTHER_SURFACE_TEXELS, gap_texels));
+    return mix(1.0, max(share, receiver_plane_MIN_IN_FRONT), smoothstep(receiver_plane_OWN_SURFACE_TEXELS, receiver_plane_OTHER_SURFACE_TEXELS, gap_texels));
 }
 
 fn receiver_plane_plane_z_at(plane: space_ReceiverPlane, rung: settings_MultiLayerRung, texel: vec2f) -> vec4f {

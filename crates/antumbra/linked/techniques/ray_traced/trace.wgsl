@@ -48,7 +48,7 @@ fn visibility_of(start: Start, point: vec4f) -> vec3f {
     }
     let x_open = start.x + start.offset_m * start.normal;
     let is_distant = inputs_light_source.kind == light_KIND_SUN;
-    let sight = traversal_Sight(traversal_Segment(start.x, towards), traversal_Segment(x_open, point.xyz - point.w * x_open), select(1.0 + END_MARGIN, 0.0, is_distant), start.depth_error_m);
+    let sight = traversal_ShadowSegments(traversal_Segment(start.x, towards), traversal_Segment(x_open, point.xyz - point.w * x_open), select(1.0 + END_MARGIN, 0.0, is_distant), start.depth_error_m);
     return traversal_passes(sight, start.offset_m);
 }
 
@@ -57,15 +57,15 @@ fn given_to(start: Start, point: vec4f) -> f32 {
     return irradiance_given_by_point(inputs_light_source, facing, start.normal, point.xyz - point.w * start.x);
 }
 
-const MOST_PACKED = 1023.0;
+const MAX_PACKED = 1023.0;
 
 fn pack(passed: vec3f) -> u32 {
-    let levels = vec3u(round(saturate(passed) * MOST_PACKED));
+    let levels = vec3u(round(saturate(passed) * MAX_PACKED));
     return levels.x | (levels.y << 10u) | (levels.z << 20u);
 }
 
 fn unpack(word: u32) -> vec3f {
-    return vec3f(vec3u(word, word >> 10u, word >> 20u) & vec3u(1023u)) / MOST_PACKED;
+    return vec3f(vec3u(word, word >> 10u, word >> 20u) & vec3u(1023u)) / MAX_PACKED;
 }
 
 fn with_earlier(pixel: vec2u, i: u32, passed: vec3f) -> vec3f {
@@ -124,7 +124,7 @@ fn trace(@builtin(global_invocation_id) id: vec3u) {
     }
     let start = start_of(receiver);
     let shift = select(vec2f(), noise_shift_of_pixel(pixel), traversal_rays.rotate == 1u);
-    traversal_turns_left = traversal_rays.most_turns;
+    traversal_turns_left = traversal_rays.max_iterations;
     var seen = vec3f();
     var sum = 0.0;
     let point_count = traversal_rays.point_count;
@@ -438,7 +438,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -456,11 +456,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -545,7 +545,7 @@ fn ray_offset_ray_offset_from(pos_in_world: vec3f, snapped_texels: f32, matrix_r
     return rounding_m + inputs_OFFSET_SNAPS * inputs_snapped_m(snapped_texels, pos_in_world) + matrix_rounding_m;
 }
 
-const surfaces_MOST_TEXTURES: u32 = 12;
+const surfaces_MAX_TEXTURES: u32 = 12;
 
 @group(2) @binding(0)
 var surfaces_surface_0: texture_2d<f32>;
@@ -683,7 +683,7 @@ struct traversal_RayBatch {
     texture_group: u32,
     is_last_group: u32,
     rotate: u32,
-    most_turns: u32,
+    max_iterations: u32,
     passed_stride: u32,
     weighs_irradiance: u32
 }
@@ -711,7 +711,7 @@ struct traversal_Segment {
     along: vec3f
 }
 
-struct traversal_Sight {
+struct traversal_ShadowSegments {
     closed: traversal_Segment,
     open: traversal_Segment,
     inverse_end: f32,
@@ -789,7 +789,7 @@ fn traversal_ray_in_steps(segment: traversal_Segment, instance: u32, frame: node
     return traversal_BoxRay((start - frame.low) / step, traversal_inverse_of(along / step), traversal_ROUNDING * margin / step, end);
 }
 
-fn traversal_entered(sight: traversal_Sight, number: u32, end: f32) -> traversal_MeshWalk {
+fn traversal_entered(sight: traversal_ShadowSegments, number: u32, end: f32) -> traversal_MeshWalk {
     let instance = instance_INSTANCE_VECTORS * number;
     let info = traversal_instances[instance + 6u];
     let caster = traversal_rays.all_points + instance_CASTER_VECTORS * info.x;
@@ -841,7 +841,7 @@ fn traversal_corner_in_world(walk: traversal_MeshWalk, words: vec4u) -> vec3f {
 fn traversal_passes_surface(caster: u32, at: u32, values: vec3f) -> vec3f {
     let surface = traversal_tables[caster + 2u];
     var value = bitcast<vec4f>(traversal_tables[caster + 1u]);
-    if surface.z < surfaces_MOST_TEXTURES {
+    if surface.z < surfaces_MAX_TEXTURES {
         let weights = values / max(values.x + values.y + values.z, 1e-37);
         let rest = bitcast<vec4f>(traversal_triangles[at + 3u]);
         let uv = weights.x * bitcast<vec2f>(vec2u(traversal_triangles[at + 1u].w, traversal_triangles[at + 2u].w)) + weights.y * rest.xy + weights.z * rest.zw;
@@ -850,7 +850,7 @@ fn traversal_passes_surface(caster: u32, at: u32, values: vec3f) -> vec3f {
     return 1.0 - caster_surface_stopped_light(surface.y, bitcast<f32>(surface.x), value);
 }
 
-fn traversal_passes_triangle(sight: traversal_Sight, walk: traversal_MeshWalk, at: u32) -> vec3f {
+fn traversal_passes_triangle(sight: traversal_ShadowSegments, walk: traversal_MeshWalk, at: u32) -> vec3f {
     var segment = sight.open;
     if walk.is_closed {
         segment = sight.closed;
@@ -899,19 +899,19 @@ fn traversal_top_node_count() -> u32 {
     return select(root, 1u, nodes_is_leaf(root));
 }
 
-fn traversal_passes(sight: traversal_Sight, offset_m: f32) -> vec3f {
+fn traversal_passes(sight: traversal_ShadowSegments, offset_m: f32) -> vec3f {
     var passed = vec3f(1.0);
     let end = select(1.0, traversal_FARTHEST, sight.inverse_end == 0.0);
     let top_ray = traversal_world_ray(sight.open, end, offset_m);
     let top_count = traversal_top_node_count();
-    let most_turns = traversal_turns_left;
+    let max_iterations = traversal_turns_left;
     var tests = 0u;
     var turns = 0u;
     var top = 0u;
     var walk = traversal_no_walk();
-    for (var turn = 0u; turn < most_turns; turn++) {
+    for (var turn = 0u; turn < max_iterations; turn++) {
         turns = turn + 1u;
-        if turns + tests >= most_turns {
+        if turns + tests >= max_iterations {
             break;
         }
         if walk.node < walk.end {
@@ -942,7 +942,7 @@ fn traversal_passes(sight: traversal_Sight, offset_m: f32) -> vec3f {
             walk = traversal_entered(sight, second.w, end);
         }
     }
-    traversal_turns_left = most_turns - min(turns + tests, most_turns);
+    traversal_turns_left = max_iterations - min(turns + tests, max_iterations);
     return passed;
 }
 

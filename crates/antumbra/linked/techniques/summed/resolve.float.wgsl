@@ -25,9 +25,9 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
         sums_tile_shift = sums_chosen_tile_log2();
     }
     let p = space_light_from_world(map_light_view, receiver.pos_in_world);
-    let least_sine = receiver_light_coarse_grazing_sine(receiver);
+    let min_sine = receiver_light_coarse_grazing_sine(receiver);
     let extent = blocker_range_seen_extent(uniform_soft.light_extent, uniform_soft.light_extent_axis, p);
-    let compared = compared_compared_of(receiver_light_biased_plane_within(receiver, uniform_soft.bias_scale, least_sine), space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0, least_sine), p.z, depth_range_depth_range(), extent);
+    let compared = compared_compared_of(receiver_light_biased_plane_within(receiver, uniform_soft.bias_scale, min_sine), space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, 0.0, min_sine), p.z, depth_range_depth_range(), extent);
     if !blocker_range_may_be_blocked(compared.own_depth) {
         return above;
     }
@@ -252,7 +252,7 @@ fn map_lit_bilinear(plane: space_ReceiverPlane, uv: vec2f) -> f32 {
     return space_bilinear(quad.lit, quad.t);
 }
 
-const receiver_light_MOST_COARSE_SINE = 0.0175;
+const receiver_light_MAX_COARSE_SINE = 0.0175;
 
 fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
     let least = space_min_grazing_sine(map_light_view);
@@ -260,13 +260,13 @@ fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
         return least;
     }
     let rise = horizon_rise_above_center(horizon_half_axis_heights(receiver));
-    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MOST_COARSE_SINE);
+    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MAX_COARSE_SINE);
 }
 
-fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
-    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, min_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), min_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, min_sine);
 }
 
 struct soft_kernel_SoftKernel {
@@ -388,7 +388,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -473,7 +473,7 @@ fn space_plane_step_of_uv(view: space_LightViewGpu, uv: vec2f, uv_step: vec2f) -
     return (in_warp + from_center * dot(view.warp, in_warp)) / space_inverse_divisor(view, uv + uv_step);
 }
 
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, min_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -486,14 +486,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
+        let k_min = min_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
         faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        let nz = select(max(n.z, min_sine), min(n.z, -min_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
         faces_away = n.z > 0.0;
     }
@@ -543,7 +543,7 @@ fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
 }
 
 fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+    return select(1e30, 1.0 / max(view.complete_from_m, 1e-30) - 1.0 / z_m, view.complete_from_m > 0.0);
 }
 
 fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
@@ -929,7 +929,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -947,11 +947,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -964,7 +964,7 @@ const basis_visibility_TILE_TOLERANCE = 0.002;
 
 const basis_visibility_MAX_TILT = 0.7;
 
-const basis_visibility_MOST_BEHIND = 1.0;
+const basis_visibility_MAX_BEHIND = 1.0;
 
 const basis_visibility_TERM_COUNT = 4u;
 
@@ -1052,7 +1052,7 @@ fn basis_visibility_tile_answer(compared: compared_Compared, texels: sums_Texels
     let is_precise = !has_casters || (gain < 2.0 * basis_visibility_TILE_TOLERANCE * uniform_soft.value_scale && is_even);
     let sums = vec4f(gain * part.x, gain * (ahead * part.x - part.y), ahead * part.w - tile.w * part.z, part.w);
     let found = basis_visibility_exponentials_of(select(vec4f(), sums, has_casters), basis_visibility_summed_count(texels, cuts));
-    let is_one_sided = !has_casters || ahead <= basis_visibility_MOST_BEHIND || found.lit <= 2.0 * basis_visibility_TILE_TOLERANCE;
+    let is_one_sided = !has_casters || ahead <= basis_visibility_MAX_BEHIND || found.lit <= 2.0 * basis_visibility_TILE_TOLERANCE;
     let blocker = select(own - found.offset / uniform_soft.exponent, own * exp(-found.offset / uniform_soft.exponent), is_perspective);
     let own_nearness = select(-compared.z_m, 1.0 / compared.z_m, is_perspective);
     return basis_visibility_Answer(found.lit, blocker - own_nearness, found.is_planar && is_precise && is_one_sided);
@@ -1123,7 +1123,7 @@ fn basis_visibility_basis_answer(compared: compared_Compared, piece: sums_Piece,
     let spread = t_step * (summed.high - summed.low);
     let quantum = 1.0 / 1048576.0;
     let least_variance = dot(spread, spread) / 12.0 + variance_minimum_variance(t_step, quantum);
-    let most_lit = select(1.0, 0.0, depth_range_t_of_z(compared.range, compared.z_m) > 1.0 + basis_visibility_FARTHEST_ROUNDING);
+    let max_lit = select(1.0, 0.0, depth_range_t_of_z(compared.range, compared.z_m) > 1.0 + basis_visibility_FARTHEST_ROUNDING);
     var lit = 1.0;
     var blocker_t = t;
     var is_good = true;
@@ -1131,7 +1131,7 @@ fn basis_visibility_basis_answer(compared: compared_Compared, piece: sums_Piece,
         case uniform_BASIS_VARIANCE {
             let held = saturate(t);
             is_good = mean.x < held;
-            lit = min(variance_variance_visibility(mean.xy, held, least_variance), most_lit);
+            lit = min(variance_variance_visibility(mean.xy, held, least_variance), max_lit);
             blocker_t = variance_mean_blocker_depth(mean.x, held, lit);
         }
         case uniform_BASIS_EXPONENTIAL_VARIANCE {
@@ -1139,21 +1139,21 @@ fn basis_visibility_basis_answer(compared: compared_Compared, piece: sums_Piece,
             let scale = exp(c);
             let moments = mean * vec4f(scale.x, scale.x * scale.x, -scale.y, scale.y * scale.y);
             let held = saturate(t);
-            lit = min(exponential_variance_exponential_variance_visibility_4(moments, held, c, least_variance), most_lit);
+            lit = min(exponential_variance_exponential_variance_visibility_4(moments, held, c, least_variance), max_lit);
             blocker_t = exponential_variance_exponential_variance_blocker_depth(moments, held, c, lit);
         }
         case uniform_BASIS_MOMENT {
             let moments = moment_bias_moments(moment_dequantize_moments(mean), basis_visibility_MOMENT_BIAS);
             let held = saturate(t - 1.5 * sqrt(least_variance));
             let blocked = moment_hamburger(moments, 2.0 * held - 1.0);
-            lit = min(1.0 - blocked.share, most_lit);
+            lit = min(1.0 - blocked.share, max_lit);
             blocker_t = moment_moment_blocker_depth(blocked, held);
         }
         case default {
             let held = saturate(t - convolution_convolution_offset(basis_visibility_TERM_COUNT));
             let further = array<vec4f, 4>(basis_visibility_sum_of(1u, texels, cuts) / max(count, 1e-6), basis_visibility_sum_of(2u, texels, cuts) / max(count, 1e-6), basis_visibility_sum_of(3u, texels, cuts) / max(count, 1e-6), basis_visibility_sum_of(4u, texels, cuts) / max(count, 1e-6));
             let terms = basis_visibility_convolution_sum(2.0 * mean - 1.0, 2.0 * further[0] - 1.0, held);
-            lit = min(convolution_convolution_visibility(terms), most_lit);
+            lit = min(convolution_convolution_visibility(terms), max_lit);
             let terms_t = basis_visibility_convolution_sum(2.0 * further[1] - 1.0, 2.0 * further[2] - 1.0, held);
             blocker_t = convolution_convolution_blocker_depth(further[3].x, terms_t, held, lit);
         }
@@ -1283,11 +1283,11 @@ fn depth_range_t_of_z(range: depth_range_DepthRange, z_m: f32) -> f32 {
     return (z_m - range.near_m) / (range.far_m - range.near_m);
 }
 
-const kernel_MOST_NARROW_TAPS = 10.0;
+const kernel_MAX_NARROW_TAPS = 10.0;
 
 fn kernel_narrow_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f32 {
     let asked = select(2.0 * kernel.half_size, 2.6667 * kernel.half_size - 1.0, uniform_soft.with_footprint == 1u);
-    let taps = vec2u(clamp(ceil(asked), vec2f(1.0), vec2f(kernel_MOST_NARROW_TAPS)));
+    let taps = vec2u(clamp(ceil(asked), vec2f(1.0), vec2f(kernel_MAX_NARROW_TAPS)));
     let count = taps.x * taps.y;
     let plane = map_visibility_plane_about(compared, kernel.center);
     var sum = vec2f();
@@ -1307,12 +1307,12 @@ fn kernel_narrow_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel
     return sum.x / max(sum.y, 1e-12);
 }
 
-fn kernel_least_cuts() -> u32 {
+fn kernel_min_cuts() -> u32 {
     return select(2u, 1u, uniform_IS_ONE_PIECE);
 }
 
 fn kernel_wide_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -> f32 {
-    let count = max(kernel_rows_rows_of(asked), kernel_least_cuts());
+    let count = max(kernel_rows_rows_of(asked), kernel_min_cuts());
     var kernel = asked;
     if asked.is_ellipse && kernel_rows_REFINEMENTS == 0u {
         kernel = kernel_rows_ellipse_of_rows(asked, count);
@@ -1341,7 +1341,7 @@ fn kernel_wide_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel) -
         }
         continuing {
             j++;
-            break if j >= pieces_MOST_PIECES || rows.at >= high;
+            break if j >= pieces_MAX_PIECES || rows.at >= high;
         }
     }
     return sum.x / max(sum.y, 1e-12);
@@ -1353,7 +1353,7 @@ fn kernel_row_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y
     let high = row_middle + half;
     var sum = vec2f();
     sums_begin_row();
-    var columns = pieces_cuts_from(row_middle - half, max(pieces_pieces_of(2.0 * half, uniform_soft.subdivisions), kernel_least_cuts()));
+    var columns = pieces_cuts_from(row_middle - half, max(pieces_pieces_of(2.0 * half, uniform_soft.subdivisions), kernel_min_cuts()));
     var i = 0u;
     loop {
         let end = pieces_next_cut(columns, high, map_light_view.map_size.x);
@@ -1362,16 +1362,16 @@ fn kernel_row_lit(compared: compared_Compared, kernel: soft_kernel_SoftKernel, y
         columns = pieces_cuts_after(columns, end, high);
         continuing {
             i++;
-            break if i >= pieces_MOST_PIECES || columns.at >= high;
+            break if i >= pieces_MAX_PIECES || columns.at >= high;
         }
     }
     return sum;
 }
 
-const kernel_MOST_PRINTED_ROWS = 128u;
+const kernel_MAX_PRINTED_ROWS = 128u;
 
 fn kernel_lit_by_squares(compared: compared_Compared, kernel: soft_kernel_SoftKernel) -> f32 {
-    let count = clamp(u32(ceil(2.0 * kernel.half_size.y / uniform_soft.row_height)), 1u, kernel_MOST_PRINTED_ROWS);
+    let count = clamp(u32(ceil(2.0 * kernel.half_size.y / uniform_soft.row_height)), 1u, kernel_MAX_PRINTED_ROWS);
     var sum = vec2f();
     for (var j = 0u; j < count; j++) {
         let low = mix(-kernel.half_size.y, kernel.half_size.y, f32(j) / f32(count));
@@ -1403,10 +1403,10 @@ fn kernel_kernel_lit(compared: compared_Compared, asked: soft_kernel_SoftKernel)
 fn kernel_ends_square_lit(compared: compared_Compared, whole: sums_Piece) -> vec2f {
     var sum = vec2f();
     var rows = pieces_cuts_from(whole.low.y, pieces_pieces_of(whole.high.y - whole.low.y, uniform_soft.subdivisions));
-    for (var j = 0u; j < pieces_MOST_PIECES && rows.at < whole.high.y; j++) {
+    for (var j = 0u; j < pieces_MAX_PIECES && rows.at < whole.high.y; j++) {
         let row_high = pieces_next_cut(rows, whole.high.y, map_light_view.map_size.y);
         var columns = pieces_cuts_from(whole.low.x, pieces_pieces_of(whole.high.x - whole.low.x, uniform_soft.subdivisions));
-        for (var i = 0u; i < pieces_MOST_PIECES && columns.at < whole.high.x; i++) {
+        for (var i = 0u; i < pieces_MAX_PIECES && columns.at < whole.high.x; i++) {
             let end = pieces_next_cut(columns, whole.high.x, map_light_view.map_size.x);
             let piece = sums_Piece(vec2f(columns.at, rows.at), vec2f(end, row_high));
             sum += sums_area(piece) * vec2f(kernel_piece_piece_lit(compared, piece), 1.0);
@@ -1524,15 +1524,15 @@ override kernel_rows_REFINEMENTS: u32 = 0u;
 
 const kernel_rows_SHEAR_SHARE = 0.2;
 
-const kernel_rows_MOST_SHEARED_ROWS = 8u;
+const kernel_rows_MAX_SHEARED_ROWS = 8u;
 
-const kernel_rows_LEAST_ELLIPSE_ROWS = 5u;
+const kernel_rows_MIN_ELLIPSE_ROWS = 5u;
 
 fn kernel_rows_rows_of(kernel: soft_kernel_SoftKernel) -> u32 {
     let size = 2.0 * kernel.half_size;
     let by_shear = ceil(abs(kernel.shear) * size.y / max(kernel_rows_SHEAR_SHARE * size.x, 1.0));
-    let least = select(uniform_soft.subdivisions, max(uniform_soft.subdivisions, kernel_rows_LEAST_ELLIPSE_ROWS), kernel.is_ellipse);
-    return clamp(u32(by_shear), pieces_pieces_of(size.y, least), pieces_pieces_of(size.y, max(2u * least, kernel_rows_MOST_SHEARED_ROWS)));
+    let least = select(uniform_soft.subdivisions, max(uniform_soft.subdivisions, kernel_rows_MIN_ELLIPSE_ROWS), kernel.is_ellipse);
+    return clamp(u32(by_shear), pieces_pieces_of(size.y, least), pieces_pieces_of(size.y, max(2u * least, kernel_rows_MAX_SHEARED_ROWS)));
 }
 
 const kernel_rows_ROW_SPREAD: f32 = 1.2;
@@ -1640,7 +1640,7 @@ fn map_visibility_is_of_asked(compared: compared_Compared, asked: sums_Piece, pi
     return !map_visibility_is_beyond(asked, piece) || blocker_g > compared.edge_g;
 }
 
-const pieces_MOST_PIECES = 1024u;
+const pieces_MAX_PIECES = 1024u;
 
 struct pieces_Cuts {
     at: f32,
@@ -1675,7 +1675,7 @@ fn pieces_cuts_after(cuts: pieces_Cuts, next: f32, high: f32) -> pieces_Cuts {
 }
 
 fn pieces_pieces_of(length_texels: f32, most: u32) -> u32 {
-    let least = u32(min(ceil(length_texels / (sqrt(uniform_soft.max_part_texels) - 1.0)), f32(pieces_MOST_PIECES)));
+    let least = u32(min(ceil(length_texels / (sqrt(uniform_soft.max_part_texels) - 1.0)), f32(pieces_MAX_PIECES)));
     return clamp(u32(ceil(0.5 * length_texels)), 1u, max(most, least));
 }
 
@@ -1792,13 +1792,13 @@ fn search_window_blockers(search: search_Search, receiver: compared_Compared, k:
             columns = pieces_cuts_after(columns, end, high.x);
             continuing {
                 i++;
-                break if i >= pieces_MOST_PIECES || columns.at >= high.x;
+                break if i >= pieces_MAX_PIECES || columns.at >= high.x;
             }
         }
         rows = pieces_cuts_after(rows, row_high, high.y);
         continuing {
             j++;
-            break if j >= pieces_MOST_PIECES || rows.at >= high.y;
+            break if j >= pieces_MAX_PIECES || rows.at >= high.y;
         }
     }
     return sum / (4.0 * half.x * half.y);
@@ -1825,13 +1825,13 @@ fn search_search_taps(search: search_Search, compared: compared_Compared) -> vec
 
 const search_MUCH_NEARER = 0.5;
 
-const search_MOST_LOOKS = 2u;
+const search_MAX_LOOKS = 2u;
 
 fn search_search_blockers(compared: compared_Compared) -> vec2f {
     var search = search_search_of(compared);
     var sum: vec2f;
     var mean_g: f32;
-    for (var look = 0u; look < search_MOST_LOOKS; look++) {
+    for (var look = 0u; look < search_MAX_LOOKS; look++) {
         if search_HAS_SEARCH_TAPS {
             sum = search_search_taps(search, compared);
         }

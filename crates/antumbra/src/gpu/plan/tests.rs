@@ -53,7 +53,7 @@ fn planned_objects_are_told_apart_and_commands_end() {
     );
     let (first, second) = (buffer(planned, 4), buffer(planned, 4));
     assert!(first != second && first == first.clone());
-    assert_eq!(planned.complaint(|| drop(buffer(planned, 1 << 50))), None);
+    assert_eq!(planned.validation_error(|| drop(buffer(planned, 1 << 50))), None);
     let mut encoder = planned.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_buffer_to_buffer(&first, 0, &second, 0, 4);
     let is_done = Arc::new(AtomicBool::new(false));

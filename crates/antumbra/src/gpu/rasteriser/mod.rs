@@ -76,7 +76,7 @@ fn measure_moved(gpu: &Gpu, by_texels: f32) -> wgpu::Buffer {
     let draw = draw.create(gpu);
     let layout = Measured::layout(gpu);
     let compare = compute_pipeline(gpu, "rasteriser measure", shaders::RASTERISER_MEASURE, &[&layout]);
-    let group = Measured { drawn: &drawn, snapped_texels: &snapped_texels }.kept_group(gpu, &layout);
+    let group = Measured { drawn: &drawn, snapped_texels: &snapped_texels }.cached_group(gpu, &layout);
 
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
     {

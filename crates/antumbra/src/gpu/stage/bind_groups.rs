@@ -5,11 +5,11 @@ use std::num::NonZeroU64;
 
 use hashbrown::DefaultHashBuilder;
 
-use super::{Keep, Stage, Used};
+use super::{RetainedState, Stage, Used};
 
 /// Cached bind group with its layout and resources. Every frame looks it up by reference, so that a hit clones no key.
 #[derive(Debug)]
-pub(super) struct KeptGroup {
+pub(super) struct CachedGroup {
     hash: u64,
     layout: wgpu::BindGroupLayout,
     resources: Vec<(u32, Resource)>,
@@ -26,7 +26,7 @@ pub(crate) enum Resource {
 
 /// Cached view, with its texture and the part of it.
 #[derive(Debug)]
-pub(super) struct KeptView {
+pub(super) struct CachedView {
     texture: wgpu::Texture,
     part: TexturePart,
     pub(super) view: Used<wgpu::TextureView>,
@@ -45,14 +45,14 @@ struct TexturePart {
 impl Stage<'_> {
     /// Returns a bind group, cached by layout and resources.
     pub(crate) fn create_bind_group(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> wgpu::BindGroup {
-        let Keep { frame, hashes, groups, .. } = &mut *self.keep.borrow_mut();
+        let RetainedState { frame, hashes, groups, .. } = &mut *self.keep.borrow_mut();
         let hash = hash_of_group(hashes, descriptor);
         if let Some(kept) = groups.find_mut(hash, |kept| kept.is_of(descriptor)) {
             kept.group.frame = *frame;
             return kept.group.value.clone();
         }
         let value = self.gpu.device.create_bind_group(descriptor);
-        let kept = KeptGroup {
+        let kept = CachedGroup {
             hash,
             layout: descriptor.layout.clone(),
             resources: descriptor.entries.iter().map(|entry| (entry.binding, Resource::of(&entry.resource))).collect(),
@@ -76,20 +76,20 @@ impl Stage<'_> {
             mips: (descriptor.base_mip_level, descriptor.mip_level_count),
             layers: (descriptor.base_array_layer, descriptor.array_layer_count),
         };
-        let Keep { frame, hashes, views, .. } = &mut *self.keep.borrow_mut();
+        let RetainedState { frame, hashes, views, .. } = &mut *self.keep.borrow_mut();
         let hash = hashes.hash_one((texture, &part));
         if let Some(kept) = views.find_mut(hash, |kept| (&kept.texture, &kept.part) == (texture, &part)) {
             kept.view.frame = *frame;
             return kept.view.value.clone();
         }
         let value = self.gpu.device.create_view(texture, descriptor);
-        let kept = KeptView { texture: texture.clone(), part, view: Used { value: value.clone(), frame: *frame } };
+        let kept = CachedView { texture: texture.clone(), part, view: Used { value: value.clone(), frame: *frame } };
         views.insert_unique(hash, kept, |kept| hashes.hash_one((&kept.texture, &kept.part)));
         value
     }
 }
 
-impl KeptGroup {
+impl CachedGroup {
     fn is_of(&self, descriptor: &wgpu::BindGroupDescriptor<'_>) -> bool {
         self.layout == *descriptor.layout
             && self.resources.len() == descriptor.entries.len()

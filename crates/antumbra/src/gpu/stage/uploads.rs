@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Keep;
+use super::RetainedState;
 use crate::gpu::{CommandsEnd, Gpu};
 
 /// Uploads collected so far.
@@ -52,7 +52,7 @@ impl StagedUploads {
 }
 
 /// Minimum size of a staging buffer, bytes: enough for most frames.
-const LEAST_STAGING_BYTES: u64 = 16 << 10;
+const MIN_STAGING_BYTES: u64 = 16 << 10;
 
 impl Uploads {
     /// Moves the uploads of another collection into this one.
@@ -63,7 +63,7 @@ impl Uploads {
     }
 }
 
-impl Keep {
+impl RetainedState {
     pub(super) fn stage_uploads(&mut self, gpu: &Gpu) -> StagedUploads {
         let bytes = self.uploads.bytes.len() as u64;
         if bytes == 0 {
@@ -75,7 +75,7 @@ impl Keep {
         let place = self.staging.iter().position(is_free).unwrap_or_else(|| {
             let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("antumbra staging"),
-                size: bytes.max(LEAST_STAGING_BYTES).next_power_of_two(),
+                size: bytes.max(MIN_STAGING_BYTES).next_power_of_two(),
                 usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             });

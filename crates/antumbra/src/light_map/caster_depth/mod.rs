@@ -192,7 +192,7 @@ impl CasterDepth {
 
         self.cutouts = casters.iter().map(|caster| self.cutout_bind_group(stage, &caster.opacity)).collect();
         let sides = || views.iter().map(|view| ViewSides::of(&view.clip_from_world)).collect::<Vec<_>>();
-        let asked = (views.len() <= MOST_VIEWS_ASKED).then(sides);
+        let asked = (views.len() <= MAX_VIEWS_ASKED).then(sides);
         let sees = |caster: &MeshCaster<'_>| {
             asked.as_ref().is_none_or(|asked| asked.iter().any(|sides| sides.may_hold(&caster.bounds)))
         };
@@ -273,21 +273,21 @@ impl CasterDepth {
 }
 
 /// Largest number of views for which casters are culled; more views together see most casters.
-const MOST_VIEWS_ASKED: usize = 8;
+const MAX_VIEWS_ASKED: usize = 8;
 
 /// Creates stand-in texture coordinates for translucent casters without a texture, since their shader reads some; as many as
 /// the largest caster has vertices.
 pub(crate) fn make_no_uvs(stage: &Stage<'_>, no_uvs: &mut Option<wgpu::Buffer>, casters: &[MeshCaster<'_>]) {
-    let most_vertices = casters
+    let max_vertices = casters
         .iter()
         .filter(|caster| matches!(caster.opacity, Opacity::Translucent { texture: None, .. }))
         .map(|caster| caster.positions.size() / 12)
         .max()
         .unwrap_or(0);
-    if most_vertices > 0 && no_uvs.as_ref().is_none_or(|buffer| buffer.size() < most_vertices * 8) {
+    if max_vertices > 0 && no_uvs.as_ref().is_none_or(|buffer| buffer.size() < max_vertices * 8) {
         *no_uvs = Some(stage.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("antumbra no texture coordinates"),
-            size: most_vertices * 8,
+            size: max_vertices * 8,
             usage: wgpu::BufferUsages::VERTEX,
             mapped_at_creation: false,
         }));

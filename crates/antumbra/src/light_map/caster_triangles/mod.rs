@@ -23,7 +23,7 @@ bindings! {
     }
 }
 
-use runs::{MOST_RUNS, RunBindings, TriangleRun, anchor_uniform, upload_runs};
+use runs::{MAX_RUNS, RunBindings, TriangleRun, anchor_uniform, upload_runs};
 
 /// Bytes of a triangle: corners and neighbours.
 const TRIANGLE_BYTES: u64 = 48;
@@ -57,7 +57,7 @@ struct Run {
 }
 
 /// Smallest capacity, triangles.
-const LEAST_ROOM: u64 = 2048;
+const MIN_ROOM: u64 = 2048;
 
 impl CasterTriangles {
     pub(crate) fn new(gpu: &Gpu) -> Self {
@@ -85,12 +85,12 @@ impl CasterTriangles {
     ) -> Result<(), Error> {
         let count_of = |caster: &MeshCaster<'_>| u64::from(caster.index_count / 3) * u64::from(caster.instance_count);
         let count: u64 = casters.iter().map(count_of).sum();
-        let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
-        if count * TRIANGLE_BYTES > most_bytes {
+        let max_bytes = stage.device.limits().max_storage_buffer_binding_size;
+        if count * TRIANGLE_BYTES > max_bytes {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("a buffer of {TRIANGLE_BYTES} bytes for each of {count} triangles"),
-                had: format!("at most {most_bytes} bytes"),
+                had: format!("at most {max_bytes} bytes"),
                 remedy,
             });
         }
@@ -98,16 +98,16 @@ impl CasterTriangles {
         let mut first = 0;
         self.runs.clear();
         let of_buffers = meshes.chunk_by(|a, b| buffers_of(a) == buffers_of(b));
-        for meshes in of_buffers.flat_map(|meshes| meshes.chunks(MOST_RUNS)) {
+        for meshes in of_buffers.flat_map(|meshes| meshes.chunks(MAX_RUNS)) {
             let run = self.run(stage, meshes, first);
             first += run.count;
             self.runs.push(run);
         }
         // Spare room, so that casters that enter and leave the light's reach allocate nothing; and no binding may be empty.
-        if count > self.room || 4 * count.max(LEAST_ROOM) < self.room {
-            self.room = (count + count / 2).next_power_of_two().max(LEAST_ROOM);
+        if count > self.room || 4 * count.max(MIN_ROOM) < self.room {
+            self.room = (count + count / 2).next_power_of_two().max(MIN_ROOM);
         }
-        let room = self.room.min(most_bytes / TRIANGLE_BYTES).max(1);
+        let room = self.room.min(max_bytes / TRIANGLE_BYTES).max(1);
         let buffer = |slot: &mut Option<wgpu::Buffer>, label, bytes| {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
             sized_buffer(stage, slot, label, bytes, usage).clone()

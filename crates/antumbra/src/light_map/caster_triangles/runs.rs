@@ -35,10 +35,10 @@ pub(crate) fn anchor_uniform(stage: &Stage<'_>) -> wgpu::Buffer {
     stage.uniform("antumbra anchor", &stage.anchor().extend(0.0))
 }
 
-/// Largest number of runs per dispatch: `MOST_RUNS` of `runs.wesl`.
-pub(crate) const MOST_RUNS: usize = 512;
+/// Largest number of runs per dispatch: `MAX_RUNS` of `runs.wesl`.
+pub(crate) const MAX_RUNS: usize = 512;
 
-/// Uploads at most [`MOST_RUNS`] runs, each with its triangle count; also returns the total count.
+/// Uploads at most [`MAX_RUNS`] runs, each with its triangle count; also returns the total count.
 pub(crate) fn upload_runs(
     stage: &Stage<'_>,
     runs: impl IntoIterator<Item = (TriangleRun, u32)>,
@@ -52,6 +52,6 @@ pub(crate) fn upload_runs(
         })
         .collect();
     table.iter_mut().for_each(|run| run.thread_count = thread_count);
-    table.resize(MOST_RUNS, TriangleRun { first_thread: u32::MAX, ..TriangleRun::default() });
+    table.resize(MAX_RUNS, TriangleRun { first_thread: u32::MAX, ..TriangleRun::default() });
     (stage.uniform_array("antumbra triangle runs", &table), thread_count)
 }

@@ -69,7 +69,7 @@ impl LayersBehind {
         let before = std::iter::once(nearest).chain(&slices);
         let nearer = before
             .take(layers as usize)
-            .map(|layer| NearerLayer { nearer_layer: layer }.kept_group(stage, &self.nearer_layout))
+            .map(|layer| NearerLayer { nearer_layer: layer }.cached_group(stage, &self.nearer_layout))
             .collect();
         self.maps = Some(Maps { size, array: (Arc::clone(&texture), array_view(stage, &texture)), slices, nearer });
     }

@@ -268,7 +268,7 @@ impl Maps {
             .map(|slice| {
                 let layout = programs.filter(|_| slice % of.layers > 0).map(|programs| &programs.nearer_layout)?;
                 let nearer = NearerLayer { nearer_layer: &depth_slices[slice as usize - 1] };
-                Some(nearer.kept_group(stage, layout))
+                Some(nearer.cached_group(stage, layout))
             })
             .collect();
         Self {

@@ -17,8 +17,14 @@ fn layers_hold_one_plane_after_another() {
         up: glam::Vec3::NEG_Z,
         axis: glam::Vec3::NEG_Y,
     };
-    let view =
-        LightView { frame, perspective: true, window: Window::square(0.5), near_m: 1.0, far_m: 5.0, held_from_m: 0.0 };
+    let view = LightView {
+        frame,
+        perspective: true,
+        window: Window::square(0.5),
+        near_m: 1.0,
+        far_m: 5.0,
+        complete_from_m: 0.0,
+    };
     // Depth is n (f − Z) / (Z (f − n)), reversed.
     let depth_of = |z: f32| (5.0 - z) / (4.0 * z);
     let heights = [2.0, 1.0, 0.0];

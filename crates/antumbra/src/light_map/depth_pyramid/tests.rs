@@ -13,7 +13,7 @@ fn random_map(size: UVec2) -> Vec<f32> {
 }
 
 #[test]
-fn twin_matches_the_definition() {
+fn cpu_reference_matches_the_definition() {
     let size = UVec2::new(13, 6);
     let map = random_map(size);
     let levels = cpu::build(&map, size);
@@ -49,7 +49,8 @@ fn nearest_that_matters_m(gpu: &Gpu, speck: u32, light_half_extent_m: Vec2) -> f
         warp: Vec2::ZERO,
         center_in_warp: Vec2::ZERO,
     };
-    let view = LightView { frame, perspective: true, window, near_m: 0.01, far_m: 20.0, held_from_m: 0.0 }.to_gpu(SIZE);
+    let view =
+        LightView { frame, perspective: true, window, near_m: 0.01, far_m: 20.0, complete_from_m: 0.0 }.to_gpu(SIZE);
     let depth = |z: f32| view.depth_scale / z + view.depth_offset;
     let is_speck = |i: u32| i % SIZE < speck && i / SIZE < speck;
     let map: Vec<f32> = (0..SIZE * SIZE).map(|i| depth(if is_speck(i) { 0.05 } else { 10.0 })).collect();
@@ -80,7 +81,7 @@ fn what_hides_next_to_nothing_of_the_light_does_not_matter() {
 }
 
 #[test]
-fn gpu_equals_twin_over_a_ladder_of_sizes() {
+fn gpu_equals_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     for size in [1, 2, 3, 7, 8, 9, 16, 17, 63, 64, 65, 255, 512, 520]
         .map(|n| UVec2::new(n, n))

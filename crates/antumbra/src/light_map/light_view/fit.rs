@@ -18,22 +18,22 @@ pub(crate) const HORIZON_TANGENT: f32 = 64.0;
 
 /// Largest factor by which a window is widened to hold the segments that leave it, from receivers farthest off its axis: a wider
 /// window would lack texels in its middle. The map's edge represents blockers beyond it, which are close to the light.
-const MOST_WIDENED: f32 = 1.15;
+const MAX_WIDENED: f32 = 1.15;
 
 /// Nearest depth of a perspective view, as a fraction of its farthest. With reversed 32-bit depth the
 /// precision does not depend on it; it keeps the margin finite for lights that casters cross.
 const MIN_NEAR_FRACTION: f32 = 1e-3;
 
 /// Upper limit of that nearest depth, metres, however far the view reaches.
-const MOST_LEAST_NEAR_M: f32 = 0.05;
+const MAX_NEAR_M: f32 = 0.05;
 
 /// Receiver-to-light segments that a technique follows in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Followed {
+pub(crate) enum FollowedLight {
     /// Segments to the whole light; those of receivers farthest off the axis leave the receivers' window.
-    All,
+    Whole,
     /// Segments to the light's centre; a kernel of fixed width stands for the others.
-    Middle,
+    Center,
 }
 
 /// Geometry and window shape to which a view is fitted.
@@ -54,7 +54,7 @@ pub(crate) struct ViewFit {
     pub(super) perspective: bool,
     pub(super) near_m: f32,
     far_m: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     /// Light-plane points with the convex hull of the casters: the corners of all boxes, or of the hull.
     casters: Vec<Vec2>,
     /// Light-plane points with the convex hull of the receivers; `None` if unknown.
@@ -62,7 +62,7 @@ pub(crate) struct ViewFit {
     /// Distance by which segments to the light leave the receivers' window, in light-plane coordinates.
     margin: f32,
     /// Tangent of the light's own frustum, if it has one; receivers outside it do not count.
-    reach_tangent: Option<f32>,
+    max_angle_tangent: Option<f32>,
 }
 
 impl ViewFit {
@@ -75,13 +75,13 @@ impl ViewFit {
     /// `depth_m` is the largest distance of a light point from the light's plane. Seen from the side, such points lie farther
     /// out, so for these lights the margin holds segments only from a larger depth on than for flat lights.
     ///
-    /// `reach_tangent` is the tangent of the light's own frustum, if it has one: receivers outside it do not count.
+    /// `max_angle_tangent` is the tangent of the light's own frustum, if it has one: receivers outside it do not count.
     pub(crate) fn perspective(
         frame: LightFrame,
-        followed: Followed,
+        followed: FollowedLight,
         margin_m: f32,
         depth_m: f32,
-        reach_tangent: Option<f32>,
+        max_angle_tangent: Option<f32>,
         casters: &Between,
         receivers: &[Vec3],
     ) -> Self {
@@ -99,23 +99,23 @@ impl ViewFit {
         far = receivers.iter().fold(far, |far, p| far.max(p.z));
         // A light with nothing in front still has a view; its map stays empty.
         let far = if far > 0.0 { far * 1.001 } else { 1.0 };
-        let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MOST_LEAST_NEAR_M), far * 0.99);
+        let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MAX_NEAR_M), far * 0.99);
         let mut of_receivers = Vec::new();
         add_tangents(&mut of_receivers, &receivers, near, HORIZON_TANGENT);
         // Casters outside the receivers' window and its margin shade receivers only if they are close to the light.
-        let held_from_m = margin_depth(near, far, margin_m);
+        let complete_from_m = margin_depth(near, far, margin_m);
         let asked = of_receivers.iter().fold(0.0f32, |farthest, p| farthest.max(p.abs().max_element()));
-        let needed = asked + margin_m * (1.0 / held_from_m - 1.0 / far);
-        let (farthest, held_from_m) = match followed {
-            Followed::Middle => (asked.max(MIDDLE_TANGENT), held_from_m),
-            Followed::All => {
-                let widest = MOST_WIDENED * asked.max(MIDDLE_TANGENT);
+        let needed = asked + margin_m * (1.0 / complete_from_m - 1.0 / far);
+        let (farthest, complete_from_m) = match followed {
+            FollowedLight::Center => (asked.max(MIDDLE_TANGENT), complete_from_m),
+            FollowedLight::Whole => {
+                let widest = MAX_WIDENED * asked.max(MIDDLE_TANGENT);
                 let held_by_widest = margin_m / (widest - asked + margin_m / far);
-                (needed.clamp(MIDDLE_TANGENT, widest), if needed > widest { held_by_widest } else { held_from_m })
+                (needed.clamp(MIDDLE_TANGENT, widest), if needed > widest { held_by_widest } else { complete_from_m })
             }
         };
-        let margin = margin_m * (1.0 / held_from_m - 1.0 / far);
-        let held_from_m = if held_from_m > near {
+        let margin = margin_m * (1.0 / complete_from_m - 1.0 / far);
+        let complete_from_m = if complete_from_m > near {
             // A point `depth_m` behind the plane appears on it farther out by depth_m · tan θ; no point of an ellipsoid is both
             // that deep and at its rim.
             let seen_m = margin_m.hypot(depth_m * asked);
@@ -134,11 +134,11 @@ impl ViewFit {
             perspective: true,
             near_m: near,
             far_m: far,
-            held_from_m,
+            complete_from_m,
             casters: of_casters,
             receivers: (!receivers.is_empty()).then_some(of_receivers),
             margin,
-            reach_tangent,
+            max_angle_tangent,
         }
     }
 
@@ -177,13 +177,13 @@ impl ViewFit {
             perspective: false,
             near_m: near,
             far_m: far,
-            held_from_m: 0.0,
+            complete_from_m: 0.0,
             casters: of_casters.filter(|p| p.is_finite()).collect(),
             receivers: (!receivers.is_empty())
                 .then(|| receivers.iter().map(in_plane).filter(|p| p.is_finite()).collect()),
             // Unknown casters may be anywhere; no window can hold all that they blur.
             margin: (margin * (far - near_of_known)).min(most),
-            reach_tangent: None,
+            max_angle_tangent: None,
         }
     }
 
@@ -204,7 +204,7 @@ impl ViewFit {
         let asked = self.receivers.as_ref().map(|points| PlaneWindow::of(points.iter().copied(), roll));
         let needed = if self.perspective {
             let asked = asked.unwrap_or(casters);
-            let reached = self.reach_tangent.map_or(asked, |t| {
+            let reached = self.max_angle_tangent.map_or(asked, |t| {
                 let corners = [Vec2::new(t, t), Vec2::new(-t, t), Vec2::new(t, -t), Vec2::new(-t, -t)];
                 asked.intersection(PlaneWindow::of(corners, roll))
             });
@@ -214,8 +214,8 @@ impl ViewFit {
         };
         let hull = self.receivers.as_deref().filter(|_| self.margin == 0.0).unwrap_or_default();
         let window = needed.place(window, hull);
-        let Self { frame, perspective, near_m, far_m, held_from_m, .. } = *self;
-        LightView { frame, perspective, window, near_m, far_m, held_from_m }
+        let Self { frame, perspective, near_m, far_m, complete_from_m, .. } = *self;
+        LightView { frame, perspective, window, near_m, far_m, complete_from_m }
     }
 }
 
@@ -225,8 +225,8 @@ impl ViewFit {
 /// whose window they lie.
 fn margin_depth(near: f32, far: f32, light_radius_m: f32) -> f32 {
     /// Upper limit as a fraction of `far`, for lights as large as the distance to their receivers.
-    const MOST_OF_FAR: f32 = 1.0 / 8.0;
-    near.max(light_radius_m.min(MOST_OF_FAR * far))
+    const MAX_OF_FAR: f32 = 1.0 / 8.0;
+    near.max(light_radius_m.min(MAX_OF_FAR * far))
 }
 
 /// Adds the tangents that span the part beyond depth `near` of the convex hull of light-space points: those of the points

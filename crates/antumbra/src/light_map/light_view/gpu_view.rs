@@ -80,8 +80,8 @@ gpu_structs! {
         far_m: f32,
         /// Wider side of a texel in light-plane coordinates; in a warped window, where the divisor is 1.
         texel_in_plane: f32,
-        /// [`LightView::held_from_m`]; 0 if the window holds all.
-        held_from_m: f32,
+        /// [`LightView::complete_from_m`]; 0 if the window holds all.
+        complete_from_m: f32,
         /// Warp of the window, see the module; zero if it is not warped.
         warp: Vec2,
         /// Light-plane origin of a warped window's coordinates; zero if it is not warped.
@@ -144,7 +144,7 @@ impl LightViewGpu {
             near_m,
             far_m,
             texel_in_plane: texel.x_axis.length().max(texel.y_axis.length()),
-            held_from_m: 0.0,
+            complete_from_m: 0.0,
             warp: Vec2::ZERO,
             plane_center: Vec2::ZERO,
         }

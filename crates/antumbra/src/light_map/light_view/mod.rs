@@ -38,7 +38,7 @@ mod hull;
 mod tests;
 mod window;
 
-pub(crate) use fit::{FitTo, Followed, HORIZON_TANGENT, MIDDLE_TANGENT, ViewFit};
+pub(crate) use fit::{FitTo, FollowedLight, HORIZON_TANGENT, MIDDLE_TANGENT, ViewFit};
 pub(crate) use gpu_view::{LightViewGpu, light_view_of_matrix};
 pub(crate) use window::{Window, WindowShape};
 
@@ -57,7 +57,7 @@ pub(crate) struct LightView {
     pub(crate) far_m: f32,
     /// Depth beyond which the window contains the segments from its receivers to the whole light, metres; nearer casters may lie
     /// outside the window. 0 if the window contains all segments.
-    pub(crate) held_from_m: f32,
+    pub(crate) complete_from_m: f32,
 }
 
 impl LightView {
@@ -86,7 +86,7 @@ impl LightView {
         let (n, f) = (f64::from(self.near_m), f64::from(self.far_m));
         let (scale, offset) =
             if self.perspective { (n * f / (f - n), -n / (f - n)) } else { (-1.0 / (f - n), f / (f - n)) };
-        let least = self.window.least_divisor();
+        let least = self.window.min_divisor();
         (scale * least, offset * least)
     }
 
@@ -183,6 +183,6 @@ impl LightView {
             map_size.as_vec2(),
             (self.near_m, self.far_m),
         );
-        LightViewGpu { warp, plane_center: center, held_from_m: self.held_from_m, ..view }
+        LightViewGpu { warp, plane_center: center, complete_from_m: self.complete_from_m, ..view }
     }
 }

@@ -4,7 +4,7 @@ use antumbra_light::{Aabb, Light, LightFrame, LightShape};
 use glam::{Mat2, Vec2, Vec3};
 
 use super::{
-    FitTo, Followed, LightView, LightViewGpu, MIDDLE_TANGENT, ViewFit, Window, WindowShape, light_view_of_matrix,
+    FitTo, FollowedLight, LightView, LightViewGpu, MIDDLE_TANGENT, ViewFit, Window, WindowShape, light_view_of_matrix,
 };
 use crate::contract::{DepthConvention, SeenPoint};
 use crate::light_map::occluding_bounds::Between;
@@ -18,19 +18,19 @@ fn scene() -> (Light, Vec<Aabb>) {
     (light, vec![ground, block])
 }
 
-fn fit_perspective(frame: LightFrame, margin_m: f32, reach_tangent: Option<f32>, fit: &FitTo<'_>) -> LightView {
-    fit_of_depth(frame, margin_m, 0.0, reach_tangent, fit)
+fn fit_perspective(frame: LightFrame, margin_m: f32, max_angle_tangent: Option<f32>, fit: &FitTo<'_>) -> LightView {
+    fit_of_depth(frame, margin_m, 0.0, max_angle_tangent, fit)
 }
 
 fn fit_of_depth(
     frame: LightFrame,
     margin_m: f32,
     depth_m: f32,
-    reach_tangent: Option<f32>,
+    max_angle_tangent: Option<f32>,
     fit: &FitTo<'_>,
 ) -> LightView {
     let casters = Between::of_known(fit.casters);
-    ViewFit::perspective(frame, Followed::All, margin_m, depth_m, reach_tangent, &casters, fit.receivers)
+    ViewFit::perspective(frame, FollowedLight::Whole, margin_m, depth_m, max_angle_tangent, &casters, fit.receivers)
         .view(fit.window)
 }
 
@@ -194,7 +194,7 @@ fn windows_hold_what_shades_receivers_at_their_edge() {
                     let lean = if depth_m > 0.0 { tangent } else { 0.0 };
                     let rim = frame.center + radius_m * (outwards - lean * frame.axis) / lean.hypot(1.0);
                     let z = |point: Vec3| (point - frame.center).dot(frame.axis);
-                    let held_m = 1.001 * view.held_from_m.max(view.near_m);
+                    let held_m = 1.001 * view.complete_from_m.max(view.near_m);
                     let blocker = receiver.lerp(rim, (2.0 - held_m) / (2.0 - z(rim)));
                     let (uv, _) = uv_and_depth(&gpu, blocker);
                     let is_held = uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
@@ -286,7 +286,7 @@ fn windows_are_judged_by_their_texels() {
         WindowShape::Warped { along: Vec2::from_angle(2.1), strength: 0.7 },
     ];
     for fit in [
-        ViewFit::perspective(light.frame(), Followed::All, 0.25, 0.0, None, &Between::of_known(&casters), &[]),
+        ViewFit::perspective(light.frame(), FollowedLight::Whole, 0.25, 0.0, None, &Between::of_known(&casters), &[]),
         ViewFit::orthographic(light.frame(), 0.0, &Between::of_known(&casters), &[]),
     ] {
         let in_plane = fit.in_plane(&seen);

@@ -50,7 +50,7 @@ impl Window {
     }
 
     /// Smallest divisor in the window, where warped depths are largest.
-    pub(super) fn least_divisor(&self) -> f64 {
+    pub(super) fn min_divisor(&self) -> f64 {
         let farthest = self.warp.dot(self.center_in_warp) - (self.half_size * self.warp.dot(self.roll)).x.abs();
         1.0 / (1.0 - f64::from(farthest))
     }

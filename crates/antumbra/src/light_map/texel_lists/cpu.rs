@@ -6,7 +6,7 @@ use super::options::DepthTolerance;
 use crate::light_map::light_view::LightView;
 
 /// Triangles of one surface, for the CPU reference.
-pub(crate) struct TwinMesh<'a> {
+pub(crate) struct ReferenceMesh<'a> {
     pub(crate) positions: &'a [Vec3],
     pub(crate) indices: &'a [u32],
     /// Whether the mesh is closed, counter-clockwise from outside: front faces are then culled.
@@ -16,7 +16,7 @@ pub(crate) struct TwinMesh<'a> {
 
 /// Fragment with one channel of opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TwinFragment {
+pub(crate) struct ReferenceFragment {
     pub(crate) z_m: f32,
     pub(crate) opacity: f32,
     /// Overlap, as in `fragments.wesl`.
@@ -33,12 +33,12 @@ const FOUR_SAMPLES: [(f64, f64); 4] = [(96.0, 32.0), (224.0, 96.0), (32.0, 160.0
 /// Gathered fragment with the samples that it covers, one bit each.
 #[derive(Clone, Copy, Debug)]
 struct Gathered {
-    fragment: TwinFragment,
+    fragment: ReferenceFragment,
     samples: u32,
 }
 
 /// Returns every texel's list, row by row, sorted by depth and then by opacity.
-pub(crate) fn lists(view: &LightView, map_size: UVec2, meshes: &[TwinMesh<'_>]) -> Vec<Vec<TwinFragment>> {
+pub(crate) fn lists(view: &LightView, map_size: UVec2, meshes: &[ReferenceMesh<'_>]) -> Vec<Vec<ReferenceFragment>> {
     gathered(view, map_size, &ONE_SAMPLE, meshes)
         .into_iter()
         .map(|list| list.into_iter().map(|gathered| gathered.fragment).collect())
@@ -49,15 +49,15 @@ pub(crate) fn lists(view: &LightView, map_size: UVec2, meshes: &[TwinMesh<'_>]) 
 pub(crate) fn covered_lists(
     view: &LightView,
     map_size: UVec2,
-    meshes: &[TwinMesh<'_>],
+    meshes: &[ReferenceMesh<'_>],
     adjoin: DepthTolerance,
-) -> Vec<Vec<TwinFragment>> {
+) -> Vec<Vec<ReferenceFragment>> {
     gathered(view, map_size, &FOUR_SAMPLES, meshes).iter().map(|list| covered(list, adjoin)).collect()
 }
 
 /// Merges fragments that are near in depth: each sample takes the opacity of its nearest fragment.
-fn covered(mut list: &[Gathered], adjoin: DepthTolerance) -> Vec<TwinFragment> {
-    let mut covered: Vec<TwinFragment> = Vec::new();
+fn covered(mut list: &[Gathered], adjoin: DepthTolerance) -> Vec<ReferenceFragment> {
+    let mut covered: Vec<ReferenceFragment> = Vec::new();
     let mut samples_covered = 0;
     while let Some((first, mut rest)) = list.split_first() {
         let limit = first.fragment.z_m + adjoin.slope * first.fragment.z_m + adjoin.m;
@@ -85,21 +85,28 @@ fn covered(mut list: &[Gathered], adjoin: DepthTolerance) -> Vec<TwinFragment> {
             }
         };
         samples_covered |= taken;
-        covered.push(TwinFragment { z_m: z_sum / count, opacity: 0.25 * opacity, overlap });
+        covered.push(ReferenceFragment { z_m: z_sum / count, opacity: 0.25 * opacity, overlap });
         list = rest;
     }
     covered.sort_by(|a, b| a.z_m.total_cmp(&b.z_m));
     covered
 }
 
-fn gathered(view: &LightView, map_size: UVec2, samples: &[(f64, f64)], meshes: &[TwinMesh<'_>]) -> Vec<Vec<Gathered>> {
+fn gathered(
+    view: &LightView,
+    map_size: UVec2,
+    samples: &[(f64, f64)],
+    meshes: &[ReferenceMesh<'_>],
+) -> Vec<Vec<Gathered>> {
     let mut lists = vec![Vec::new(); map_size.element_product() as usize];
     for mesh in meshes {
         for triangle in mesh.indices.chunks_exact(3) {
             let corners = [0, 1, 2].map(|i| mesh.positions[triangle[i] as usize]);
             rasterise(view, map_size, samples, corners, mesh.closed, |texel, z_m, samples| {
-                lists[texel]
-                    .push(Gathered { fragment: TwinFragment { z_m, opacity: mesh.opacity, overlap: 1.0 }, samples });
+                lists[texel].push(Gathered {
+                    fragment: ReferenceFragment { z_m, opacity: mesh.opacity, overlap: 1.0 },
+                    samples,
+                });
             });
         }
     }

@@ -84,7 +84,7 @@ impl TexelLists {
         let storage = self.storage.as_mut().expect("made above where it was missing");
         storage.options = *options;
         storage.widen(stage);
-        self.scan.prepare(stage, &storage.cursors, options.most_texels);
+        self.scan.prepare(stage, &storage.cursors, options.max_texels);
         PreparedLists {
             lists: Arc::clone(&storage.lists),
             fragments: Arc::clone(&storage.fragments),

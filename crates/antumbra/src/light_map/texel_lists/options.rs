@@ -42,7 +42,7 @@ pub(crate) struct ListOptions {
     /// Texels along each side.
     pub(crate) map_size: UVec2,
     /// Largest number of texels of a map, for which buffers have room.
-    pub(crate) most_texels: u32,
+    pub(crate) max_texels: u32,
     /// Largest number of fragments.
     pub(crate) capacity: u32,
     /// Entries of [`PreparedLists::lists`](super::PreparedLists::lists): one per texel, then those of the owner.

@@ -28,22 +28,22 @@ pub(super) struct Storage {
 
 impl Storage {
     pub(super) fn new(gpu: &Gpu, options: &ListOptions) -> Self {
-        let texels = u64::from(options.most_texels);
+        let texels = u64::from(options.max_texels);
         let node_count = if options.gather == Gather::Linked { u64::from(options.capacity) } else { 0 };
         let limits = gpu.device.limits();
-        let most_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let max_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let bytes = [
             texels * 4,
             u64::from(options.capacity) * FRAGMENT_BYTES,
             // The number of the levels' lists changes a little with the map's sides.
-            (u64::from(options.list_count) * FRAGMENT_BYTES * 5 / 4).next_multiple_of(FRAGMENT_BYTES).min(most_bytes),
+            (u64::from(options.list_count) * FRAGMENT_BYTES * 5 / 4).next_multiple_of(FRAGMENT_BYTES).min(max_bytes),
             8,
             node_count * FRAGMENT_BYTES,
             if options.gather == Gather::Linked { node_count * 4 } else { texels * 4 },
         ];
         let lease = Arc::new(Lease::new(&gpu.device, bytes.iter().sum::<u64>() + options.owners_bytes));
         // Rounded sizes, so that lights share buffers.
-        let rounded = |bytes: u64| if lease.is_own() { bytes } else { bytes.next_power_of_two().min(most_bytes) };
+        let rounded = |bytes: u64| if lease.is_own() { bytes } else { bytes.next_power_of_two().min(max_bytes) };
         let buffer = |scratch, label, bytes: u64| {
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
             let descriptor = wgpu::BufferDescriptor {
@@ -78,7 +78,7 @@ impl Storage {
 
     /// Whether the buffers suit other options.
     pub(super) fn fits(&self, options: &ListOptions) -> bool {
-        self.options.most_texels == options.most_texels
+        self.options.max_texels == options.max_texels
             && self.options.gather == options.gather
             && self.options.samples == options.samples
             && self.options.capacity == options.capacity

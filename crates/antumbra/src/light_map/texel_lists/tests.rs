@@ -4,7 +4,7 @@ use antumbra_light::{Aabb, Light, LightShape, hash_u32, unit_f32};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::TexelLists;
-use super::cpu::{TwinFragment, TwinMesh, covered_lists, lists};
+use super::cpu::{ReferenceFragment, ReferenceMesh, covered_lists, lists};
 use super::options::{Accumulation, DepthTolerance, Gather, ListOptions};
 use crate::contract::{MeshCaster, Opacity, SurfaceCoverage, SurfaceTexture};
 use crate::gpu::{Gpu, Recorder, Stage};
@@ -27,8 +27,8 @@ pub(crate) struct TestMesh {
 }
 
 impl TestMesh {
-    pub(crate) fn twin(&self) -> TwinMesh<'_> {
-        TwinMesh {
+    pub(crate) fn cpu_reference(&self) -> ReferenceMesh<'_> {
+        ReferenceMesh {
             positions: &self.positions,
             indices: &self.indices,
             closed: self.closed && self.opacity == 1.0,
@@ -110,7 +110,7 @@ pub(crate) fn view_of(light: &Light, meshes: &[TestMesh]) -> LightView {
 }
 
 /// Unpacks a list read back from the GPU, of one channel or of three equal ones.
-pub(crate) fn unpack(fragments: &[[u32; 2]], list: [u32; 2], colored: bool) -> Vec<TwinFragment> {
+pub(crate) fn unpack(fragments: &[[u32; 2]], list: [u32; 2], colored: bool) -> Vec<ReferenceFragment> {
     let fragments = &fragments[list[0] as usize..(list[0] + list[1]) as usize];
     let of = |[z_m, bits]: &[u32; 2]| {
         let (opacity, behind) = if colored {
@@ -118,7 +118,7 @@ pub(crate) fn unpack(fragments: &[[u32; 2]], list: [u32; 2], colored: bool) -> V
         } else {
             (f32::from_bits(bits & !0xfff), (bits & 0xfff) as f32 / 4094.0)
         };
-        TwinFragment { z_m: f32::from_bits(*z_m), opacity, overlap: behind / (1.0 - behind).max(1.0 / 4094.0) }
+        ReferenceFragment { z_m: f32::from_bits(*z_m), opacity, overlap: behind / (1.0 - behind).max(1.0 / 4094.0) }
     };
     fragments.iter().map(of).collect()
 }
@@ -129,8 +129,8 @@ fn rgb8e4(bits: u32) -> [f32; 3] {
 }
 
 /// Whether two lists hold the same fragments, up to rounding; overlaps have four bits, and matter less for small opacities.
-pub(crate) fn agree(a: &[TwinFragment], b: &[TwinFragment], tolerance: f32) -> bool {
-    let behind = |fragment: &TwinFragment| fragment.overlap / (1.0 + fragment.overlap);
+pub(crate) fn agree(a: &[ReferenceFragment], b: &[ReferenceFragment], tolerance: f32) -> bool {
+    let behind = |fragment: &ReferenceFragment| fragment.overlap / (1.0 + fragment.overlap);
     a.len() == b.len()
         && a.iter().zip(b).all(|(a, b)| {
             (a.z_m - b.z_m).abs() <= tolerance * b.z_m.abs().max(1.0)
@@ -139,7 +139,7 @@ pub(crate) fn agree(a: &[TwinFragment], b: &[TwinFragment], tolerance: f32) -> b
         })
 }
 
-fn gpu_lists(light: &Light, meshes: &[TestMesh], options: &ListOptions) -> Option<Vec<Vec<TwinFragment>>> {
+fn gpu_lists(light: &Light, meshes: &[TestMesh], options: &ListOptions) -> Option<Vec<Vec<ReferenceFragment>>> {
     let gpu = gpu()?;
     let on_gpu: Vec<Mesh> = meshes.iter().map(|mesh| Mesh::new(gpu, &mesh.positions, &mesh.indices)).collect();
     let casters: Vec<_> = meshes.iter().zip(&on_gpu).map(|(mesh, on_gpu)| mesh.caster(on_gpu)).collect();
@@ -162,7 +162,7 @@ fn gpu_lists(light: &Light, meshes: &[TestMesh], options: &ListOptions) -> Optio
 fn options(gather: Gather, colored: bool) -> ListOptions {
     ListOptions {
         map_size: MAP_SIZE,
-        most_texels: MAP_SIZE.element_product(),
+        max_texels: MAP_SIZE.element_product(),
         capacity: 1 << 20,
         list_count: MAP_SIZE.element_product(),
         owners_bytes: 0,
@@ -179,15 +179,15 @@ fn options(gather: Gather, colored: bool) -> ListOptions {
 }
 
 #[test]
-fn twin_sees_what_is_there() {
+fn cpu_reference_sees_what_is_there() {
     let (_, light, meshes) = scenes().swap_remove(2);
     let view = view_of(&light, &meshes);
-    let twin: Vec<_> = meshes.iter().map(TestMesh::twin).collect();
-    let lists = lists(&view, MAP_SIZE, &twin);
+    let cpu_reference: Vec<_> = meshes.iter().map(TestMesh::cpu_reference).collect();
+    let lists = lists(&view, MAP_SIZE, &cpu_reference);
     // Straight down on the middle: 16 sheets, then 300, then the ground's lower face, from the far side.
     let middle = &lists[MIDDLE];
     assert_eq!(middle.len(), 317);
-    let height = |fragment: &TwinFragment| view.frame.center.y - fragment.z_m;
+    let height = |fragment: &ReferenceFragment| view.frame.center.y - fragment.z_m;
     assert!((height(&middle[0]) - 2.75).abs() < 1e-4 && (height(&middle[316]) + 0.2).abs() < 1e-4);
     // Beside the deep tower 16 sheets, beside both the ground alone.
     let counts: std::collections::BTreeSet<_> = lists.iter().map(Vec::len).collect();
@@ -195,11 +195,11 @@ fn twin_sees_what_is_there() {
 }
 
 #[test]
-fn gpu_equals_twin_fragment_for_fragment() {
+fn gpu_equals_cpu_reference_fragment_for_fragment() {
     for (name, light, meshes) in scenes() {
         let view = view_of(&light, &meshes);
-        let twin: Vec<_> = meshes.iter().map(TestMesh::twin).collect();
-        let want = lists(&view, MAP_SIZE, &twin);
+        let cpu_reference: Vec<_> = meshes.iter().map(TestMesh::cpu_reference).collect();
+        let want = lists(&view, MAP_SIZE, &cpu_reference);
         for (gather, colored) in [(Gather::Arrays, false), (Gather::Arrays, true), (Gather::Linked, false)] {
             let Some(got) = gpu_lists(&light, &meshes, &options(gather, colored)) else { return };
             // On steep triangles, depth is as exact as the snapping of vertices, 1/256 texel.
@@ -240,12 +240,13 @@ fn what_was_not_counted_is_in_no_list() {
 }
 
 #[test]
-fn twin_s_coverage_is_the_area_s() {
+fn cpu_reference_s_coverage_is_the_area_s() {
     let sun = Light::new(LightShape::Sun { angular_diameter_rad: 0.05 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
     let sheet = |half: f32| TestMesh::sheets(1, half, 1.0, 0.0);
     let view = view_of(&sun, &[sheet(3.0)]);
     let area = |half: f32| {
-        let lists = covered_lists(&view, MAP_SIZE, &[sheet(half).twin()], DepthTolerance { slope: 0.0, m: 0.0 });
+        let lists =
+            covered_lists(&view, MAP_SIZE, &[sheet(half).cpu_reference()], DepthTolerance { slope: 0.0, m: 0.0 });
         let opacity: f32 = lists.iter().flatten().map(|fragment| fragment.opacity).sum();
         opacity * view.texel_in_plane(MAP_SIZE.x) * view.texel_in_plane(MAP_SIZE.y)
     };
@@ -257,7 +258,7 @@ fn twin_s_coverage_is_the_area_s() {
 
 /// Thin and steep surfaces, and two faces of a solid in one texel.
 #[test]
-fn coverage_equals_the_twin_s() {
+fn coverage_equals_the_cpu_reference_s() {
     for (name, light, meshes) in scenes() {
         let view = view_of(&light, &meshes);
         // The wider side of a texel.
@@ -267,8 +268,8 @@ fn coverage_equals_the_twin_s() {
         } else {
             DepthTolerance { slope: texel, m: 0.0 }
         };
-        let twin: Vec<_> = meshes.iter().map(TestMesh::twin).collect();
-        let want = covered_lists(&view, MAP_SIZE, &twin, adjoin);
+        let cpu_reference: Vec<_> = meshes.iter().map(TestMesh::cpu_reference).collect();
+        let want = covered_lists(&view, MAP_SIZE, &cpu_reference, adjoin);
         for (gather, colored) in [(Gather::Arrays, false), (Gather::Arrays, true), (Gather::Linked, false)] {
             let options = ListOptions { samples: 4, adjoin, ..options(gather, colored) };
             let Some(got) = gpu_lists(&light, &meshes, &options) else { return };

@@ -24,7 +24,7 @@ fn a_fingerprint_tells_values_and_places() {
 }
 
 #[test]
-fn gpu_equals_twin_over_a_ladder_of_sizes() {
+fn gpu_equals_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let layout = Fingerprinted::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test", shaders::ACCUMULATION_FINGERPRINT, &[&layout]);
@@ -40,7 +40,7 @@ fn gpu_equals_twin_over_a_ladder_of_sizes() {
             })
         });
         gpu.queue().write_buffer(&buffer, 0, bytemuck::cast_slice(&words));
-        let group = Fingerprinted { words: &buffer, state: &state }.kept_group(gpu, &layout);
+        let group = Fingerprinted { words: &buffer, state: &state }.cached_group(gpu, &layout);
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

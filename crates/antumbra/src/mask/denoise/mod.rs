@@ -57,7 +57,7 @@ gpu_structs! {
         clip_from_world_before: Mat4,
         world_from_clip_before: Mat4,
         background_depth_before: f32,
-        most_frames: f32,
+        max_frames: f32,
         has_before: u32,
         has_motion: u32,
     }
@@ -156,7 +156,7 @@ impl Denoiser {
 
     /// Whether the mask is as smooth as it becomes, if nothing changes.
     pub(crate) fn is_settled(&self, settings: &Denoise) -> bool {
-        self.still_frames >= settings.most_frames
+        self.still_frames >= settings.max_frames
     }
 
     /// Returns the noisy mask, in the size and channels of the host's `mask`.
@@ -198,9 +198,9 @@ impl Denoiser {
         }
         let kept = kept.unwrap_or_else(|| [Kept::new(stage, size, channels), Kept::new(stage, size, channels)]);
         let [before, now] = if self.frames.is_multiple_of(2) { [&kept[0], &kept[1]] } else { [&kept[1], &kept[0]] };
-        let most_frames = settings.most_frames as f32;
+        let max_frames = settings.max_frames as f32;
         let uniform = DenoiseFrame {
-            most_frames,
+            max_frames,
             has_motion: settings.motion.is_some().into(),
             ..self.seen_before(stage.anchor())
         };

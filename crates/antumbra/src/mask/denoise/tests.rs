@@ -85,7 +85,7 @@ fn a_mask_without_noise_is_left_alone() {
 fn means_follow_a_moving_camera() {
     let Some(gpu) = gpu() else { return };
     let mut shadow = noisy(gpu, Some(Denoise::default()));
-    let mut frozen = noisy(gpu, Some(Denoise { most_frames: 1, motion: None }));
+    let mut frozen = noisy(gpu, Some(Denoise { max_frames: 1, motion: None }));
     let mut errors = [0.0; 2];
     for i in 0..=12 {
         let case = seen_from(gpu, 0.07 * i as f32);
@@ -188,7 +188,7 @@ fn a_still_mask_settles() {
     let case = Case::half_plane(gpu, LightShape::Disk { radius_m: 0.5 });
     let (mut set, _) = set_of(gpu, &case);
     update(gpu, &mut set);
-    let mut shadow = noisy(gpu, Some(Denoise { most_frames: 5, motion: None }));
+    let mut shadow = noisy(gpu, Some(Denoise { max_frames: 5, motion: None }));
     let mut passes = || {
         case.with_frame(Casters::Set { set: &set, layers: u32::MAX }, |frame| {
             let receivers = Receivers { version: Some(1), ..frame.receivers };
@@ -210,10 +210,10 @@ fn frames_are_from_1_to_64() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
-    for most_frames in [0, 65] {
-        let mut shadow = noisy(gpu, Some(Denoise { most_frames, motion: None }));
+    for max_frames in [0, 65] {
+        let mut shadow = noisy(gpu, Some(Denoise { max_frames, motion: None }));
         let refused = case.with_frame(Casters::Meshes(&casters), |frame| shadow.prepare(frame).map(drop));
-        assert!(matches!(refused, Err(Error::BadFrame { .. })), "{most_frames}: {refused:?}");
+        assert!(matches!(refused, Err(Error::BadFrame { .. })), "{max_frames}: {refused:?}");
     }
 }
 
@@ -238,8 +238,8 @@ fn frames_that_only_move_make_no_objects() {
         gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
     };
     (0..4).for_each(&mut move_on);
-    let counts = gpu.objects_made();
+    let counts = gpu.objects_created();
     (4..8).for_each(&mut move_on);
     assert!(counts.total() > 0, "nothing is counted");
-    assert_eq!(gpu.objects_made(), counts);
+    assert_eq!(gpu.objects_created(), counts);
 }

@@ -156,7 +156,7 @@ fn lights_share_the_wide_mask() {
             })
             .collect();
         assert!(alone[0] != alone[1], "hard and soft shadows differ");
-        let before = gpu.objects_made().textures;
+        let before = gpu.objects_created().textures;
         let again = [mask(), mask()];
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         for (mask, shadow) in again.iter().zip(&mut shadows) {
@@ -164,7 +164,7 @@ fn lights_share_the_wide_mask() {
             work.record(&mut Recorder::new(&mut encoder, None));
         }
         gpu.queue.submit([encoder.finish()]);
-        assert_eq!(gpu.objects_made().textures, before, "no texture is made for another mask of like size");
+        assert_eq!(gpu.objects_created().textures, before, "no texture is made for another mask of like size");
         for (mask, alone) in again.iter().zip(&alone) {
             assert!(read_layer(gpu, mask.texture(), 0) == *alone, "both in one submission");
         }

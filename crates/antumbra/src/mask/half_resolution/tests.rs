@@ -17,7 +17,7 @@ use crate::testing::{
 
 /// Error of linear interpolation between pixels two apart at a penumbra's ends, against the closed form; the penumbra is about
 /// twelve pixels wide.
-const MOST_OF_ENDS: f32 = 0.007;
+const MAX_OF_ENDS: f32 = 0.007;
 
 /// Techniques that filter over a pixel's footprint, here twice as wide, which doubles the error.
 const BY_FOOTPRINT: [TechniqueKind; 1] = [TechniqueKind::Essm];
@@ -75,7 +75,7 @@ fn penumbrae_are_those_of_full_resolution() {
         assert!(masks[0] != masks[1], "{kind}: half the resolution changes nothing");
         let [full, half] = masks.each_ref().map(|mask| rmse(&pixels, mask, |p| half_plane_visibility(p.x, 1.0)));
         println!("{kind}: {full:.4} from the closed form, {half:.4} at half the resolution");
-        let most = if BY_FOOTPRINT.contains(&kind) { 2.0 * MOST_OF_ENDS } else { MOST_OF_ENDS };
+        let most = if BY_FOOTPRINT.contains(&kind) { 2.0 * MAX_OF_ENDS } else { MAX_OF_ENDS };
         assert!(half < full + most, "{kind}: {half} for {full}");
     }
 }
@@ -205,9 +205,9 @@ fn frames_at_half_the_resolution_make_no_objects() {
     (0..6).for_each(|i| assert!(draw(0.1 * i as f32, true) > 2));
     // Tests share the device: another's poll may delay a staging buffer, so only one round of several must create none.
     let made = (6..12).map(|i| {
-        let before = gpu.objects_made();
+        let before = gpu.objects_created();
         draw(0.1 * i as f32, true);
-        gpu.objects_made() == before
+        gpu.objects_created() == before
     });
     assert!(made.filter(|is_same| *is_same).count() > 0);
     assert_eq!(draw(1.1, true), 0);

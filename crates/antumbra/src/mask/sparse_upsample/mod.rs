@@ -122,7 +122,7 @@ impl Lists {
         let missing = buffer(Scratch::MissingPixels, label, missing_bytes, wgpu::BufferUsages::empty());
         let label = "antumbra missing pixels' workgroups";
         let dispatch = buffer(Scratch::MissingDispatch, label, 12, wgpu::BufferUsages::INDIRECT);
-        let group = Upsampled { missing_list: &missing, missing_dispatch: &dispatch }.kept_group(gpu, layout);
+        let group = Upsampled { missing_list: &missing, missing_dispatch: &dispatch }.cached_group(gpu, layout);
         Self { missing, dispatch, group }
     }
 }

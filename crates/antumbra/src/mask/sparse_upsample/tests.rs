@@ -29,7 +29,7 @@ fn most_from_truth(kind: TechniqueKind) -> f32 {
 
 /// Error of linear interpolation between pixels two apart at a penumbra's ends, against the closed form; the penumbra is about
 /// twelve pixels wide.
-const MOST_OF_ENDS: f32 = 0.007;
+const MAX_OF_ENDS: f32 = 0.007;
 
 #[test]
 fn known_pixels_stay_and_the_rest_come_near() {
@@ -55,7 +55,7 @@ fn known_pixels_stay_and_the_rest_come_near() {
         assert!(rmse > 0.0, "{}: nothing was interpolated", kind.name());
         assert!(rmse < most_of_difference(kind), "{}: {rmse}", kind.name());
         assert!(sub < most_from_truth(kind), "{}: {sub}", kind.name());
-        assert!(sub < all + MOST_OF_ENDS, "{}: {sub} for {all}", kind.name());
+        assert!(sub < all + MAX_OF_ENDS, "{}: {sub} for {all}", kind.name());
     }
 }
 

@@ -104,7 +104,13 @@ pub(crate) fn layered_of_step(
 }
 
 /// Visibility of the receiver's layer as published: eq. 3 with the minimum variance of eq. 7.
-pub(crate) fn layered_as_printed(depths: Depths<'_>, t: f64, splits: &[f64], least_variance: f64, quantum: f64) -> f64 {
+pub(crate) fn layered_as_published(
+    depths: Depths<'_>,
+    t: f64,
+    splits: &[f64],
+    least_variance: f64,
+    quantum: f64,
+) -> f64 {
     let own = splits.windows(2).rfind(|s| t >= s[0]).unwrap_or(&splits[..2]);
     let width = own[1] - own[0];
     let (mean, variance) = mean_variance(mean(depths, |z| encode_layered(z, own[0], own[1])));

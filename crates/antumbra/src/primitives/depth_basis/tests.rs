@@ -62,7 +62,7 @@ fn variance_bleeds_by_equation_4() {
 #[test]
 fn a_layer_is_as_good_as_one_map_in_umbrae_and_not_where_depths_lie_behind() {
     let bounds = |depths: &[(f64, f64)]| {
-        [[0.0, 1.0].as_slice(), &[0.0, 0.6, 1.0]].map(|splits| cpu::layered_as_printed(depths, 0.7, splits, 0.0, 0.0))
+        [[0.0, 1.0].as_slice(), &[0.0, 0.6, 1.0]].map(|splits| cpu::layered_as_published(depths, 0.7, splits, 0.0, 0.0))
     };
     let [one_map, layer] = bounds(&[(0.3, 0.75), (0.8, 0.25)]);
     assert_close("one map", one_map, 1.0 - 0.275f64.powi(2) / 0.1225, 1e-9);
@@ -226,7 +226,7 @@ gpu_structs! {
 }
 
 /// Results of the CPU references for a test case, in the shader's order.
-fn twins(input: &ProbeInput) -> [Decoded; 8] {
+fn cpu_references(input: &ProbeInput) -> [Decoded; 8] {
     let depths: Vec<(f64, f64)> = (0..4).map(|i| (f64::from(input.z[i]), f64::from(input.weights[i]))).collect();
     let t = f64::from(input.t);
     let least_variance = f64::from(input.least_variance);
@@ -246,7 +246,7 @@ fn twins(input: &ProbeInput) -> [Decoded; 8] {
 }
 
 #[test]
-fn shaders_equal_their_twins() {
+fn shaders_equal_their_cpu_references() {
     let Some(gpu) = gpu() else { return };
     let inputs: Vec<ProbeInput> = (0..3000u32)
         .map(|i| {
@@ -282,7 +282,7 @@ fn shaders_equal_their_twins() {
     ];
     let mut worst = [(0.0f64, 0.0f64); 8];
     for (input, output) in inputs.iter().zip(&outputs) {
-        for (k, (got, want)) in output.iter().zip(twins(input)).enumerate() {
+        for (k, (got, want)) in output.iter().zip(cpu_references(input)).enumerate() {
             assert!(got[0].is_finite() && got[1].is_finite(), "basis {k}: {got:?} for {input:?}");
             let visibility = (f64::from(got[0]) - want.visibility).abs();
             let depth = (f64::from(got[1]) - want.blocker_depth).abs();
@@ -299,7 +299,7 @@ fn shaders_equal_their_twins() {
         let depths: Vec<(f64, f64)> = (0..4).map(|i| (f64::from(input.z[i]), f64::from(input.weights[i]))).collect();
         let splits = [0.0, f64::from(input.split), 1.0];
         let (least, quantum) = (f64::from(input.least_variance), f64::from(input.quantum));
-        let printed = cpu::layered_as_printed(&depths, f64::from(input.t), &splits, least, quantum);
+        let printed = cpu::layered_as_published(&depths, f64::from(input.t), &splits, least, quantum);
         assert_close("a layer as printed", f64::from(output[8][1]), printed, 2e-4);
     }
     println!("worst differences: {worst:?}");
@@ -332,7 +332,7 @@ fn run_probe(gpu: &Gpu, inputs: &[ProbeInput]) -> Vec<[[f32; 2]; 9]> {
     gpu.queue.write_buffer(&input, 0, input_bytes);
     let output = buffer(output_bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let readback = buffer(output_bytes, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-    let bind_group = Probe { inputs: &input, outputs: &output }.kept_group(gpu, &layout);
+    let bind_group = Probe { inputs: &input, outputs: &output }.cached_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

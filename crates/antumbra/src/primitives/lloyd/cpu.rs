@@ -25,11 +25,11 @@ pub(crate) fn relax(histogram: &[u32], means: &mut [f64], moved_first: u32, how:
             }
         }
         match how.teleport {
-            Teleport::Inertia => teleport(means, &sums, f64::from(how.least_gap)),
+            Teleport::Inertia => teleport(means, &sums, f64::from(how.min_gap)),
             Teleport::Weight => teleport_by_weight(means, &sums),
         }
     }
-    let gap = f64::from(how.least_gap).min(1.0 / (count as f64 + 1.0));
+    let gap = f64::from(how.min_gap).min(1.0 / (count as f64 + 1.0));
     let mut least = gap;
     means
         .iter()
@@ -58,7 +58,7 @@ fn teleport_by_weight(means: &mut [f64], sums: &[[f64; 3]]) {
     means.sort_by(f64::total_cmp);
 }
 
-fn teleport(means: &mut [f64], sums: &[[f64; 3]], least_gap: f64) {
+fn teleport(means: &mut [f64], sums: &[[f64; 3]], min_gap: f64) {
     let cost = |i: usize| {
         let with = |j: usize| {
             let both = sums[i][0] + sums[j][0];
@@ -73,7 +73,7 @@ fn teleport(means: &mut [f64], sums: &[[f64; 3]], least_gap: f64) {
     let Some(cheapest) = others.reduce(|best, i| if cost(i) < cost(best) { i } else { best }) else { return };
     let gain = inertia(sums[heaviest]);
     let deviation = (gain / sums[heaviest][0].max(1.0)).sqrt();
-    if 0.75 * gain <= 2.0 * cost(cheapest) || 2.0 * deviation < least_gap {
+    if 0.75 * gain <= 2.0 * cost(cheapest) || 2.0 * deviation < min_gap {
         return;
     }
     let center = means[heaviest];

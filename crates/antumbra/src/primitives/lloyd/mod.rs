@@ -43,7 +43,7 @@ gpu_structs! {
         moved_first: u32,
         begins: u32,
         shift: f32,
-        least_gap: f32,
+        min_gap: f32,
         glide: f32,
     }
 }
@@ -67,7 +67,7 @@ pub(crate) struct Relaxation {
     /// Offset of each split from its mean.
     pub(crate) shift: f32,
     /// Minimum distance of splits from each other and from the ends.
-    pub(crate) least_gap: f32,
+    pub(crate) min_gap: f32,
     /// Choice of the clusters to merge and to split.
     pub(crate) teleport: Teleport,
 }
@@ -121,7 +121,7 @@ impl Lloyd {
         let means = buffer("antumbra lloyd means", MAX_MEANS as u64);
         let splits = buffer("antumbra lloyd splits", MAX_MEANS as u64);
         let update = Update { lloyd: &uniform, histogram: &histogram, means: &means, splits: &splits };
-        let bind_group = update.kept_group(gpu, &layout);
+        let bind_group = update.cached_group(gpu, &layout);
         Self {
             pipeline: (Teleport::default(), pipeline_of(gpu, &layout, Teleport::default())),
             layout,
@@ -174,7 +174,7 @@ impl Lloyd {
             moved_first: self.moved_first % cluster_count,
             begins: begins.into(),
             shift: how.shift,
-            least_gap: how.least_gap,
+            min_gap: how.min_gap,
             glide: GLIDE,
         };
         self.write(stage, &uniform);

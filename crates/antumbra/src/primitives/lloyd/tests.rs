@@ -7,7 +7,7 @@ use crate::gpu::{Gpu, Recorder, Span, Stage};
 use crate::testing::{gpu, read_buffer};
 
 const PLAIN: Relaxation =
-    Relaxation { iterations: 30, moved_count: 15, shift: 0.0, least_gap: 0.01, teleport: Teleport::Inertia };
+    Relaxation { iterations: 30, moved_count: 15, shift: 0.0, min_gap: 0.01, teleport: Teleport::Inertia };
 
 /// Histogram of bumps with the given centres and weights, a hundredth wide.
 fn bumps(middles: &[(f64, u32)]) -> Vec<u32> {
@@ -26,7 +26,7 @@ fn evenly(count: usize) -> Vec<f64> {
 }
 
 #[test]
-fn twin_finds_what_is_there_within_thirty_iterations() {
+fn cpu_reference_finds_what_is_there_within_thirty_iterations() {
     // All lie in the lower quarter: even starts leave two means without weight, which must teleport.
     let middles = [(0.05, 10), (0.12, 3), (0.2, 40)];
     let mut means = evenly(3);
@@ -46,9 +46,9 @@ fn twin_finds_what_is_there_within_thirty_iterations() {
 }
 
 #[test]
-fn twin_keeps_gaps_and_shifts() {
+fn cpu_reference_keeps_gaps_and_shifts() {
     let mut means = evenly(4);
-    let how = Relaxation { shift: 0.05, least_gap: 0.1, ..PLAIN };
+    let how = Relaxation { shift: 0.05, min_gap: 0.1, ..PLAIN };
     let splits = cpu::relax(&bumps(&[(0.9, 1)]), &mut means, 0, &how);
     assert!(splits[0] >= 0.1 - 1e-6 && splits[3] <= 0.9 + 1e-6, "{splits:?}");
     assert!(splits.windows(2).all(|s| s[1] - s[0] >= 0.1 - 1e-6), "{splits:?}");
@@ -78,7 +78,7 @@ fn read_splits(gpu: &Gpu, lloyd: &Lloyd, histogram: &[u32], count: u32) -> Vec<f
 }
 
 #[test]
-fn gpu_equals_twin_iteration_by_iteration() {
+fn gpu_equals_cpu_reference_iteration_by_iteration() {
     let Some(gpu) = gpu() else { return };
     let runs = [(1u32, 1usize), (2, 2), (3, 3), (4, 7), (5, 15)];
     let all = runs.map(|run| (run, Teleport::Inertia)).into_iter().chain(runs.map(|run| (run, Teleport::Weight)));
@@ -89,7 +89,7 @@ fn gpu_equals_twin_iteration_by_iteration() {
             .collect();
         let histogram = bumps(&middles);
         let moved_count = 2.min(count as u32);
-        let how = Relaxation { iterations: 1, moved_count, shift: 0.01, least_gap: 0.02, teleport };
+        let how = Relaxation { iterations: 1, moved_count, shift: 0.01, min_gap: 0.02, teleport };
         let (mut lloyd, mut means) = (Lloyd::new(gpu), evenly(count));
         lloyd.pipeline = (teleport, pipeline_of(gpu, &lloyd.layout, teleport));
         for frame in 0..30u32 {
@@ -101,7 +101,7 @@ fn gpu_equals_twin_iteration_by_iteration() {
                 moved_first,
                 begins: (frame == 0).into(),
                 shift: how.shift,
-                least_gap: how.least_gap,
+                min_gap: how.min_gap,
                 glide: 1.0,
             };
             let got = run(gpu, &mut lloyd, &histogram, &uniform);
@@ -151,7 +151,7 @@ fn the_first_frame_has_converged() {
         moved_first: 0,
         begins: 1,
         shift: 0.0,
-        least_gap: 0.01,
+        min_gap: 0.01,
         glide: 1.0,
     };
     let first = run(gpu, &mut lloyd, &histogram, &uniform);

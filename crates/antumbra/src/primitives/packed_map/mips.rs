@@ -120,7 +120,7 @@ impl Mips {
         let view = array_view(gpu, &texture);
         let steps = mip_steps(map_size, level_count).map(|step| {
             let uniform = create_uniform::<MipsUniform>(gpu, "antumbra packed mips");
-            let group = Halve { mips: &uniform, first_level: first, further_levels: &view }.kept_group(gpu, layout);
+            let group = Halve { mips: &uniform, first_level: first, further_levels: &view }.cached_group(gpu, layout);
             (step, uniform, group)
         });
         Self { map_size, words, steps: steps.collect(), view, texture }

@@ -231,7 +231,7 @@ impl PackedMap {
         let blurs = rows.iter().flat_map(|rows| {
             let rows = array_view(gpu, rows);
             let blur = |uniform, source, target_layers| {
-                Blur { blur: uniform, weights, source, target_layers }.kept_group(gpu, &self.blur_layout)
+                Blur { blur: uniform, weights, source, target_layers }.cached_group(gpu, &self.blur_layout)
             };
             [blur(&self.rows, &first, &rows), blur(&self.columns, &rows, &first)]
         });

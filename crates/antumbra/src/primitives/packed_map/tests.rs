@@ -33,7 +33,7 @@ fn kernels_have_unit_sum_and_the_deviation_that_they_say() {
 }
 
 #[test]
-fn twins_keep_means_and_planes() {
+fn cpu_references_keep_means_and_planes() {
     let size = UVec2::new(21, 17);
     let plane: Vec<f32> = (0..size.x * size.y).map(|i| (i % 21) as f32 * 0.02 + (i / 21) as f32 * 0.01).collect();
     let blurred = cpu::blur(&plane, size, &Kernel::gaussian(5.0));
@@ -83,7 +83,7 @@ fn levels_lie_beside_each_other() {
 }
 
 #[test]
-fn gpu_equals_twins_over_a_ladder_of_sizes() {
+fn gpu_equals_cpu_references_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let kernels = [Kernel::boxed(1.0), Kernel::boxed(4.5), Kernel::gaussian(9.0)];
     let packings = [Packing::Float32, Packing::Float16, Packing::Unorm16, Packing::Unorm8];

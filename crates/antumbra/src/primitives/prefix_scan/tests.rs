@@ -7,7 +7,7 @@ use crate::gpu::{Recorder, Stage};
 use crate::testing::{gpu, read_storage};
 
 #[test]
-fn twin_matches_the_definition() {
+fn cpu_reference_matches_the_definition() {
     assert_eq!(cpu::scan(&[3, 0, 5, 1]), (vec![0, 3, 3, 8], 9));
     assert_eq!(cpu::scan(&[u32::MAX, 2]), (vec![0, u32::MAX], 1));
 }
@@ -21,7 +21,7 @@ fn levels_end_in_one_total() {
 }
 
 #[test]
-fn gpu_equals_twin_over_a_ladder_of_sizes() {
+fn gpu_equals_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let mut scan = PrefixScan::new(gpu);
     for count in [1, 2, 7, 8, 9, 255, 256, 257, 2047, 2048, 2049, 4096, 100_000, 2048 * 2048 + 3] {

@@ -103,7 +103,7 @@ fn the_shader_equals_its_reference() {
     gpu.queue().write_buffer(&input, 0, bytemuck::cast_slice(&words));
     let layout = Probe::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test probe", shaders::STOCHASTIC_PROBE, &[&layout]);
-    let group = Probe { inputs: &input, outputs: &output }.kept_group(gpu, &layout);
+    let group = Probe { inputs: &input, outputs: &output }.cached_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     pass.set_pipeline(&pipeline);

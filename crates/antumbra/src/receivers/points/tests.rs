@@ -114,7 +114,7 @@ impl Scene {
         let prepared = inputs.prepare(&Stage::at_once(gpu), &frame);
         let layout = Probe::layout(gpu);
         let pipeline = compute_pipeline(gpu, "test points", shaders::POINTS_PROBE, &[&inputs.layout, &layout]);
-        let group = Probe { found: &found }.kept_group(gpu, &layout);
+        let group = Probe { found: &found }.cached_group(gpu, &layout);
         let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -492,10 +492,10 @@ fn steady_frames_of_points_make_nothing() {
             light.center.x += 0.01 * i as f32;
             assert!(passes_of(&mut shadow, Casters::Meshes(&casters), &light) >= 3);
             if i == 3 {
-                before = gpu.objects_made().total();
+                before = gpu.objects_created().total();
             }
         }
-        assert_eq!(gpu.objects_made().total(), before, "{kind} makes nothing while a light moves");
+        assert_eq!(gpu.objects_created().total(), before, "{kind} makes nothing while a light moves");
         let still = Casters::Set { set: &set, layers: u32::MAX };
         let light = lamp(LightShape::Disk { radius_m: 0.2 });
         let passes: Vec<_> = (0..4).map(|_| passes_of(&mut shadow, still, &light)).collect();

@@ -4,7 +4,7 @@ use glam::{Mat4, UVec2};
 
 use crate::contract::{Error, Receivers};
 use crate::gpu::{
-    Bindings, Commands, Gpu, Keep, Recorder, Span, Stage, array_view, bindings, color_pipeline, gpu_structs,
+    Bindings, Commands, Gpu, Recorder, RetainedState, Span, Stage, array_view, bindings, color_pipeline, gpu_structs,
     slice_views, texels,
 };
 use crate::receivers::{DEPTH_FORMAT, NORMAL_FORMAT};
@@ -57,7 +57,7 @@ bindings! {
 /// #     light: &light::Light, casters: Casters<'_>, masks: &[Mask; 2]) -> Result<(), Error> {
 /// let mut split = SplitReceivers::new(gpu); // kept from frame to frame
 /// split.record(recorder, &receivers)?;      // whose depth has four samples a pixel
-/// for (receivers, mask) in split.pictures(&receivers).into_iter().zip(masks) {
+/// for (receivers, mask) in split.images(&receivers).into_iter().zip(masks) {
 ///     shadow.prepare(&Frame { light, casters, receivers, mask })?.record(recorder);
 /// }
 /// # Ok(())
@@ -71,13 +71,13 @@ pub struct SplitReceivers {
     gpu: Gpu,
     layout: wgpu::BindGroupLayout,
     no_normals: wgpu::TextureView,
-    keep: Keep,
-    made: Option<Pictures>,
+    keep: RetainedState,
+    made: Option<SplitImages>,
 }
 
 /// Front and back image.
 #[derive(Debug)]
-struct Pictures {
+struct SplitImages {
     size_px: UVec2,
     normal_format: wgpu::TextureFormat,
     depth: [wgpu::TextureView; 2],
@@ -89,7 +89,7 @@ impl SplitReceivers {
     /// WGSL function for a host's shading. It returns which of the two images, and hence which of two masks, contains a fragment of
     /// depth `position.z`. `depths` is [`depth_layers`](Self::depth_layers), `pixel` is relative to the viewport's corner.
     pub const SPLIT_WGSL: &'static str = "
-fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u32 {
+fn antumbra_image(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u32 {
     let front = textureLoad(depths, pixel, 0u, 0).x;
     let back = textureLoad(depths, pixel, 1u, 0).x;
     let has_back = back > 0.0 && back < 1.0;
@@ -113,7 +113,7 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
             layout: Samples::layout(gpu),
             no_normals: gpu.device.create_view(&no_normals, &wgpu::TextureViewDescriptor::default()),
             gpu: gpu.clone(),
-            keep: Keep::default(),
+            keep: RetainedState::default(),
             made: None,
         }
     }
@@ -133,7 +133,7 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
             .as_ref()
             .is_some_and(|made| (made.size_px, made.normal_format) == (receivers.size_px, normal_format))
         {
-            self.made = Some(Pictures::new(&self.gpu, receivers.size_px, normal_format));
+            self.made = Some(SplitImages::new(&self.gpu, receivers.size_px, normal_format));
         }
         let made = self.made.as_ref().expect("made above where it was missing");
         let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep), None);
@@ -174,7 +174,7 @@ fn antumbra_picture(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> 
     ///
     /// # Panics
     /// If nothing was recorded.
-    pub fn pictures<'a>(&'a self, receivers: &Receivers<'a>) -> [Receivers<'a>; 2] {
+    pub fn images<'a>(&'a self, receivers: &Receivers<'a>) -> [Receivers<'a>; 2] {
         let made = self.made.as_ref().expect("`record` comes before");
         [0, 1].map(|picture: usize| Receivers {
             size_px: made.size_px,
@@ -221,7 +221,7 @@ fn check(receivers: &Receivers<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-impl Pictures {
+impl SplitImages {
     fn new(gpu: &Gpu, size_px: UVec2, normal_format: wgpu::TextureFormat) -> Self {
         let texture = |format| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -250,7 +250,7 @@ fn pictures_hold_both_surfaces_of_edges_at_the_pixels_centre() {
             let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             split.record(&mut Recorder::new(&mut encoder, None), &receivers).expect("four samples");
             gpu.queue.submit([encoder.finish()]);
-            let pictures = split.pictures(&receivers);
+            let pictures = split.images(&receivers);
             let depths = [0, 1].map(|layer| -> Vec<f32> {
                 bytemuck::pod_collect_to_vec(&read_layer(gpu, pictures[0].depth.texture(), layer))
             });
@@ -334,7 +334,7 @@ fn masks_of_both_pictures_are_those_of_each_surface_alone() {
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     split.record(&mut Recorder::new(&mut encoder, None), &receivers).expect("four samples");
     gpu.queue.submit([encoder.finish()]);
-    let masks = split.pictures(&receivers).map(&mut visibility);
+    let masks = split.images(&receivers).map(&mut visibility);
     let (mut off, mut judged, mut on_edges) = (0.0_f32, 0, 0);
     for pixel in pixels() {
         let Some(heights) = surfaces(&camera, pixel) else { continue };

@@ -178,14 +178,14 @@ fn a_host_s_shader_gets_what_the_mask_has() {
                     mask: &mask,
                 };
                 draw(gpu, shadow, &frame);
-                let before = gpu.objects_made().total();
+                let before = gpu.objects_created().total();
                 let function = shadow.shader_function(group, prefix).unwrap_or_else(|error| panic!("{error}"));
                 if let Some(ShaderFunction { wgsl, bind_group, .. }) = &last {
                     assert!(
                         Arc::ptr_eq(wgsl, &function.wgsl) && *bind_group == function.bind_group,
                         "{prefix}, {name}"
                     );
-                    assert_eq!(gpu.objects_made().total(), before, "{prefix}, {name}");
+                    assert_eq!(gpu.objects_created().total(), before, "{prefix}, {name}");
                 }
                 last = Some(function);
             }

@@ -15,24 +15,24 @@ impl<R> Default for Good<R> {
 
 impl<R: PartialEq> Good<R> {
     /// Number of frames after which an unused resource is dropped, so that it can be freed.
-    const KEPT_FRAMES: u64 = 8;
+    const RETAINED_FRAMES: u64 = 8;
 
     /// Begins a frame.
     pub(super) fn begin_frame(&mut self) {
         self.frame += 1;
-        self.found.retain(|(_, frame)| frame + Self::KEPT_FRAMES >= self.frame);
+        self.found.retain(|(_, frame)| frame + Self::RETAINED_FRAMES >= self.frame);
     }
 
     /// Validation error that wgpu reports for a resource, or `None`. Only new resources are tried.
-    pub(super) fn complaint(&mut self, resource: R, trial: impl FnOnce(&R) -> Option<String>) -> Option<String> {
+    pub(super) fn validation_error(&mut self, resource: R, trial: impl FnOnce(&R) -> Option<String>) -> Option<String> {
         if let Some((_, frame)) = self.found.iter_mut().find(|(good, _)| *good == resource) {
             *frame = self.frame;
             return None;
         }
-        let complaint = trial(&resource);
-        if complaint.is_none() {
+        let validation_error = trial(&resource);
+        if validation_error.is_none() {
             self.found.push((resource, self.frame));
         }
-        complaint
+        validation_error
     }
 }

@@ -133,9 +133,9 @@ impl Check<'_, Frame<'_>> {
 
     pub(super) fn denoise(&self, validator: &mut Validator, denoise: &Denoise) -> Result<(), Error> {
         const WHAT: &str = "the motion vectors' texture";
-        if !(1..=Denoise::MOST_FRAMES).contains(&denoise.most_frames) {
-            let needed = format!("1 to {}", Denoise::MOST_FRAMES);
-            return self.bad("the denoiser's frames", denoise.most_frames.to_string(), needed);
+        if !(1..=Denoise::MAX_FRAMES).contains(&denoise.max_frames) {
+            let needed = format!("1 to {}", Denoise::MAX_FRAMES);
+            return self.bad("the denoiser's frames", denoise.max_frames.to_string(), needed);
         }
         let Some(motion) = &denoise.motion else { return Ok(()) };
         self.as_large_as_depth(WHAT, motion.texture())?;

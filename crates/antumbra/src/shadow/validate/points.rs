@@ -2,7 +2,7 @@
 
 use super::{Check, Validator};
 use crate::contract::{Error, PointBuffer, PointWidths};
-use crate::gpu::storage_complaint;
+use crate::gpu::storage_validation_error;
 use crate::receivers::points::size_of_points;
 use crate::shadow::PointFrame;
 
@@ -73,11 +73,16 @@ impl Check<'_, PointFrame<'_>> {
                 format!("in one of {most} at most, which this device binds"),
             );
         }
-        let complaint = validator.buffers.complaint(buffer.clone(), |buffer| storage_complaint(self.gpu, buffer));
-        let refuse = |complaint| {
-            self.bad(what, format!("in a buffer that cannot be bound ({complaint})"), "in one of the light's device")
+        let validation_error =
+            validator.buffers.validation_error(buffer.clone(), |buffer| storage_validation_error(self.gpu, buffer));
+        let refuse = |validation_error| {
+            self.bad(
+                what,
+                format!("in a buffer that cannot be bound ({validation_error})"),
+                "in one of the light's device",
+            )
         };
-        complaint.map_or(Ok(()), refuse)
+        validation_error.map_or(Ok(()), refuse)
     }
 
     pub(super) fn widths(&self) -> Result<(), Error> {

@@ -28,7 +28,7 @@ param_choice! {
 }
 
 /// Smallest cosine allowed between a ray and the axis: depths along the ray shrink by it, while their errors do not.
-const LEAST_COSINE: f32 = 0.4;
+const MIN_COSINE: f32 = 0.4;
 
 /// Depth axis and range of a map: t is 0 at `near_m` and 1 at `far_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +79,7 @@ impl DepthRange {
             let offset = window.half_size * corner;
             let in_plane = window.center + offset.x * window.roll + offset.y * window.roll.perp();
             let ray = if view.perspective { in_plane.extend(1.0).normalize() } else { Vec3::Z };
-            ray.dot(axis) >= LEAST_COSINE
+            ray.dot(axis) >= MIN_COSINE
         };
         if !corners.into_iter().all(goes_along) {
             return None;

@@ -96,7 +96,7 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
     };
     // Browsers cannot answer synchronously, but they never have the feature.
     let mut made = None;
-    if gpu.complaint(|| made = Some(gpu.device.create_texture(&descriptor))).is_some() {
+    if gpu.validation_error(|| made = Some(gpu.device.create_texture(&descriptor))).is_some() {
         return Err(unsupported());
     }
     let texture = made.expect("made on trial");

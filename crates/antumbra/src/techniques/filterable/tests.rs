@@ -252,7 +252,7 @@ fn t_of_depth(map: &FrameMap, texel: UVec2, depth: f32) -> f64 {
 }
 
 /// Compares each channel of each encoded texel with the CPU reference, for light maps of every sample count and size.
-fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
+fn encode_equals_its_cpu_reference<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
     let case = Case::half_plane(gpu, RECTANGLE);
     let mut passes: Filterable<P> = Filterable::new(gpu, basis.kind.name(), basis.shaders);
     let sizes = [1, 2, 3, 7, 8, 9, 16, 31, 64, 65];
@@ -298,12 +298,12 @@ fn encode_equals_its_twin<P: GpuStruct>(gpu: &Gpu, basis: &BasisCase<'_, P>) {
                     break;
                 }
             };
-            holds_to_twin(gpu, &passes, basis, &map, msaa.count());
+            holds_to_cpu_reference(gpu, &passes, basis, &map, msaa.count());
         }
     }
 }
 
-fn holds_to_twin<P: GpuStruct>(
+fn holds_to_cpu_reference<P: GpuStruct>(
     gpu: &Gpu,
     passes: &Filterable<P>,
     basis: &BasisCase<'_, P>,
@@ -342,7 +342,7 @@ fn shaders(encode: &'static str, encode_multisampled: &'static str, resolve: &'s
 }
 
 #[test]
-fn vsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+fn vsm_encodes_and_resolves_as_its_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     for (packing, tolerance) in [(Packing::Float32, 3e-6), (Packing::Float16, 6e-4), (Packing::Unorm16, 1e-5)] {
         let basis = BasisCase {
@@ -355,12 +355,12 @@ fn vsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
             encode: &|t| basis::encode_variance(t).to_vec(),
             tolerance,
         };
-        encode_equals_its_twin(gpu, &basis);
+        encode_equals_its_cpu_reference(gpu, &basis);
     }
 }
 
 #[test]
-fn lvsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+fn lvsm_encodes_and_resolves_as_its_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let splits = [0.3f32, 0.45, 0.8];
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -389,11 +389,11 @@ fn lvsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
         // Encoding a layer magnifies the error of t.
         tolerance: 3e-5,
     };
-    encode_equals_its_twin(gpu, &basis);
+    encode_equals_its_cpu_reference(gpu, &basis);
 }
 
 #[test]
-fn evsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+fn evsm_encodes_and_resolves_as_its_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let basis = BasisCase {
         kind: TechniqueKind::Evsm,
@@ -406,11 +406,11 @@ fn evsm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
         // dw = 2 c w dt.
         tolerance: 1e-4,
     };
-    encode_equals_its_twin(gpu, &basis);
+    encode_equals_its_cpu_reference(gpu, &basis);
 }
 
 #[test]
-fn esm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+fn esm_encodes_and_resolves_as_its_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let basis = BasisCase {
         kind: TechniqueKind::Esm,
@@ -422,11 +422,11 @@ fn esm_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
         encode: &|t| vec![basis::encode_exponential(t, 40.0)],
         tolerance: 3e-5,
     };
-    encode_equals_its_twin(gpu, &basis);
+    encode_equals_its_cpu_reference(gpu, &basis);
 }
 
 #[test]
-fn convolution_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+fn convolution_encodes_and_resolves_as_its_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let (terms, depth_scale) = (5u32, 0.8f32);
     let series = |t: f64| {
@@ -447,11 +447,11 @@ fn convolution_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
         encode: &series,
         tolerance: 0.51 / 255.0,
     };
-    encode_equals_its_twin(gpu, &basis);
+    encode_equals_its_cpu_reference(gpu, &basis);
 }
 
 #[test]
-fn moment_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
+fn moment_encodes_and_resolves_as_its_cpu_reference_over_a_ladder_of_sizes() {
     let Some(gpu) = gpu() else { return };
     let basis = BasisCase {
         kind: TechniqueKind::Moment,
@@ -463,7 +463,7 @@ fn moment_encodes_and_resolves_as_its_twin_over_a_ladder_of_sizes() {
         encode: &|t| basis::quantize_moments(basis::encode_moments(t)).to_vec(),
         tolerance: 1.2e-5,
     };
-    encode_equals_its_twin(gpu, &basis);
+    encode_equals_its_cpu_reference(gpu, &basis);
 }
 
 #[test]

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use crate::contract::SeenPoint;
 use crate::gpu::{Cached, Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
-use crate::light_map::light_view::{Followed, LightView, ViewFit};
+use crate::light_map::light_view::{FollowedLight, LightView, ViewFit};
 use crate::light_map::occluding_bounds::Between;
 
 mod ball;
@@ -112,9 +112,9 @@ fn fit_from(light: &Light, point: &LightPoint, casters: &Between, receivers: &[V
         ViewFit::orthographic(frame, 0.0, casters, receivers)
     } else {
         // The view needs to hold receivers only as this point sees them, but the light's own frustum starts at its centre.
-        let margin_m = if light.reach_tangent().is_some() { light.bounding_radius() } else { 0.0 };
+        let margin_m = if light.max_angle_tangent().is_some() { light.bounding_radius() } else { 0.0 };
         let frame = LightFrame { center: point.xyz, ..frame };
-        ViewFit::perspective(frame, Followed::Middle, margin_m, 0.0, light.reach_tangent(), casters, receivers)
+        ViewFit::perspective(frame, FollowedLight::Center, margin_m, 0.0, light.max_angle_tangent(), casters, receivers)
     }
 }
 

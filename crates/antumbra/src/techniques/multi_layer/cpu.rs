@@ -1,20 +1,20 @@
 //! CPU reference of the filter, for one channel.
 
 use super::levels::Level;
-use crate::light_map::texel_lists::cpu::TwinFragment;
+use crate::light_map::texel_lists::cpu::ReferenceFragment;
 use crate::light_map::texel_lists::options::DepthTolerance;
 
 /// Returns one level's lists, merged from the lists `before`. Opacities in one list are accumulated by their overlap; depths
 /// are averaged by opacity or by count.
 pub(crate) fn filter(
     before: &Level,
-    lists: &[Vec<TwinFragment>],
+    lists: &[Vec<ReferenceFragment>],
     level: &Level,
     epsilon: DepthTolerance,
     by_count: bool,
-) -> Vec<Vec<TwinFragment>> {
+) -> Vec<Vec<ReferenceFragment>> {
     let step = level.step.expect("not the base");
-    let child = |x: u32, y: u32, k: usize| -> &[TwinFragment] {
+    let child = |x: u32, y: u32, k: usize| -> &[ReferenceFragment] {
         let place = |texel: u32, far: bool, size: u32| {
             let at = i64::from(step.stride * texel) + i64::from(if far { step.far } else { step.near });
             u32::try_from(at).ok().filter(|at| *at < size)
@@ -45,11 +45,11 @@ pub(crate) fn accumulated(nearer: f32, farther: f32, overlap: f32) -> f32 {
 
 /// Merges four lists as in figure 3, up to the depth limit of lookups.
 pub(crate) fn merge(
-    mut lists: [&[TwinFragment]; 4],
+    mut lists: [&[ReferenceFragment]; 4],
     epsilon: DepthTolerance,
     z_limit_m: f32,
     by_count: bool,
-) -> Vec<TwinFragment> {
+) -> Vec<ReferenceFragment> {
     let mut merged = Vec::new();
     let mut transmittances = [1.0_f32; 4];
     while let Some(nearest) =
@@ -77,7 +77,7 @@ pub(crate) fn merge(
         let after = 0.25 * transmittances.iter().sum::<f32>();
         let behind = 1.0 - ((before - after) / opacity).clamp(0.0, 1.0);
         let overlap = if before < 1.0 { behind / (1.0 - before) } else { 1.0 };
-        merged.push(TwinFragment { z_m: z_sum / weight, opacity, overlap });
+        merged.push(ReferenceFragment { z_m: z_sum / weight, opacity, overlap });
     }
     merged
 }

@@ -17,7 +17,7 @@ gpu_structs! {
         epsilon_m: f32,
         capacity: u32,
         z_limit_m: f32,
-        held_from_m: f32,
+        complete_from_m: f32,
         padding_0: u32,
     }
 

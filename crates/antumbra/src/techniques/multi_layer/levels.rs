@@ -178,11 +178,7 @@ impl DepthReach {
 
 /// Removes what no receiver looks up. A level serves depths up to the depth of the next finer level's filter. Surfaces beyond
 /// that depth for the farthest receiver are never read; a level without nearer depths is never read at all.
-pub(crate) fn keep_what_is_looked_up(
-    levels: &mut Vec<Level>,
-    reach: &DepthReach,
-    epsilon: impl Fn(&Level) -> DepthTolerance,
-) {
+pub(crate) fn prune_levels(levels: &mut Vec<Level>, reach: &DepthReach, epsilon: impl Fn(&Level) -> DepthTolerance) {
     let z_far: Vec<f32> =
         [0.0].into_iter().chain(levels.iter().map(|level| level.width)).map(|finer| reach.z_of_filter(finer)).collect();
     let needed = z_far.iter().skip(1).take_while(|z_far| **z_far > reach.near_m).count() + 1;

@@ -118,7 +118,7 @@ use crate::contract::{
 };
 use crate::gpu::{
     Bindings, Cached, Content, Feedback, Gpu, Recorder, Span, Stage, bindings, compute_pipeline_without_zeroing,
-    create_uniform, upload_with_room, write_uniform,
+    create_uniform, upload_growable, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::texel_lists::options::Accumulation;
@@ -415,7 +415,7 @@ impl MultiLayer {
     }
 
     fn bind_filter(&mut self, stage: &Stage<'_>, of_frame: &PreparedLists, steps: &[u8]) -> wgpu::BindGroup {
-        let filter_step = upload_with_room(stage, &mut self.filter_steps, "antumbra multi_layer filter", steps);
+        let filter_step = upload_growable(stage, &mut self.filter_steps, "antumbra multi_layer filter", steps);
         let PreparedLists { lists, fragments, counters, .. } = of_frame;
         FilteredLists { filter_step, lists, fragments, counters }.group(stage, &self.filter_layout)
     }

@@ -6,7 +6,7 @@ use glam::UVec2;
 
 use super::gpu_types::NearestStep;
 use super::{STEP_STRIDE, TILE};
-use crate::gpu::{Bindings, Gpu, Scratch, Stage, bindings, compute_entry, upload_with_room};
+use crate::gpu::{Bindings, Gpu, Scratch, Stage, bindings, compute_entry, upload_growable};
 use crate::light_map::texel_lists::PreparedLists;
 use crate::shaders;
 
@@ -147,7 +147,7 @@ impl NearestSquares {
             };
             (lease.buffer(&stage.device, Scratch::NearestSquares, &descriptor), lease.is_own())
         }));
-        let nearest_step = upload_with_room(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
+        let nearest_step = upload_growable(stage, &mut self.steps, "antumbra multi_layer nearest", &bytes);
         let group = Nearest { nearest_step, lists, fragments, nearest }.group(stage, &self.layout);
         let steps = steps.iter().map(|sizes| sizes[0].count).collect();
         PreparedNearest { depths: Arc::clone(nearest), group, steps }

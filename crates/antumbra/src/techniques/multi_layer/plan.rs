@@ -6,7 +6,7 @@ use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
 use super::gpu_types::{FilterStep, MultiLayerLadder, MultiLayerRung, MultiLayerUniform};
-use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, keep_what_is_looked_up, levels, list_count, rungs};
+use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, levels, list_count, prune_levels, rungs};
 use super::nearest::{NearestSquares, Squares, squares_for};
 use super::params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
@@ -16,7 +16,7 @@ use super::{FilterDesign, LookupDesign, STEP_STRIDE};
 use crate::contract::{MaskChannels, MeshCaster, PreparedFrame};
 use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};
-use crate::light_map::light_view::{FitTo, Followed, LightView, LightViewGpu, Window, WindowShape};
+use crate::light_map::light_view::{FitTo, FollowedLight, LightView, LightViewGpu, Window, WindowShape};
 use crate::light_map::map_texels::map_texels;
 use crate::light_map::stable_fit::{corners_to_hold, in_whole_texels};
 use crate::light_map::texel_lists::options::{Accumulation, DepthTolerance, Gather, ListOptions};
@@ -106,7 +106,7 @@ impl<'a> FramePlan<'a> {
         let receivers = corners_to_hold(stage, &frame.receivers);
         let window = if is_square { WindowShape::Square } else { WindowShape::Rolled(Vec2::X) };
         let fit = FitTo { casters: &bounds, receivers: &receivers, window };
-        let view = fit_central_view_within(light, Followed::All, reach(light), &fit);
+        let view = fit_central_view_within(light, FollowedLight::Whole, reach(light), &fit);
         let square_size = map_texels(stage, frame, params.map_size, bytes_of, &view, &bounds);
         let (view, map_size) =
             if is_square { (view, UVec2::splat(square_size)) } else { shaped_as_light(view, extent, square_size) };
@@ -130,7 +130,7 @@ impl<'a> FramePlan<'a> {
         if params.prune && params.footprint == 0.0 && params.fixed_level == 0 {
             let reach =
                 DepthReach { perspective: view.perspective, near_m: view.near_m, far_m: view.far_m, filter_per_g };
-            keep_what_is_looked_up(&mut levels, &reach, |level| tolerances.epsilon(level.octave));
+            prune_levels(&mut levels, &reach, |level| tolerances.epsilon(level.octave));
         }
         let colored = frame.casters.mask_channels() == MaskChannels::Three;
         Self { params, view, gpu_view, square_size, map_size, levels, tolerances, filter_per_g, colored }
@@ -141,7 +141,7 @@ impl<'a> FramePlan<'a> {
         let params = self.params;
         ListOptions {
             map_size: self.map_size,
-            most_texels: self.square_size.pow(2),
+            max_texels: self.square_size.pow(2),
             capacity,
             list_count: list_count(&self.levels),
             owners_bytes: NearestSquares::bytes_of(self.square_size),
@@ -251,7 +251,7 @@ impl<'a> FramePlan<'a> {
                 epsilon_m: epsilon.m,
                 capacity,
                 z_limit_m: level.z_limit_m,
-                held_from_m: self.view.held_from_m,
+                complete_from_m: self.view.complete_from_m,
                 ..FilterStep::default()
             })
         });

@@ -3,14 +3,14 @@
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec2, Vec3};
 
-use super::levels::{DepthReach, LevelOptions, keep_what_is_looked_up, levels};
+use super::levels::{DepthReach, LevelOptions, levels, prune_levels};
 use super::nearest::{all_squares, squares_for};
 use super::plan::light_extent;
 use super::{MultiLayer, MultiLayerDepthAverage, MultiLayerHierarchy, MultiLayerParams, PreparedMultiLayer, cpu};
 use crate::TechniqueKind;
 use crate::contract::{MapSize, Mask, MeshCaster, Opacity, PreparedCasters, PreparedFrame, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder, Stage};
-use crate::light_map::texel_lists::cpu::TwinFragment;
+use crate::light_map::texel_lists::cpu::ReferenceFragment;
 use crate::light_map::texel_lists::options::DepthTolerance;
 use crate::light_map::texel_lists::tests::{TestMesh, agree, scenes, unpack};
 use crate::shadow::Casters;
@@ -81,7 +81,7 @@ fn levels_end_with_what_receivers_look_up() {
         let reach = DepthReach { perspective, near_m: 2.0, far_m: 10.0, filter_per_g: 60.0 };
         let epsilon = DepthTolerance { slope: 0.05, m: 0.1 };
         let mut kept = whole.clone();
-        keep_what_is_looked_up(&mut kept, &reach, |_| epsilon);
+        prune_levels(&mut kept, &reach, |_| epsilon);
         let filter = |z_m: f32, z_receiver_m: f32| {
             reach.filter_per_g * if perspective { 1.0 / z_m - 1.0 / z_receiver_m } else { z_receiver_m - z_m }
         };
@@ -226,7 +226,7 @@ fn record(
 }
 
 #[test]
-fn every_level_equals_its_twin() {
+fn every_level_equals_its_cpu_reference() {
     let Some(gpu) = gpu() else { return };
     for (name, light, meshes) in scenes() {
         for (stack_size, subsampled_steps, depth_average) in
@@ -276,7 +276,7 @@ fn every_level_equals_its_twin() {
 /// Opacities in adjoining texels add up, and opacities behind one another count once, at any depth of the hierarchy.
 #[test]
 fn merged_lists_know_what_their_fragments_have_in_common() {
-    let opaque = |z_m: f32| TwinFragment { z_m, opacity: 1.0, overlap: 1.0 };
+    let opaque = |z_m: f32| ReferenceFragment { z_m, opacity: 1.0, overlap: 1.0 };
     let [none, near, far] = [&[][..], &[opaque(1.0)], &[opaque(3.0)]];
     let both = &[opaque(1.0), opaque(3.0)][..];
     for (what, lists, overlaps, total) in [

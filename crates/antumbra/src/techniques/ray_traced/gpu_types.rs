@@ -66,7 +66,7 @@ gpu_structs! {
         texture_group: u32,
         is_last_group: u32,
         rotate: u32,
-        most_turns: u32,
+        max_iterations: u32,
         passed_stride: u32,
         weighs_irradiance: u32,
     }

@@ -41,7 +41,7 @@ use antumbra_light::{Light, LightShape};
 
 use crate::contract::{CastersKey, Error, MeshCaster, Opacity, PreparedFrame, SampleWeights};
 use crate::gpu::{
-    Bindings, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, sized_buffer, upload_with_room,
+    Bindings, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, sized_buffer, upload_growable,
 };
 use crate::light_map::caster_surface::SurfaceValues;
 use crate::light_map::readable_meshes::readable_meshes;
@@ -63,7 +63,7 @@ mod tree;
 use gpu_types::{CASTER_VECTORS, FLAG_CLOSED, FLAG_OPEN, RayBatch};
 use mesh::{MeshPlace, Meshes};
 pub use params::RayTracedParams;
-use textures::{MOST_TEXTURES, Textures};
+use textures::{MAX_TEXTURES, Textures};
 use top::Top;
 use tree::TreePrograms;
 
@@ -84,7 +84,7 @@ bindings! {
 const PASS_RAYS: u32 = 16;
 /// Number of rays per pass on hardware GPUs.
 const PASS_RAYS_OF_CARDS: u32 = 64;
-/// Least loop limit of hardware GPUs: see [`most_turns`](crate::gpu).
+/// Least loop limit of hardware GPUs: see [`max_iterations`](crate::gpu).
 const TURNS_OF_CARDS: u32 = 1_000_000;
 
 /// Technique that traces rays to points of the light.
@@ -210,18 +210,18 @@ impl RayTraced {
         textures: &Textures<'_>,
     ) -> Result<Vec<Pass>, Error> {
         let tables =
-            upload_with_room(stage, &mut self.tables, "antumbra ray tables", bytemuck::cast_slice(table)).clone();
+            upload_growable(stage, &mut self.tables, "antumbra ray tables", bytemuck::cast_slice(table)).clone();
         let surfaces = textures.groups(stage, &self.surfaces_layout, &self.no_texture);
         let weighs_irradiance = params.weights == SampleWeights::Irradiance;
-        let most_turns = stage.device.most_turns();
-        let most_rays = if most_turns < TURNS_OF_CARDS { PASS_RAYS } else { PASS_RAYS_OF_CARDS };
+        let max_iterations = stage.device.max_iterations();
+        let max_rays = if max_iterations < TURNS_OF_CARDS { PASS_RAYS } else { PASS_RAYS_OF_CARDS };
         let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
         let (pass_rays, passed_stride) = if surfaces.len() == 1 {
-            (most_rays, 0)
+            (max_rays, 0)
         } else {
-            let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
-            let words = most_bytes / 4 / pixels.max(1);
-            let rays = words.saturating_sub(weighs_irradiance.into()).min(u64::from(most_rays)) as u32;
+            let max_bytes = stage.device.limits().max_storage_buffer_binding_size;
+            let words = max_bytes / 4 / pixels.max(1);
+            let rays = words.saturating_sub(weighs_irradiance.into()).min(u64::from(max_rays)) as u32;
             (rays, rays)
         };
         if pass_rays == 0 {
@@ -253,7 +253,7 @@ impl RayTraced {
                     texture_group: group,
                     is_last_group: (group + 1 == textures.group_count()).into(),
                     rotate: is_rotated.into(),
-                    most_turns,
+                    max_iterations,
                     passed_stride,
                     weighs_irradiance: weighs_irradiance.into(),
                 };
@@ -310,8 +310,8 @@ fn caster_words(
     texture: Option<u32>,
 ) -> [[u32; 4]; CASTER_VECTORS as usize] {
     let MeshPlace { first_node, first_triangle, triangle_stride } = place;
-    let group = texture.map_or(0, |number| number / MOST_TEXTURES);
-    let slot = texture.map_or(u32::from(u8::MAX), |number| number % MOST_TEXTURES);
+    let group = texture.map_or(0, |number| number / MAX_TEXTURES);
+    let slot = texture.map_or(u32::from(u8::MAX), |number| number % MAX_TEXTURES);
     let is_opaque = matches!(caster.opacity, Opacity::Opaque);
     let flags = if !is_opaque {
         FLAG_OPEN

@@ -8,7 +8,7 @@ use glam::{DVec3, EulerRot, Mat4, Quat, UVec2, Vec2, Vec3};
 
 use super::cpu::{Box3, Node, Tree};
 use super::mesh::{MeshPlace, Meshes};
-use super::textures::MOST_TEXTURES;
+use super::textures::MAX_TEXTURES;
 use super::tree::TreePrograms;
 use crate::TechniqueKind;
 use crate::contract::{MeshCaster, MeshVersion, Opacity, SurfaceCoverage, SurfaceTexture};
@@ -207,12 +207,12 @@ fn soups() -> Vec<Soup> {
 }
 
 #[test]
-fn twin_is_right() {
+fn cpu_reference_is_right() {
     soups().iter().for_each(|soup| assert_is_right(soup, &Tree::new(&soup.boxes())));
 }
 
 #[test]
-fn trees_are_those_of_their_twin() {
+fn trees_are_those_of_their_cpu_reference() {
     let Some(gpu) = gpu() else { return };
     let soups = soups();
     let meshes: Vec<Mesh> = soups.iter().map(|soup| soup.on_gpu(gpu)).collect();
@@ -507,7 +507,7 @@ fn far_and_wide_casters_cast_as_near_ones() {
 #[test]
 fn more_textures_than_a_pass_binds() {
     let Some(gpu) = gpu() else { return };
-    const SHEETS: u32 = 2 * MOST_TEXTURES + 3;
+    const SHEETS: u32 = 2 * MAX_TEXTURES + 3;
     let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ZERO });
     let sheets: Vec<Mesh> = (0..SHEETS)
         .map(|i| Mesh::horizontal(gpu, Vec2::new(-4.0, -4.0), Vec2::new(0.0, 4.0), 0.5 + 0.05 * i as f32))

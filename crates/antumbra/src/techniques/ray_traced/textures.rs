@@ -5,7 +5,7 @@ use crate::gpu::{Bindings, Gpu, Stage, bindings, samples, shared_constants, texe
 
 shared_constants! {
     /// Number of textures per pass.
-    pub(super) const MOST_TEXTURES: u32 = 12, as in RAY_TRACE;
+    pub(super) const MAX_TEXTURES: u32 = 12, as in RAY_TRACE;
 }
 
 bindings! {
@@ -57,10 +57,10 @@ impl<'a> Textures<'a> {
 
     /// Returns the number of groups; at least one.
     pub(super) fn group_count(&self) -> u32 {
-        (self.all.len() as u32).div_ceil(MOST_TEXTURES).max(1)
+        (self.all.len() as u32).div_ceil(MAX_TEXTURES).max(1)
     }
 
-    /// Returns a bind group for each [`MOST_TEXTURES`] of them.
+    /// Returns a bind group for each [`MAX_TEXTURES`] of them.
     pub(super) fn groups(
         &self,
         stage: &Stage<'_>,
@@ -77,8 +77,8 @@ impl<'a> Textures<'a> {
         none: &(wgpu::TextureView, wgpu::Sampler),
         group: usize,
     ) -> wgpu::BindGroup {
-        let at = |i: usize| self.all.get(MOST_TEXTURES as usize * group + i).copied().unwrap_or((&none.0, &none.1));
-        let all: [_; MOST_TEXTURES as usize] = std::array::from_fn(at);
+        let at = |i: usize| self.all.get(MAX_TEXTURES as usize * group + i).copied().unwrap_or((&none.0, &none.1));
+        let all: [_; MAX_TEXTURES as usize] = std::array::from_fn(at);
         let surfaces = Surfaces {
             surface_0: all[0].0,
             sampler_0: all[0].1,

@@ -59,7 +59,7 @@ impl Buffers {
     /// Allocates the buffers of the frame, and uploads the light's points that every pass reads.
     pub(super) fn prepare(&mut self, stage: &Stage<'_>, plan: &FramePlan, points: &[LocalPoint]) -> BufferSet<'_> {
         let storage = wgpu::BufferUsages::STORAGE;
-        let FramePlan { pixels, most_triangles, .. } = *plan;
+        let FramePlan { pixels, max_triangles, .. } = *plan;
         BufferSet {
             state: sized_buffer(stage, &mut self.state, "view-sample state", STATE_LENGTH * 4, storage),
             counts: sized_buffer(
@@ -89,7 +89,7 @@ impl Buffers {
                 stage,
                 &mut self.hulls,
                 "view-sample region hulls",
-                if plan.makes_hulls { u64::from(most_triangles) * HULL_BYTES } else { 8 },
+                if plan.makes_hulls { u64::from(max_triangles) * HULL_BYTES } else { 8 },
                 storage,
             ),
             shaft: sized_buffer(
@@ -105,14 +105,14 @@ impl Buffers {
                 stage,
                 &mut self.triangle_places,
                 "triangle places",
-                u64::from(most_triangles) * 8,
+                u64::from(max_triangles) * 8,
                 storage,
             ),
             triangles: sized_buffer(
                 stage,
                 &mut self.triangles,
                 "triangles",
-                u64::from(most_triangles) * u64::from(plan.most_stride) * 16,
+                u64::from(max_triangles) * u64::from(plan.max_stride) * 16,
                 storage,
             ),
             edges: sized_buffer(stage, &mut self.edges, "edge faces", u64::from(plan.edge_slots()) * 4, storage),
@@ -120,7 +120,7 @@ impl Buffers {
                 stage,
                 &mut self.boxes,
                 "cluster boxes",
-                u64::from(plan.most_clusters() + plan.most_supers()) * 32,
+                u64::from(plan.max_clusters() + plan.max_supers()) * 32,
                 storage,
             ),
             totals: sized_buffer(stage, &mut self.totals, "view-sample totals", 20, storage),
@@ -135,7 +135,7 @@ impl Buffers {
                 stage,
                 &mut self.work,
                 "view-sample work",
-                u64::from(FIRST_GROUP + 4 * plan.most_groups()) * 4,
+                u64::from(FIRST_GROUP + 4 * plan.max_groups()) * 4,
                 storage | wgpu::BufferUsages::COPY_SRC,
             ),
             bits: sized_buffer(

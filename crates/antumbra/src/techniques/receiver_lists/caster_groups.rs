@@ -3,7 +3,7 @@
 use crate::contract::{MeshCaster, SurfaceTexture};
 use crate::gpu::{Bindings, Stage, dispatch_threads};
 use crate::light_map::caster_surface::SurfaceValues;
-use crate::light_map::caster_triangles::runs::{MOST_RUNS, RunBindings, TriangleRun, anchor_uniform, upload_runs};
+use crate::light_map::caster_triangles::runs::{MAX_RUNS, RunBindings, TriangleRun, anchor_uniform, upload_runs};
 
 use super::batches::{Run, Surfaces};
 use super::gpu_types::SampleSurface;
@@ -25,7 +25,7 @@ pub(super) fn run_groups<'a>(
 ) -> Vec<RunGroup> {
     let runs: Vec<&Run> = runs.into_iter().collect();
     runs.chunk_by(|a, b| buffers_of(&meshes[a.caster]) == buffers_of(&meshes[b.caster]))
-        .flat_map(|of_buffers| of_buffers.chunks(MOST_RUNS))
+        .flat_map(|of_buffers| of_buffers.chunks(MAX_RUNS))
         .map(|runs| run_group(stage, layouts, meshes, runs))
         .collect()
 }

@@ -8,7 +8,7 @@ use super::buffers::BufferSet;
 use super::gpu_types::SampleSettings;
 use super::groups::{DrawArguments, Evaluated, FrameGroups, RegionHulls, Window};
 use super::light_points::{
-    LocalPoint, MAX_WORDS, MOST_SINGLED_OUT, WORD, cells_across, most_cells, packed_cells, packed_words,
+    LocalPoint, MAX_SINGLED_OUT, MAX_WORDS, WORD, cells_across, max_cells, packed_cells, packed_words,
 };
 use super::pipelines::{Evaluator, Way};
 use super::plan::FramePlan;
@@ -20,10 +20,10 @@ use crate::receivers::inputs::FrameInputs;
 
 shared_constants! {
     /// Largest number of triangles that are tested together.
-    const MOST_WAITING: u32 = 128, as in VIEW_SAMPLES_EVALUATE;
+    const MAX_WAITING: u32 = 128, as in VIEW_SAMPLES_EVALUATE;
 
     /// Largest number of rows of cells in a shadow whose light points are tested one by one.
-    const MOST_ROWS: u32 = 4, as in VIEW_SAMPLES_EVALUATE;
+    const MAX_ROWS: u32 = 4, as in VIEW_SAMPLES_EVALUATE;
 }
 
 #[derive(Debug)]
@@ -56,8 +56,8 @@ pub(super) struct PointBatch<'a> {
     /// Index among the batches.
     pub(super) index: usize,
     pub(super) points: &'a [LocalPoint],
-    /// See [`most_cells`].
-    most_cells: u32,
+    /// See [`max_cells`].
+    max_cells: u32,
     pub(super) words: wgpu::Buffer,
     cells: wgpu::Buffer,
 }
@@ -67,7 +67,7 @@ impl<'a> PointBatch<'a> {
     pub(super) fn new(stage: &Stage<'_>, index: usize, points: &'a [LocalPoint]) -> Self {
         let words = stage.uniform_array("view-sample light words", &packed_words(points));
         let cells = stage.storage("view-sample light cells", &packed_cells(points));
-        Self { index, points, most_cells: most_cells(points), words, cells }
+        Self { index, points, max_cells: max_cells(points), words, cells }
     }
 }
 
@@ -94,9 +94,9 @@ impl Evaluations<'_> {
         let step = self.settings(index, light);
         let evaluator = Evaluator::of(batch.surfaces, self.options);
         let walked = |way| {
-            let turns = u64::from(batch.triangles()) * u64::from(step.turns_per_triangle)
+            let turns = u64::from(batch.triangles()) * u64::from(step.iterations_per_triangle)
                 + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * step.word_count);
-            let passes = turns.div_ceil(u64::from(step.most_turns)).max(1) as u32;
+            let passes = turns.div_ceil(u64::from(step.max_iterations)).max(1) as u32;
             self.over_groups(way, &step, light, &self.evaluators[&evaluator], passes)
         };
         let drawn = raster.zip(self.raster_targets).zip(plan.windows);
@@ -163,22 +163,22 @@ impl Evaluations<'_> {
         switch(FIRST_POINTS, light.index == 0);
         switch(KEEP_BITS, plan.batches.len() > 1 || options.keep_bits);
         let word_count = light.points.len().div_ceil(WORD) as u32;
-        let turns_per_triangle = turns_per_triangle(batch, word_count, light.most_cells);
+        let iterations_per_triangle = iterations_per_triangle(batch, word_count, light.max_cells);
         // Iterations per receiver: itself, its words twice (any open, which are hidden), and the ends of these loops.
-        let turns_per_receiver = 3 + word_count * (1 + turns_per_word(batch));
+        let iterations_per_receiver = 3 + word_count * (1 + iterations_per_word(batch));
         // No pass runs long in any scene.
-        let most_turns = self.groups.stage.device.most_turns();
+        let max_iterations = self.groups.stage.device.max_iterations();
         SampleSettings {
             triangle_stride: stride_of(batch),
-            turns_per_triangle,
-            most_turns: most_turns - MOST_WAITING * turns_per_triangle - 4 * MAX_WORDS as u32 * 10,
+            iterations_per_triangle,
+            max_iterations: max_iterations - MAX_WAITING * iterations_per_triangle - 4 * MAX_WORDS as u32 * 10,
             point_count: light.points.len() as u32,
             word_count,
             cells_across: cells_across(light.points),
-            most_cells: light.most_cells,
+            max_cells: light.max_cells,
             first_word: if options.keep_bits { (light.index * plan.words) as u32 } else { 0 },
             switches,
-            receivers_per_instance: most_turns / turns_per_receiver,
+            receivers_per_instance: max_iterations / iterations_per_receiver,
             ..*self.base
         }
     }
@@ -215,15 +215,15 @@ impl Evaluations<'_> {
 }
 
 /// Returns the largest number of loop iterations for a triangle: its shadow's box, then words, or rows of cells and their light points.
-fn turns_per_triangle(batch: &Batch, word_count: u32, most_cells: u32) -> u32 {
+fn iterations_per_triangle(batch: &Batch, word_count: u32, max_cells: u32) -> u32 {
     // Two light points per iteration, each of which may loop.
-    let singled_out = if most_cells == 0 { 0 } else { 2 * MOST_ROWS + MOST_SINGLED_OUT / 2 };
-    let of_points = if batch.surfaces == Surfaces::Opaque { 0 } else { MOST_SINGLED_OUT };
-    2 + (word_count * turns_per_word(batch)).max(singled_out + of_points)
+    let singled_out = if max_cells == 0 { 0 } else { 2 * MAX_ROWS + MAX_SINGLED_OUT / 2 };
+    let of_points = if batch.surfaces == Surfaces::Opaque { 0 } else { MAX_SINGLED_OUT };
+    2 + (word_count * iterations_per_word(batch)).max(singled_out + of_points)
 }
 
 /// Returns the largest number of loop iterations for a word of light points: its box, and its points.
-fn turns_per_word(batch: &Batch) -> u32 {
+fn iterations_per_word(batch: &Batch) -> u32 {
     match batch.surfaces {
         Surfaces::Opaque => 2,
         Surfaces::Masked(_) => 2 + WORD as u32,

@@ -11,7 +11,7 @@ pub(crate) const WORD: usize = 32;
 pub(crate) const MAX_WORDS: usize = 32;
 
 /// Largest number of light points that are tested one by one for a triangle.
-pub(crate) const MOST_SINGLED_OUT: u32 = 20;
+pub(crate) const MAX_SINGLED_OUT: u32 = 20;
 
 shared_constants! {
     /// Number of vectors before the points in [`packed_words`].
@@ -96,15 +96,15 @@ pub(crate) fn cells_across(points: &[LocalPoint]) -> u32 {
     (points.len() as f32).sqrt().ceil().clamp(1.0, 32.0) as u32
 }
 
-/// Returns the largest number of cells that cannot contain more than [`MOST_SINGLED_OUT`] points in total; 0 if one word
+/// Returns the largest number of cells that cannot contain more than [`MAX_SINGLED_OUT`] points in total; 0 if one word
 /// holds all points, which takes one iteration.
-pub(crate) fn most_cells(points: &[LocalPoint]) -> u32 {
+pub(crate) fn max_cells(points: &[LocalPoint]) -> u32 {
     if points.len() <= WORD {
         return 0;
     }
     let (starts, _) = by_cells(points);
     let fullest = starts.windows(2).map(|cell| cell[1] - cell[0]).max().unwrap_or(0).max(1);
-    MOST_SINGLED_OUT / fullest
+    MAX_SINGLED_OUT / fullest
 }
 
 /// Returns the number of cells per metre along each side, as in `evaluation/`.

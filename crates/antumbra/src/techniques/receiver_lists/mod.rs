@@ -148,7 +148,7 @@ pub(crate) struct Options {
     /// Offset of every pixel's rotation, as a fraction of a whole turn.
     pub(crate) turn: f32,
     /// Scale of the ray offset at open meshes.
-    pub(crate) hair_scale: f32,
+    pub(crate) ray_offset_scale: f32,
     /// Whether every pixel's bits are kept.
     pub(crate) keep_bits: bool,
     /// Whether tests are counted.

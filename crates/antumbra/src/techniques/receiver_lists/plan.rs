@@ -39,8 +39,8 @@ pub(super) struct FramePlan {
     pub(super) window_side: u32,
     pub(super) list_count: u32,
     /// Largest number of triangles in a batch.
-    pub(super) most_triangles: u32,
-    pub(super) most_stride: u32,
+    pub(super) max_triangles: u32,
+    pub(super) max_stride: u32,
     /// Options that have an effect.
     pub(super) switches: u32,
     /// Whether lists store positions; only if triangles are drawn.
@@ -105,8 +105,8 @@ impl FramePlan {
             windows,
             window_side,
             list_count: windows.map_or(1, |windows| windows.count) << (2 * window_side.ilog2()),
-            most_triangles: batches.iter().map(Batch::triangles).max().unwrap_or(0).max(1),
-            most_stride: batches.iter().map(stride_of).max().unwrap_or(3),
+            max_triangles: batches.iter().map(Batch::triangles).max().unwrap_or(0).max(1),
+            max_stride: batches.iter().map(stride_of).max().unwrap_or(3),
             switches: options.switches | if chooses { CHOOSES } else { 0 },
             stores_positions,
             makes_hulls,
@@ -154,17 +154,17 @@ impl FramePlan {
     }
 
     /// Largest number of boxes of 64 triangles each.
-    pub(super) fn most_clusters(&self) -> u32 {
-        self.most_triangles.div_ceil(64)
+    pub(super) fn max_clusters(&self) -> u32 {
+        self.max_triangles.div_ceil(64)
     }
 
     /// Largest number of boxes of 32 clusters each.
-    pub(super) fn most_supers(&self) -> u32 {
-        self.most_clusters().div_ceil(32)
+    pub(super) fn max_supers(&self) -> u32 {
+        self.max_clusters().div_ceil(32)
     }
 
     /// Largest number of groups of receivers.
-    pub(super) fn most_groups(&self) -> u32 {
+    pub(super) fn max_groups(&self) -> u32 {
         self.pixels.div_ceil(64) as u32
     }
 
@@ -203,7 +203,7 @@ impl FramePlan {
             switches: self.switches,
             cell_count: CELL_COUNT,
             list_count: self.list_count,
-            super_first: self.most_clusters(),
+            super_first: self.max_clusters(),
             is_weighted: is_weighted(light).into(),
             triangle_stride: 3,
             lookup_size: options.lookup_size,
@@ -211,8 +211,8 @@ impl FramePlan {
             first_passed: if self.is_tinted() { self.pixels as u32 * self.pixel_words } else { 0 },
             rotations: options.rotations,
             turn: options.turn,
-            hair_scale: options.hair_scale,
-            most_groups: self.most_groups(),
+            ray_offset_scale: options.ray_offset_scale,
+            max_groups: self.max_groups(),
             window_side: self.window_side,
             ..SampleSettings::default()
         };

@@ -151,7 +151,7 @@ fn probe(gpu: &Gpu, cases: &[TriangleCase]) -> Vec<[f32; 4]> {
     gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&packed));
     let layout = TriangleProbe::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test triangles", shaders::VIEW_SAMPLES_TRIANGLE_PROBE, &[&layout]);
-    let group = TriangleProbe { cases: &input, answers: &output }.kept_group(gpu, &layout);
+    let group = TriangleProbe { cases: &input, answers: &output }.cached_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -225,7 +225,7 @@ struct RegionCase {
     low: Vec2,
     high: Vec2,
     depth_m: f32,
-    hair: f32,
+    ray_offset: f32,
     is_sun: bool,
     /// A corner and the normal of a triangle of a closed mesh.
     corner: Vec3,
@@ -243,7 +243,7 @@ const REGION: RegionCase = RegionCase {
     low: Vec2::splat(-0.5),
     high: Vec2::splat(0.5),
     depth_m: 4.0,
-    hair: 0.0,
+    ray_offset: 0.0,
     is_sun: false,
     corner: Vec3::new(0.1, 0.2, 2.0),
     normal: Vec3::new(0.3, -0.2, 1.0),
@@ -263,7 +263,7 @@ impl RegionCase {
             b,
             c,
             Vec4::new(self.low.x, self.low.y, self.high.x, self.high.y),
-            Vec4::new(WINDOW_SIDE, self.depth_m, self.hair, f32::from(u8::from(self.is_sun))),
+            Vec4::new(WINDOW_SIDE, self.depth_m, self.ray_offset, f32::from(u8::from(self.is_sun))),
             self.corner.extend(1.0),
             self.normal.extend(0.0),
             self.place.extend(self.shadow_depth_m),
@@ -294,7 +294,7 @@ fn probe_region(gpu: &Gpu, case: &RegionCase) -> ProbedRegion {
     gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&packed));
     let layout = RegionProbe::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test regions", shaders::VIEW_SAMPLES_REGION_PROBE, &[&layout]);
-    let group = RegionProbe { cases: &input, answers: &output }.kept_group(gpu, &layout);
+    let group = RegionProbe { cases: &input, answers: &output }.cached_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -377,13 +377,13 @@ fn a_window_of_one_receiver_has_a_size() {
 /// The cut leaves a margin for the ray offset, a direction, on both sides of the triangle's plane: its size at the farthest
 /// receiver, along the normal; under a sun directions are positions.
 #[test]
-fn what_a_plane_cuts_off_leaves_room_for_the_hair() {
+fn what_a_plane_cuts_off_leaves_room_for_the_ray_offset() {
     let Some(gpu) = gpu() else { return };
-    let hair = 0.01;
+    let ray_offset = 0.01;
     for (is_sun, metres_per_direction) in [(false, REGION.depth_m), (true, 1.0)] {
-        let of = |hair: f32| probe_region(gpu, &RegionCase { is_sun, hair, ..REGION }).cut;
-        let room = of(hair) - of(0.0);
-        let want = Vec3::new(0.0, 0.0, 2.0 * hair * metres_per_direction * REGION.normal.length());
+        let of = |ray_offset: f32| probe_region(gpu, &RegionCase { is_sun, ray_offset, ..REGION }).cut;
+        let room = of(ray_offset) - of(0.0);
+        let want = Vec3::new(0.0, 0.0, 2.0 * ray_offset * metres_per_direction * REGION.normal.length());
         assert!(room.distance(want) < 1e-5, "sun {is_sun}: {room}, not {want}");
     }
 }

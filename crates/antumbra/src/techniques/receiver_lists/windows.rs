@@ -27,7 +27,7 @@ pub(crate) struct Windows {
 const FLATTEST: f32 = 1e-3;
 
 /// Largest tangent off its centre that one window covers: beyond, texels at its edge are far smaller than at its centre.
-const MOST_TANGENT: f32 = 2.0;
+const MAX_TANGENT: f32 = 2.0;
 
 impl Windows {
     pub(crate) fn towards(
@@ -89,7 +89,7 @@ fn axis_to(receivers: &PreparedReceivers<'_>, from: Vec3) -> Option<Vec3> {
     let axis = directions.iter().sum::<Vec3>().try_normalize()?;
     let is_inside = |direction: &Vec3| {
         let depth = direction.dot(axis);
-        depth > 0.0 && (direction - depth * axis).length() < MOST_TANGENT * depth
+        depth > 0.0 && (direction - depth * axis).length() < MAX_TANGENT * depth
     };
     directions.iter().all(is_inside).then_some(axis)
 }

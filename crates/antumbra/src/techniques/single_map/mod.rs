@@ -8,7 +8,7 @@ use crate::gpu::{
     Bindings, Cached, Embeddable, EmbeddedGroup, Gpu, GpuStruct, Recorder, Stage, TableKey, bindings, create_uniform,
     shared_table, upload_storage, write_uniform,
 };
-use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
+use crate::light_map::map::{LightMap, MapSearch, MapSettings, PreparedMap};
 use crate::mask::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::receivers::inputs::FrameInputs;
 
@@ -52,7 +52,7 @@ impl KernelPoints<'_> {
 /// Settings of a frame's resolve pass.
 pub(crate) struct ResolvePass<'a> {
     /// Settings of the library's own map; unused with a host's map.
-    pub(crate) map: OwnMapSettings,
+    pub(crate) map: MapSettings,
     /// Values of the shader's override constants, by name.
     pub(crate) constants: &'a [(&'static str, f64)],
     /// Whether only every other pixel is resolved, plus the pixels that interpolation would get wrong.
@@ -61,7 +61,7 @@ pub(crate) struct ResolvePass<'a> {
 
 impl ResolvePass<'_> {
     /// Pass over every pixel with a shader without constants.
-    pub(crate) fn of(map: OwnMapSettings) -> Self {
+    pub(crate) fn of(map: MapSettings) -> Self {
         Self { map, constants: &[], is_sparse: false }
     }
 }

@@ -9,13 +9,13 @@ use glam::UVec2;
 
 use super::basis_texture::{BasisPass, BasisTexture};
 use super::gpu_types::SoftUniform;
-use super::table_fit::{LEAST_TILE, TableFit};
+use super::table_fit::{MIN_TILE, TableFit};
 use super::texture::written;
 use super::{Basis, Filter, SoftDesign, SoftSettings, Specialisation};
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{Bindings, Gpu, Recorder, Scratch, Stage, bindings, create_uniform, texels, write_uniform};
 use crate::light_map::light_spread::LightSpread;
-use crate::light_map::map::{LightMap, MapSearch, OwnMapSettings, PreparedMap};
+use crate::light_map::map::{LightMap, MapSearch, MapSettings, PreparedMap};
 use crate::mask::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::receivers::inputs::FrameInputs;
 use crate::shaders;
@@ -94,7 +94,7 @@ impl SoftFilter {
     pub(crate) fn new(gpu: &Gpu, technique: &'static str) -> Self {
         let params_layout = SoftBindings::layout(gpu);
         let uniform = create_uniform::<SoftUniform>(gpu, "antumbra soft parameters");
-        let params_group = SoftBindings { soft: &uniform }.kept_group(gpu, &params_layout);
+        let params_group = SoftBindings { soft: &uniform }.cached_group(gpu, &params_layout);
         let no_tiles = written("antumbra no tiles", wgpu::TextureFormat::Rgba32Float, UVec2::ONE, 1);
         let no_tiles = gpu.device.create_texture(&no_tiles);
         Self {
@@ -188,10 +188,10 @@ impl SoftFilter {
         design: SoftDesign,
         settings: &SoftSettings,
     ) -> Result<PreparedSoft, Error> {
-        let own = OwnMapSettings {
+        let own = MapSettings {
             window: settings.window,
-            more_bytes_per_texel: bytes_per_texel(design),
-            ..OwnMapSettings::square(settings.map_size)
+            derived_bytes_per_texel: bytes_per_texel(design),
+            ..MapSettings::square(settings.map_size)
         };
         let map = self.map.prepare(stage, frame, own)?;
         let made = self.passes.take().filter(|passes| passes.design == design);
@@ -291,7 +291,7 @@ impl SoftFilter {
 
 /// Creates the tile planes of a map of `size`, enough for the smallest tiles: tile sizes change while a light moves.
 fn tile_planes(stage: &Stage<'_>, size: UVec2) -> (Arc<wgpu::Texture>, wgpu::TextureView) {
-    let count = size.map(|n| n.div_ceil(LEAST_TILE));
+    let count = size.map(|n| n.div_ceil(MIN_TILE));
     let descriptor = written("antumbra tile planes", wgpu::TextureFormat::Rgba32Float, count, 1);
     let planes = stage.device.scratch_texture(Scratch::TilePlanes, &descriptor);
     let view = stage.create_view(&planes, &wgpu::TextureViewDescriptor::default());

@@ -12,17 +12,17 @@ shared_constants! {
 }
 
 /// Smallest tile with a plane of its own, texels: smaller ones would cut most pieces.
-pub(super) const LEAST_TILE: u32 = 32;
+pub(super) const MIN_TILE: u32 = 32;
 
 /// Minimum number of tiles along a side of a map, so that enough workgroups sum them.
-const LEAST_TILES: u32 = 8;
+const MIN_TILES: u32 = 8;
 
 /// Minimum bits of a value in a table over the whole map, for kernels that are cut: a kernel too wide for them gets more
 /// pieces. With two bits fewer the error of `evssm` is half as large again on `builtin:hall`.
-const LEAST_BITS: u32 = 16;
+const MIN_BITS: u32 = 16;
 
 /// Largest value for which a tile of [`BLOCK`]² texels sums to less than 2³².
-const MOST_OF_A_TILE: u32 = u32::MAX / (BLOCK * BLOCK);
+const MAX_OF_A_TILE: u32 = u32::MAX / (BLOCK * BLOCK);
 
 /// Parameters of a frame's tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,8 +45,8 @@ impl TableFit {
         let tiling = design.tiling();
         let tile_side = match tiling {
             Tiling::Tiles => {
-                let most = (map.size_px.min_element() / LEAST_TILES).max(1).next_power_of_two();
-                (part_texels as u32).next_power_of_two().min(most).clamp(LEAST_TILE, MAX_TILE)
+                let most = (map.size_px.min_element() / MIN_TILES).max(1).next_power_of_two();
+                (part_texels as u32).next_power_of_two().min(most).clamp(MIN_TILE, MAX_TILE)
             }
             Tiling::Whole | Tiling::Chosen => 0,
         };
@@ -57,14 +57,14 @@ impl TableFit {
             Tiling::Chosen => (0, (part_texels * part_texels).log2().ceil() as u32),
         };
         let is_cut = matches!(tiling, Tiling::Whole) && settings.subdivisions > 1;
-        let least_bits = if is_cut { LEAST_BITS } else { 8 };
-        let bits = settings.value_bits.unwrap_or(32u32.saturating_sub(summed_log2).max(least_bits)).clamp(8, 24);
+        let min_bits = if is_cut { MIN_BITS } else { 8 };
+        let bits = settings.value_bits.unwrap_or(32u32.saturating_sub(summed_log2).max(min_bits)).clamp(8, 24);
         let is_float = design.sums() == Sums::Float;
         // As published, 1 is stored as 2^μ. A piece of nothing but ones must still fit when sums wrap, and the smallest tile of
         // nothing but ones must sum to less than 2³².
         let value_scale = match (is_float, settings.value_bits) {
             (true, _) => 1.0,
-            (false, Some(_)) => (1u32 << bits).min(MOST_OF_A_TILE) as f32,
+            (false, Some(_)) => (1u32 << bits).min(MAX_OF_A_TILE) as f32,
             (false, None) => ((1u32 << bits) - 1) as f32,
         };
         let is_per_texel = design.basis == Basis::Tiles;

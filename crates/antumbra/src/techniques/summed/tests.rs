@@ -165,13 +165,13 @@ fn what_a_penumbra_pixel_reads_does_not_grow_with_the_light() {
             );
             let growth = large.reads() / small.reads();
             assert!((growth - 1.0).abs() < 0.25, "{spec}, {map_size}: {} and {} reads", small.reads(), large.reads());
-            assert!(large.reads() < MOST_READS, "{spec}, {map_size}: {} reads", large.reads());
+            assert!(large.reads() < MAX_READS, "{spec}, {map_size}: {} reads", large.reads());
         }
     }
 }
 
 /// Maximum number of reads with one search. A second adds at most 150 to the search, and as many again to the kernel.
-const MOST_READS: f32 = 270.0;
+const MAX_READS: f32 = 270.0;
 
 /// Reads do not grow under round lights either, where every pixel is penumbra. An ellipse's kernel reads no more than the
 /// enclosing rectangle's. Covers one technique of exponentials and one of variances; the others use the same shader.
@@ -367,7 +367,7 @@ fn penumbra_error(rows: &[EllipseRow], turn_rad: f32) -> f32 {
 }
 
 /// CPU reference of the search, which reads every texel.
-struct Twin<'a> {
+struct CpuReference<'a> {
     view: LightViewGpu,
     stored: &'a [f32],
     size: u32,
@@ -381,7 +381,7 @@ fn columns_of(m: [f32; 4]) -> [Vec2; 2] {
     [Vec2::new(m[0], m[1]), Vec2::new(m[2], m[3])]
 }
 
-impl Twin<'_> {
+impl CpuReference<'_> {
     /// Returns the blockers' mean g at a point of the ground, and the blocked fraction; `search_g` is the widest window's.
     fn blockers(&self, point: Vec3, search_g: f32) -> (f32, f32) {
         let view = &self.view;
@@ -462,7 +462,7 @@ fn mean_blocker_depths_are_those_of_every_texel() {
         let had = staged.run(gpu, &mut filter, light, casters, &params);
         let stored: Vec<f32> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &map, 0, UVec2::splat(MAP)));
         let depth: Vec<f32> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &staged.depth, 0, SIZE));
-        let twin = Twin {
+        let cpu_reference = CpuReference {
             view: light_view.to_gpu(MAP),
             stored: &stored,
             size: MAP,
@@ -482,7 +482,7 @@ fn mean_blocker_depths_are_those_of_every_texel() {
             if depth == 0.0 || point.y.abs() > 1e-3 || share <= 0.0 {
                 continue;
             }
-            let (exact_g, exact_share) = twin.blockers(point, search_g);
+            let (exact_g, exact_share) = cpu_reference.blockers(point, search_g);
             if exact_share <= 0.0 {
                 continue;
             }

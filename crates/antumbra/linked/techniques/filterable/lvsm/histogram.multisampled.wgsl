@@ -4,14 +4,14 @@ struct LvsmHistogramUniform {
     stride: u32,
     overlap: f32,
     kernel_size: f32,
-    least_weight: f32,
-    most_weight: f32,
+    min_weight: f32,
+    max_weight: f32,
     padding_x: u32,
     padding_y: u32,
     padding_z: u32
 }
 
-override AS_PRINTED: bool = false;
+override AS_PUBLISHED: bool = false;
 
 override COUNTS_BACKGROUND: bool = false;
 
@@ -25,11 +25,11 @@ var<uniform> neighbourhoods: LvsmHistogramUniform;
 @group(1) @binding(1)
 var<storage, read_write> histogram: array<atomic<u32>>;
 
-const MOST_STRIDE = 16u;
+const MAX_STRIDE = 16u;
 
 @compute @workgroup_size(8, 8)
 fn gather(@builtin(global_invocation_id) id: vec3u) {
-    let stride = min(neighbourhoods.stride, MOST_STRIDE);
+    let stride = min(neighbourhoods.stride, MAX_STRIDE);
     for (var y = 0u; y < stride; y++) {
         for (var x = 0u; x < stride; x++) {
             gather_at(id.xy * neighbourhoods.stride + vec2u(x, y), WEIGHT_SCALE / f32(stride * stride));
@@ -49,10 +49,10 @@ fn gather_at(first: vec2u, scale: f32) {
     let mean = dot(t, vec4f(0.25));
     let off = t - mean;
     let variance = dot(off, off) * 0.25;
-    let counted = select(min(variance, neighbourhoods.most_weight), 0.0, variance < neighbourhoods.least_weight);
+    let counted = select(min(variance, neighbourhoods.max_weight), 0.0, variance < neighbourhoods.min_weight);
     let weight = u32(counted * scale + 0.5);
     if weight > 0u {
-        let second = min(mean + sqrt(variance), select(deepest, 1.0, AS_PRINTED));
+        let second = min(mean + sqrt(variance), select(deepest, 1.0, AS_PUBLISHED));
         atomicAdd(&histogram[min(u32(second * BIN_COUNT), u32(BIN_COUNT) - 1u)], weight);
     }
 }
@@ -73,7 +73,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }

@@ -30,7 +30,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }

@@ -150,11 +150,11 @@ fn visibility_of(table: LifeTable) -> f32 {
 }
 
 fn segment_start(receiver: inputs_Receiver, displacement: bias_Displacement) -> vec3f {
-    let hair_m = HAIR_ROUNDINGS * displacement.rounding_m + inputs_OFFSET_SNAPS * displacement.snapped_m + displacement.matrix_m;
-    return receiver.pos_in_world + sample_views_batch.bias_scale * hair_m * receiver.normal_in_world;
+    let ray_offset_m = RAY_OFFSET_ROUNDINGS * displacement.rounding_m + inputs_OFFSET_SNAPS * displacement.snapped_m + displacement.matrix_m;
+    return receiver.pos_in_world + sample_views_batch.bias_scale * ray_offset_m * receiver.normal_in_world;
 }
 
-const HAIR_ROUNDINGS = 16.0;
+const RAY_OFFSET_ROUNDINGS = 16.0;
 
 fn accumulate_pixel(id: vec2u, receiver: inputs_Receiver) {
     let index = band_index_in_band(id, inputs_receiver_view.size_px.x);
@@ -233,13 +233,13 @@ struct walk_Meeting {
     t: f32
 }
 
-const walk_MOST_STEPS = 8u;
+const walk_MAX_STEPS = 8u;
 
 fn walk_meeting(segment: walk_Segment, first: u32) -> walk_Meeting {
     var result = walk_Meeting(walk_STAYS_ASIDE, 0.0);
     var at = first;
     var passed = vec3f();
-    for (var step = 0u; step < walk_MOST_STEPS && at != triangles_NO_NEIGHBOUR; step++) {
+    for (var step = 0u; step < walk_MAX_STEPS && at != triangles_NO_NEIGHBOUR; step++) {
         let word_a = walk_caster_triangles[3u * at];
         let word_b = walk_caster_triangles[3u * at + 1u];
         let word_c = walk_caster_triangles[3u * at + 2u];
@@ -286,7 +286,7 @@ fn walk_meeting(segment: walk_Segment, first: u32) -> walk_Meeting {
             at = word_b.w;
             passed = -n_b;
         }
-        if step + 1u == walk_MOST_STEPS && at != triangles_NO_NEIGHBOUR {
+        if step + 1u == walk_MAX_STEPS && at != triangles_NO_NEIGHBOUR {
             result.kind = walk_GOES_ON;
         }
     }
@@ -309,7 +309,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -365,7 +365,7 @@ fn space_receiver_plane(view: space_LightViewGpu, x: vec3f, normal_in_world: vec
     return space_receiver_plane_within(view, x, normal_in_world, bias_m, space_min_grazing_sine(view));
 }
 
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, min_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -378,14 +378,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
+        let k_min = min_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
         faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        let nz = select(max(n.z, min_sine), min(n.z, -min_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
         faces_away = n.z > 0.0;
     }
@@ -647,7 +647,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -665,11 +665,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -696,10 +696,10 @@ var<uniform> bias_snapped_texels: f32;
 
 const bias_BIAS_SHARE = 0.03;
 
-const bias_LEAST_SNAPPED_TEXELS = 0.004;
+const bias_MIN_SNAPPED_TEXELS = 0.004;
 
 fn bias_texels_to_allow() -> f32 {
-    return max(bias_LEAST_SNAPPED_TEXELS, bias_snapped_texels);
+    return max(bias_MIN_SNAPPED_TEXELS, bias_snapped_texels);
 }
 
 struct bias_Displacement {

@@ -78,9 +78,9 @@ override splat_IS_AFFINE: bool = false;
 
 override splat_TRIES_FACES: bool = false;
 
-const splat_MOST_TEXELS = 16.0;
+const splat_MAX_TEXELS = 16.0;
 
-const splat_MOST_COVERED = 1089u;
+const splat_MAX_COVERED = 1089u;
 
 @group(2) @binding(0)
 var<uniform> splat_batch: splat_SplatBatch;
@@ -123,7 +123,7 @@ fn splat_scatter_surfel(m: mat4x4f, map: u32, pos: vec2f, depth: f32, gradient: 
         p = h.xy / h.w;
         extent = (abs(a.xy - p * a.w) + abs(b.xy - p * b.w)) * (reach / h.w);
     }
-    let half_extent = min(extent, vec2f(splat_MOST_TEXELS));
+    let half_extent = min(extent, vec2f(splat_MAX_TEXELS));
     let low = max(ceil(p - half_extent - 0.5), vec2f(0.0));
     let high = min(floor(p + half_extent - 0.5), vec2f(f32(splat_batch.view_size) - 1.0));
     if any(low > high) {
@@ -132,7 +132,7 @@ fn splat_scatter_surfel(m: mat4x4f, map: u32, pos: vec2f, depth: f32, gradient: 
     let first = splat_first_texel(map);
     let row_texels = splat_batch.row_texels;
     var texel = low;
-    for (var i = 0u; i < splat_MOST_COVERED; i++) {
+    for (var i = 0u; i < splat_MAX_COVERED; i++) {
         let c = texel + 0.5;
         var ac = a.xy;
         var bc = b.xy;

@@ -69,7 +69,7 @@ fn world_box(box: nodes_Box, world_from_object: mat4x4f) -> nodes_Box {
     return nodes_Box(middle - across, middle + across);
 }
 
-const LEAST_VOLUME = 0.01;
+const MIN_VOLUME = 0.01;
 
 @compute @workgroup_size(64)
 fn list_instances(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
@@ -91,7 +91,7 @@ fn list_instances(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgro
     let unit_y = y / safe.y;
     let unit_z = z / safe.z;
     let volume = dot(unit_x, cross(unit_y, unit_z));
-    let is_flat = !(abs(volume) >= LEAST_VOLUME) || any(lengths < vec3f(1e-20));
+    let is_flat = !(abs(volume) >= MIN_VOLUME) || any(lengths < vec3f(1e-20));
     let divisor = select(volume, 1.0, is_flat);
     var rows = array<vec3f, 3>(cross(unit_y, unit_z) / (divisor * safe.x), cross(unit_z, unit_x) / (divisor * safe.y), cross(unit_x, unit_y) / (divisor * safe.z));
     let place = world_from_object[3].xyz;

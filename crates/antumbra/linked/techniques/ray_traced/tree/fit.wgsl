@@ -10,7 +10,7 @@ fn word_of(segment: shape_Segment, node: u32) -> u32 {
 
 fn first_of_node(segment: shape_Segment, node: u32) -> u32 {
     var word = word_of(segment, node);
-    for (var depth = 0u; depth < links_MOST_DEPTH; depth++) {
+    for (var depth = 0u; depth < links_MAX_DEPTH; depth++) {
         if nodes_is_leaf(word) {
             break;
         }
@@ -63,7 +63,7 @@ var<storage, read_write> boxes_pyramid: array<vec4f>;
 
 const boxes_GROUP = 8u;
 
-const boxes_MOST_LEVELS = 10u;
+const boxes_MAX_LEVELS = 10u;
 
 fn boxes_level_count(count_below: u32) -> u32 {
     return (count_below + boxes_GROUP - 1u) / boxes_GROUP;
@@ -88,7 +88,7 @@ fn boxes_box_of_run(begin: u32, end: u32) -> nodes_Box {
     var b = end;
     var first = 0u;
     var count = shape_shape.item_count;
-    for (var level = 0u; level < boxes_MOST_LEVELS; level++) {
+    for (var level = 0u; level < boxes_MAX_LEVELS; level++) {
         for (var k = 0u; k < boxes_GROUP; k++) {
             if a >= b || a % boxes_GROUP == 0u {
                 break;
@@ -117,7 +117,7 @@ fn boxes_box_of_run(begin: u32, end: u32) -> nodes_Box {
 @group(0) @binding(6)
 var<storage, read_write> frames_nodes: array<vec4u>;
 
-const links_MOST_DEPTH = 64u;
+const links_MAX_DEPTH = 64u;
 
 const nodes_LEAF = 2147483648u;
 

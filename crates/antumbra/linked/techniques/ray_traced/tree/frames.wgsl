@@ -30,7 +30,7 @@ var<storage, read_write> boxes_pyramid: array<vec4f>;
 
 const boxes_GROUP = 8u;
 
-const boxes_MOST_LEVELS = 10u;
+const boxes_MAX_LEVELS = 10u;
 
 fn boxes_level_count(count_below: u32) -> u32 {
     return (count_below + boxes_GROUP - 1u) / boxes_GROUP;
@@ -55,7 +55,7 @@ fn boxes_box_of_run(begin: u32, end: u32) -> nodes_Box {
     var b = end;
     var first = 0u;
     var count = shape_shape.item_count;
-    for (var level = 0u; level < boxes_MOST_LEVELS; level++) {
+    for (var level = 0u; level < boxes_MAX_LEVELS; level++) {
         for (var k = 0u; k < boxes_GROUP; k++) {
             if a >= b || a % boxes_GROUP == 0u {
                 break;

@@ -6,7 +6,7 @@ fn make_level(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups)
     var first_below = 0u;
     var first = 0u;
     var count_below = shape_shape.item_count;
-    for (var below = 1u; below < min(level, boxes_MOST_LEVELS); below++) {
+    for (var below = 1u; below < min(level, boxes_MAX_LEVELS); below++) {
         count_below = boxes_level_count(count_below);
         first_below = first;
         first += count_below;
@@ -37,7 +37,7 @@ var<storage, read_write> boxes_pyramid: array<vec4f>;
 
 const boxes_GROUP = 8u;
 
-const boxes_MOST_LEVELS = 10u;
+const boxes_MAX_LEVELS = 10u;
 
 fn boxes_level_count(count_below: u32) -> u32 {
     return (count_below + boxes_GROUP - 1u) / boxes_GROUP;

@@ -8,7 +8,7 @@ fn write_node(segment: shape_Segment, run: links_Run, parent: u32, most: u32) {
     var index = 2u * leaves_before;
     var above = parent;
     var first = run.first;
-    for (var depth = 0u; depth < links_MOST_DEPTH; depth++) {
+    for (var depth = 0u; depth < links_MAX_DEPTH; depth++) {
         if above == links_NONE {
             break;
         }
@@ -60,7 +60,7 @@ var<storage, read_write> links_nodes: array<vec4u>;
 
 const links_NONE = 4294967295u;
 
-const links_MOST_DEPTH = 64u;
+const links_MAX_DEPTH = 64u;
 
 struct links_Run {
     first: u32,

@@ -60,7 +60,7 @@ fn evaluate(@builtin(workgroup_id) group_id: vec3u, @builtin(num_workgroups) gro
     let pixel_index = list[min(first_slot + lane, listed - 1u)];
     let pixel = bits_pixel_of(pixel_index);
     let receiver = inputs_load_receiver(pixel);
-    let sight = sight_sight_of(bits_settings, pixel, receiver);
+    let sight = sight_shadow_segments_of(bits_settings, pixel, receiver);
     group_share_box_and_shaft(lane, receiver.pos_in_world);
     waiting_clear_waiting(lane);
     workgroupBarrier();
@@ -397,7 +397,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -415,11 +415,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -722,7 +722,7 @@ fn open_points_weight_of_open() -> f32 {
 @group(1) @binding(9)
 var<storage, read> test_triangles_light_cells: array<vec4f>;
 
-const test_triangles_MOST_ROWS = 4u;
+const test_triangles_MAX_ROWS = 4u;
 
 override test_triangles_USES_TABLE: bool = false;
 
@@ -732,12 +732,12 @@ struct test_triangles_Grid {
     low: vec2f,
     cells_per_m: vec2f,
     across: u32,
-    most_cells: u32,
+    max_cells: u32,
     point_count: u32
 }
 
 fn test_triangles_grid_of_cells() -> test_triangles_Grid {
-    return test_triangles_Grid(bits_light_words[0].xy - bits_light_words[1].xy, vec2f(bits_light_words[0].w, bits_light_words[1].w), bits_settings.cells_across, bits_settings.most_cells, bits_settings.point_count);
+    return test_triangles_Grid(bits_light_words[0].xy - bits_light_words[1].xy, vec2f(bits_light_words[0].w, bits_light_words[1].w), bits_settings.cells_across, bits_settings.max_cells, bits_settings.point_count);
 }
 
 fn test_triangles_first_in_cell(grid: test_triangles_Grid, cell: u32) -> u32 {
@@ -762,7 +762,7 @@ fn test_triangles_test_point(index: u32, planes: triangle_test_Planes, flags: u3
     }
 }
 
-fn test_triangles_test_few(index: u32, sight: sight_Sight, window: shadow_window_LightWindow, grid: test_triangles_Grid, middle: vec3f, half_box: vec3f) {
+fn test_triangles_test_few(index: u32, sight: sight_ShadowSegments, window: shadow_window_LightWindow, grid: test_triangles_Grid, middle: vec3f, half_box: vec3f) {
     let triangle = waiting_waiting_at(index, sight);
     let cells = test_triangles_cells_of(grid, shadow_window_shadow_box(window, sight.axis, triangle.x, triangle.a, triangle.b, triangle.c));
     let planes = waiting_planes_of_waiting(triangle, sight, middle, half_box);
@@ -782,7 +782,7 @@ fn test_triangles_test_few(index: u32, sight: sight_Sight, window: shadow_window
     }
 }
 
-fn test_triangles_test_many(index: u32, sight: sight_Sight, middle: vec3f, half_box: vec3f, axes: lookup_index_LookupAxes, is_single: bool) {
+fn test_triangles_test_many(index: u32, sight: sight_ShadowSegments, middle: vec3f, half_box: vec3f, axes: lookup_index_LookupAxes, is_single: bool) {
     let triangle = waiting_waiting_at(index, sight);
     let planes = waiting_planes_of_waiting(triangle, sight, middle, half_box);
     if planes.is_missed {
@@ -826,8 +826,8 @@ fn test_triangles_test_many(index: u32, sight: sight_Sight, middle: vec3f, half_
     }
 }
 
-fn test_triangles_test_block(block: u32, sight: sight_Sight, is_single: bool) {
-    let count = min(atomicLoad(&waiting_waiting_count), waiting_MOST_WAITING);
+fn test_triangles_test_block(block: u32, sight: sight_ShadowSegments, is_single: bool) {
+    let count = min(atomicLoad(&waiting_waiting_count), waiting_MAX_WAITING);
     let middle = bits_light_words[0].xyz;
     var half_box = bits_light_words[1].xyz;
     let axes = lookup_index_LookupAxes(middle, half_box);
@@ -850,7 +850,7 @@ fn test_triangles_test_block(block: u32, sight: sight_Sight, is_single: bool) {
             let is_near = !shadow.is_beside && (!shadow.is_bounded || (all(shadow.low <= middle.xy + half_box.xy) && all(shadow.high >= middle.xy - half_box.xy)));
             let cells = test_triangles_cells_of(grid, shadow);
             let touched = cells.high - cells.low + 1u;
-            let is_few = takes_few && shadow.is_bounded && touched.x * touched.y <= grid.most_cells && touched.y <= test_triangles_MOST_ROWS;
+            let is_few = takes_few && shadow.is_bounded && touched.x * touched.y <= grid.max_cells && touched.y <= test_triangles_MAX_ROWS;
             few |= select(0u, 1u << k, is_near && is_few);
             many |= select(0u, 1u << k, is_near && !is_few);
         }
@@ -867,10 +867,10 @@ fn test_triangles_test_block(block: u32, sight: sight_Sight, is_single: bool) {
 }
 
 fn test_triangles_turns_of(triangle_count: u32, is_single: bool) -> u32 {
-    return 36u + 2u * bits_settings.word_count + triangle_count * select(bits_settings.turns_per_triangle, 2u, is_single);
+    return 36u + 2u * bits_settings.word_count + triangle_count * select(bits_settings.iterations_per_triangle, 2u, is_single);
 }
 
-fn test_triangles_test_waiting_triangles(lane: u32, is_live: bool, sight: sight_Sight, is_single: bool) -> bool {
+fn test_triangles_test_waiting_triangles(lane: u32, is_live: bool, sight: sight_ShadowSegments, is_single: bool) -> bool {
     let word_count = select(bits_settings.word_count, 1u, is_single);
     if lane == 0u {
         atomicStore(&test_triangles_open_count, 0u);
@@ -888,17 +888,17 @@ fn test_triangles_test_waiting_triangles(lane: u32, is_live: bool, sight: sight_
     return workgroupUniformLoad(&test_triangles_open_count) == 0u;
 }
 
-const waiting_MOST_WAITING = 128u;
+const waiting_MAX_WAITING = 128u;
 
 const waiting_WAITING_WORDS = 4u;
 
 var<workgroup> waiting_waiting_count: atomic<u32>;
 
-var<workgroup> waiting_waiting: array<vec4f, 3u * waiting_MOST_WAITING>;
+var<workgroup> waiting_waiting: array<vec4f, 3u * waiting_MAX_WAITING>;
 
 var<workgroup> waiting_block_waiting: array<atomic<u32>, waiting_WAITING_WORDS * group_BLOCKS>;
 
-var<workgroup> waiting_waiting_source: array<u32, waiting_MOST_WAITING>;
+var<workgroup> waiting_waiting_source: array<u32, waiting_MAX_WAITING>;
 
 fn waiting_clear_waiting(lane: u32) {
     if lane < waiting_WAITING_WORDS * group_BLOCKS {
@@ -927,7 +927,7 @@ struct waiting_Waiting {
     depth_error_m: vec3f
 }
 
-fn waiting_waiting_at(index: u32, sight: sight_Sight) -> waiting_Waiting {
+fn waiting_waiting_at(index: u32, sight: sight_ShadowSegments) -> waiting_Waiting {
     let a = waiting_waiting[3u * index];
     let flags = u32(a.w);
     let is_closed = (flags & settings_FLAG_CLOSED) != 0u;
@@ -935,7 +935,7 @@ fn waiting_waiting_at(index: u32, sight: sight_Sight) -> waiting_Waiting {
     return waiting_Waiting(a.xyz, b.xyz, waiting_waiting[3u * index + 2u].xyz, flags, is_closed, sight_origin_of(sight, is_closed), b.w * sight.depth_error_m);
 }
 
-fn waiting_planes_of_waiting(triangle: waiting_Waiting, sight: sight_Sight, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
+fn waiting_planes_of_waiting(triangle: waiting_Waiting, sight: sight_ShadowSegments, middle: vec3f, half_box: vec3f) -> triangle_test_Planes {
     let rays = sight_rays_of(sight, triangle.is_closed);
     return triangle_test_planes_of(rays, triangle.x, triangle.a, triangle.b, triangle.c, triangle.is_closed, triangle.depth_error_m, middle, half_box);
 }
@@ -947,7 +947,7 @@ fn waiting_facing_of(triangle: waiting_Waiting, x: vec3f) -> u32 {
 
 fn waiting_meet_blocks(lane: u32) {
     let frame = group_shared_frame;
-    let count = min(atomicLoad(&waiting_waiting_count), waiting_MOST_WAITING);
+    let count = min(atomicLoad(&waiting_waiting_count), waiting_MAX_WAITING);
     for (var slot = lane; slot < count; slot += group_GROUP) {
         let a = block_shafts_in_frame(frame, waiting_waiting[3u * slot].xyz - frame.origin);
         let b = block_shafts_in_frame(frame, waiting_waiting[3u * slot + 1u].xyz - frame.origin);
@@ -1074,14 +1074,14 @@ struct walk_Outcome {
     is_single: bool
 }
 
-fn walk_walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first_cluster: u32, was_single: bool, searches: bool) -> walk_Outcome {
+fn walk_walk_triangles(lane: u32, is_live: bool, sight: sight_ShadowSegments, first_cluster: u32, was_single: bool, searches: bool) -> walk_Outcome {
     let extent = walk_extent_of_walks();
     var at = walk_walk_from(first_cluster, extent.supers);
     var waits = 0u;
     var is_search = searches;
     var is_single = was_single;
     var turns = 10u * bits_settings.word_count + group_BLOCK + group_BLOCKS + 8u;
-    for (var step = 0u; step < bits_settings.most_turns; step++) {
+    for (var step = 0u; step < bits_settings.max_iterations; step++) {
         let required = select(0u, settings_FLAG_SILHOUETTE, is_search);
         var is_last = false;
         turns += 8u;
@@ -1099,7 +1099,7 @@ fn walk_walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first_clust
         }
         waits = workgroupUniformLoad(&waiting_waiting_count);
         if is_search {
-            let is_long = turns > bits_settings.most_turns / 4u;
+            let is_long = turns > bits_settings.max_iterations / 4u;
             if waits > 0u || is_last || is_long {
                 is_single = waits == 0u && !is_long;
                 if is_single {
@@ -1115,8 +1115,8 @@ fn walk_walk_triangles(lane: u32, is_live: bool, sight: sight_Sight, first_clust
             }
             continue;
         }
-        let is_over = turns > bits_settings.most_turns;
-        if waits > waiting_MOST_WAITING - group_GROUP || is_last || is_over {
+        let is_over = turns > bits_settings.max_iterations;
+        if waits > waiting_MAX_WAITING - group_GROUP || is_last || is_over {
             turns += test_triangles_turns_of(waits, is_single);
             let is_dark = test_triangles_test_waiting_triangles(lane, is_live, sight, is_single);
             waits = 0u;
@@ -1306,9 +1306,9 @@ struct lookup_index_LookupAxes {
 
 const lookup_index_TAU = 6.283185307179586;
 
-const lookup_index_MOST_DISTANCE_FLAT = 1.4142135623730951;
+const lookup_index_MAX_DISTANCE_FLAT = 1.4142135623730951;
 
-const lookup_index_MOST_DISTANCE = 1.7320508075688772;
+const lookup_index_MAX_DISTANCE = 1.7320508075688772;
 
 fn lookup_index_lookup_texel(axes: lookup_index_LookupAxes, size: u32, plane: vec4f) -> vec3u {
     let n = f32(size);
@@ -1320,12 +1320,12 @@ fn lookup_index_lookup_texel(axes: lookup_index_LookupAxes, size: u32, plane: ve
     if axes.half_box.z == 0.0 {
         let angles = size * size / 4u;
         let angle = min(u32(azimuth * f32(angles)), angles - 1u);
-        let part = clamp(0.5 * (distance / lookup_index_MOST_DISTANCE_FLAT + 1.0), 0.0, 1.0);
+        let part = clamp(0.5 * (distance / lookup_index_MAX_DISTANCE_FLAT + 1.0), 0.0, 1.0);
         let index = angle + angles * min(u32(part * 4.0 * n), 4u * size - 1u);
         return vec3u(index % size, (index / size) % size, index / (size * size));
     }
     let polar = acos(clamp(normal.z, -1.0, 1.0)) / (0.5 * lookup_index_TAU);
-    let part = clamp(0.5 * (distance / lookup_index_MOST_DISTANCE + 1.0), 0.0, 1.0);
+    let part = clamp(0.5 * (distance / lookup_index_MAX_DISTANCE + 1.0), 0.0, 1.0);
     return min(vec3u(vec3f(azimuth, polar, part) * n), vec3u(size - 1u));
 }
 
@@ -1427,7 +1427,7 @@ fn points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
 var<uniform> ray_offset_snapped_texels: f32;
 
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
-    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
+    return settings.ray_offset_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 struct shadow_window_LightWindow {
@@ -1450,13 +1450,13 @@ struct shadow_window_ShadowBox {
     is_beside: bool
 }
 
-const shadow_window_MOST_TANGENT = 4.0;
+const shadow_window_MAX_TANGENT = 4.0;
 
 const shadow_window_WINDOW_SLACK = 3.0517578125e-5;
 
 const shadow_window_CONE_SLACK = 9.5367431640625e-7;
 
-fn shadow_window_light_window(rays: points_Rays, middle: vec3f, half_box: vec3f, hair: f32) -> shadow_window_LightWindow {
+fn shadow_window_light_window(rays: points_Rays, middle: vec3f, half_box: vec3f, ray_offset: f32) -> shadow_window_LightWindow {
     var window: shadow_window_LightWindow;
     window.right = rays.right;
     window.up = rays.up;
@@ -1467,13 +1467,13 @@ fn shadow_window_light_window(rays: points_Rays, middle: vec3f, half_box: vec3f,
     let depth = window.to_light.z;
     let reach = abs(window.to_light.xy + middle.xy) + half_box.xy;
     let tangent = (reach.x + reach.y) / max(depth, 1e-30);
-    window.slack = (shadow_window_WINDOW_SLACK * depth + hair) * (1.0 + tangent) * (1.0 + tangent);
-    window.has_cone = depth > 1.01 * half_box.z + 2.0 * hair;
-    window.is_before = window.has_cone && tangent < shadow_window_MOST_TANGENT;
+    window.slack = (shadow_window_WINDOW_SLACK * depth + ray_offset) * (1.0 + tangent) * (1.0 + tangent);
+    window.has_cone = depth > 1.01 * half_box.z + 2.0 * ray_offset;
+    window.is_before = window.has_cone && tangent < shadow_window_MAX_TANGENT;
     let low = window.to_light.xy + middle.xy - half_box.xy - window.slack;
     let high = window.to_light.xy + middle.xy + half_box.xy + window.slack;
-    let nearest = 1.0 / (depth - half_box.z - hair);
-    let farthest = 1.0 / (depth + half_box.z + hair);
+    let nearest = 1.0 / (depth - half_box.z - ray_offset);
+    let farthest = 1.0 / (depth + half_box.z + ray_offset);
     window.tangent_low = low * select(vec2f(farthest), vec2f(nearest), low < vec2f(0.0));
     window.tangent_high = high * select(vec2f(farthest), vec2f(nearest), high > vec2f(0.0));
     return window;
@@ -1488,7 +1488,7 @@ fn shadow_window_shadow_box(window: shadow_window_LightWindow, axis: vec3f, x: v
     let ahead = window.side * vec3f(dot(a, axis), dot(b, axis), dot(c, axis));
     let room = shadow_window_CONE_SLACK * (abs(across) + abs(upwards) + abs(ahead));
     let is_beside = window.has_cone && (all(across > window.tangent_high.x * ahead + room) || all(across < window.tangent_low.x * ahead - room) || all(upwards > window.tangent_high.y * ahead + room) || all(upwards < window.tangent_low.y * ahead - room) || all(ahead < -room));
-    let is_bounded = window.is_before && all(abs(across) + abs(upwards) < shadow_window_MOST_TANGENT * ahead);
+    let is_bounded = window.is_before && all(abs(across) + abs(upwards) < shadow_window_MAX_TANGENT * ahead);
     let tangent_across = across / ahead;
     let tangent_up = upwards / ahead;
     let low_across = tangent_across * window.to_light.z - abs(tangent_across) * window.half_depth;
@@ -1500,7 +1500,7 @@ fn shadow_window_shadow_box(window: shadow_window_LightWindow, axis: vec3f, x: v
     return shadow_window_ShadowBox(low - window.to_light.xy - window.slack, high - window.to_light.xy + window.slack, is_bounded, is_beside);
 }
 
-struct sight_Sight {
+struct sight_ShadowSegments {
     right: vec3f,
     up: vec3f,
     axis: vec3f,
@@ -1509,21 +1509,21 @@ struct sight_Sight {
     depth_error_m: vec3f
 }
 
-fn sight_sight_from(settings: settings_SampleSettings, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+fn sight_shadow_segments_from(settings: settings_SampleSettings, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_ShadowSegments {
     let rays = points_rays_from(settings, inputs_light_source, x, x, noise_noise_of_pixel(pixel));
-    return sight_Sight(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
+    return sight_ShadowSegments(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
 }
 
-fn sight_sight_of(settings: settings_SampleSettings, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
+fn sight_shadow_segments_of(settings: settings_SampleSettings, pixel: vec2u, receiver: inputs_Receiver) -> sight_ShadowSegments {
     let x = receiver.pos_in_world;
-    return sight_sight_from(settings, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
+    return sight_shadow_segments_from(settings, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
 }
 
-fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
+fn sight_origin_of(sight: sight_ShadowSegments, is_closed: bool) -> vec3f {
     return select(sight.x_open, sight.x, is_closed);
 }
 
-fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> points_Rays {
+fn sight_rays_of(sight: sight_ShadowSegments, is_closed: bool) -> points_Rays {
     let to_center = points_to_center_from(inputs_light_source, sight.axis, sight_origin_of(sight, is_closed));
     return points_Rays(to_center, sight.right, sight.up, sight.axis, points_inverse_end_of(inputs_light_source));
 }
@@ -1620,12 +1620,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,
@@ -1759,5 +1759,5 @@ fn work_progress_entry(settings: settings_SampleSettings, group_index: u32) -> u
 }
 
 fn work_queue_entry(settings: settings_SampleSettings, queue: u32, place: u32) -> u32 {
-    return work_FIRST_GROUP + (2u + queue) * settings.most_groups + place;
+    return work_FIRST_GROUP + (2u + queue) * settings.max_groups + place;
 }

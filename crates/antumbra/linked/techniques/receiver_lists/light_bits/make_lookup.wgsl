@@ -36,9 +36,9 @@ fn make_lookup(@builtin(global_invocation_id) id: vec3u) {
 
 const lookup_index_TAU = 6.283185307179586;
 
-const lookup_index_MOST_DISTANCE_FLAT = 1.4142135623730951;
+const lookup_index_MAX_DISTANCE_FLAT = 1.4142135623730951;
 
-const lookup_index_MOST_DISTANCE = 1.7320508075688772;
+const lookup_index_MAX_DISTANCE = 1.7320508075688772;
 
 struct lookup_index_LookupPlane {
     normal: vec3f,
@@ -51,12 +51,12 @@ fn lookup_index_lookup_plane(size: u32, is_flat: bool, cell: vec3u) -> lookup_in
         let angles = size * size / 4u;
         let index = cell.x + size * (cell.y + size * cell.z);
         let angle = lookup_index_TAU * (f32(index % angles) + 0.5) / f32(angles);
-        let distance = lookup_index_MOST_DISTANCE_FLAT * (2.0 * (f32(index / angles) + 0.5) / (4.0 * n) - 1.0);
+        let distance = lookup_index_MAX_DISTANCE_FLAT * (2.0 * (f32(index / angles) + 0.5) / (4.0 * n) - 1.0);
         return lookup_index_LookupPlane(vec3f(cos(angle), sin(angle), 0.0), distance);
     }
     let azimuth = lookup_index_TAU * (f32(cell.x) + 0.5) / n;
     let polar = 0.5 * lookup_index_TAU * (f32(cell.y) + 0.5) / n;
-    let distance = lookup_index_MOST_DISTANCE * (2.0 * (f32(cell.z) + 0.5) / n - 1.0);
+    let distance = lookup_index_MAX_DISTANCE * (2.0 * (f32(cell.z) + 0.5) / n - 1.0);
     return lookup_index_LookupPlane(vec3f(sin(polar) * cos(azimuth), sin(polar) * sin(azimuth), cos(polar)), distance);
 }
 
@@ -81,12 +81,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,

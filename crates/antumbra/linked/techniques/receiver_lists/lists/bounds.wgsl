@@ -7,14 +7,14 @@ fn bound_window(x: vec3f) {
     let index = windows_window_of(bindings_settings, p);
     let along = windows_along_axes_of(index, p);
     let direction = windows_direction_to(bindings_settings, along);
-    let hair = ray_offset_ray_offset_m(bindings_settings, x);
+    let ray_offset = ray_offset_ray_offset_m(bindings_settings, x);
     let first = settings_STATE_WINDOWS + settings_STATE_WINDOW_LENGTH * index;
     for (var axis = 0u; axis < 2u; axis++) {
         atomicMax(&group_state[first + axis], settings_sortable(direction[axis]));
         atomicMax(&group_state[first + 2u + axis], ~settings_sortable(direction[axis]));
     }
-    atomicMax(&group_state[first + 4u], settings_sortable(along.z + hair));
-    atomicMax(&group_state[first + 5u], settings_sortable(select(hair / max(along.z, 1e-30), hair, bindings_settings.projection == settings_PROJECT_PARALLEL)));
+    atomicMax(&group_state[first + 4u], settings_sortable(along.z + ray_offset));
+    atomicMax(&group_state[first + 5u], settings_sortable(select(ray_offset / max(along.z, 1e-30), ray_offset, bindings_settings.projection == settings_PROJECT_PARALLEL)));
 }
 
 @compute @workgroup_size(8, 8)
@@ -243,7 +243,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -261,11 +261,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -337,7 +337,7 @@ fn points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
 var<uniform> ray_offset_snapped_texels: f32;
 
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
-    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
+    return settings.ray_offset_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
 @group(1) @binding(0)
@@ -460,12 +460,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,

@@ -13,7 +13,7 @@ fn make_shaft() {
         }
         return;
     }
-    let room = 4.0 * ray_offset_most_ray_offset_m(bindings_settings, low, high);
+    let room = 4.0 * ray_offset_max_ray_offset_m(bindings_settings, low, high);
     let asked = shaft_Box(low - room, high + room);
     var light = shaft_Box(bindings_settings.light_min, bindings_settings.light_max);
     if inputs_light_source.kind == light_KIND_SUN {
@@ -232,7 +232,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -250,11 +250,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -320,12 +320,12 @@ fn points_reach_over(plane: vec4f, half_box: vec3f) -> f32 {
 @group(1) @binding(14)
 var<uniform> ray_offset_snapped_texels: f32;
 
-fn ray_offset_most_ray_offset_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
+fn ray_offset_max_ray_offset_m(settings: settings_SampleSettings, low: vec3f, high: vec3f) -> f32 {
     let across = distance(low, high);
     let distances = length(max(abs(low), abs(high))) + across + inputs_eye_distance_m(low);
     let row = inputs_receiver_view.clip_w_row;
     let most_w = abs(dot(row, vec4f(low, 1.0))) + length(row.xyz) * across;
-    return max(settings.hair_scale, 1.0) * (ray_offset_ROUNDING * distances + inputs_OFFSET_SNAPS * inputs_snapped_at_w(ray_offset_snapped_texels, most_w) + settings.matrix_rounding_m);
+    return max(settings.ray_offset_scale, 1.0) * (ray_offset_ROUNDING * distances + inputs_OFFSET_SNAPS * inputs_snapped_at_w(ray_offset_snapped_texels, most_w) + settings.matrix_rounding_m);
 }
 
 @group(1) @binding(0)
@@ -445,7 +445,7 @@ struct windows_Window {
     low: vec2f,
     scale: vec2f,
     depth: f32,
-    hair: f32,
+    ray_offset: f32,
     reach: f32
 }
 
@@ -486,10 +486,10 @@ fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
     return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
 }
 
-fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, ray_offset: f32) -> windows_Window {
     let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
     let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return windows_Window(low, f32(side) / size, depth, hair, reach);
+    return windows_Window(low, f32(side) / size, depth, ray_offset, reach);
 }
 
 fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
@@ -517,12 +517,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,

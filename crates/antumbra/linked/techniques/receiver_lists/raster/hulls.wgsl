@@ -21,7 +21,7 @@ const NEAREST_SQUARED = 1.01;
 
 const SAME = 0.001;
 
-const LEAST_TURN = 0.01;
+const MIN_TURN = 0.01;
 
 fn silhouette_corner(v: vec3f, corner: u32) -> vec4f {
     let along = cos(SIXTH_OF_TURN_RAD * f32(corner));
@@ -81,10 +81,10 @@ fn points_of(triangle: u32, window: windows_Window) -> Points {
         let terms = select((length(v) + length(l)) / beyond, length(v) + length(l) * (abs(v.z) + abs(window.depth)), is_parallel);
         slack = max(slack, region_DIRECTION_SLACK * reach + region_SHADOW_SLACK * terms);
         points.at[i] = windows_texel_at(window, at);
-        points.is_unbounded |= !all(abs(points.at[i] - 0.5 * side) < vec2f(region_MOST_SIDES * side));
+        points.is_unbounded |= !all(abs(points.at[i] - 0.5 * side) < vec2f(region_MAX_SIDES * side));
     }
     points.is_behind |= nearest > window.depth + 1e-5 * abs(window.depth);
-    points.slack = (slack + 2.0 * window.hair * (1.0 + window.reach)) * window.scale;
+    points.slack = (slack + 2.0 * window.ray_offset * (1.0 + window.reach)) * window.scale;
     return points;
 }
 
@@ -181,7 +181,7 @@ fn write_widened(first: u32, given: Hull, half: vec2f) {
         let corner_after = six_vertices_corner_in(quadrant_after);
         let sine = cross_of(before, after);
         last = half * (at + corner_before);
-        if turn == 1u && dot(before, after) > 0.0 && sine > LEAST_TURN {
+        if turn == 1u && dot(before, after) > 0.0 && sine > MIN_TURN {
             last = half * (at + corner_before + cross_of(corner_after - corner_before, after) / sine * before);
         }
         else if turn > 0u {
@@ -246,7 +246,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -265,7 +265,7 @@ struct windows_Window {
     low: vec2f,
     scale: vec2f,
     depth: f32,
-    hair: f32,
+    ray_offset: f32,
     reach: f32
 }
 
@@ -288,10 +288,10 @@ fn windows_along_axes_of(window: u32, p: vec3f) -> vec3f {
     return vec3f(turned.xy, select(turned.z, -turned.z, (window & 1u) == 1u));
 }
 
-fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, ray_offset: f32) -> windows_Window {
     let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
     let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return windows_Window(low, f32(side) / size, depth, hair, reach);
+    return windows_Window(low, f32(side) / size, depth, ray_offset, reach);
 }
 
 fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
@@ -310,7 +310,7 @@ fn influence_drawn_window() -> windows_Window {
     return windows_window_from(bits_settings.window_side, low, high, settings_unsortable(influence_state[first + 4u]), settings_unsortable(influence_state[first + 5u]));
 }
 
-const region_MOST_SIDES = 16.0;
+const region_MAX_SIDES = 16.0;
 
 const region_DIRECTION_SLACK = 7.62939453125e-6;
 
@@ -370,12 +370,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,

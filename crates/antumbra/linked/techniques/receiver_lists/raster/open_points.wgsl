@@ -15,7 +15,7 @@ fn raster_before(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgrou
     let pixel_index = list[slot];
     let pixel = bits_pixel_of(pixel_index);
     let receiver = inputs_load_receiver(pixel);
-    let sight = sight_sight_of(bits_settings, pixel, receiver);
+    let sight = sight_shadow_segments_of(bits_settings, pixel, receiver);
     let plane = points_plane_for(sight_rays_of(sight, true), receiver.normal_in_world);
     let first_word = bits_first_word_of(pixel_index);
     for (var word = 0u; word < bits_settings.word_count; word++) {
@@ -212,7 +212,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -230,11 +230,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -358,10 +358,10 @@ fn points_plane_for(rays: points_Rays, normal: vec3f) -> vec4f {
 var<uniform> ray_offset_snapped_texels: f32;
 
 fn ray_offset_ray_offset_m(settings: settings_SampleSettings, pos_in_world: vec3f) -> f32 {
-    return settings.hair_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
+    return settings.ray_offset_scale * ray_offset_ray_offset_from(pos_in_world, ray_offset_snapped_texels, settings.matrix_rounding_m);
 }
 
-struct sight_Sight {
+struct sight_ShadowSegments {
     right: vec3f,
     up: vec3f,
     axis: vec3f,
@@ -370,21 +370,21 @@ struct sight_Sight {
     depth_error_m: vec3f
 }
 
-fn sight_sight_from(settings: settings_SampleSettings, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_Sight {
+fn sight_shadow_segments_from(settings: settings_SampleSettings, pixel: vec2u, x: vec3f, x_open: vec3f) -> sight_ShadowSegments {
     let rays = points_rays_from(settings, inputs_light_source, x, x, noise_noise_of_pixel(pixel));
-    return sight_Sight(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
+    return sight_ShadowSegments(rays.right, rays.up, rays.axis, x, x_open, inputs_depth_error_m(x));
 }
 
-fn sight_sight_of(settings: settings_SampleSettings, pixel: vec2u, receiver: inputs_Receiver) -> sight_Sight {
+fn sight_shadow_segments_of(settings: settings_SampleSettings, pixel: vec2u, receiver: inputs_Receiver) -> sight_ShadowSegments {
     let x = receiver.pos_in_world;
-    return sight_sight_from(settings, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
+    return sight_shadow_segments_from(settings, pixel, x, x + ray_offset_ray_offset_m(settings, x) * receiver.normal_in_world);
 }
 
-fn sight_origin_of(sight: sight_Sight, is_closed: bool) -> vec3f {
+fn sight_origin_of(sight: sight_ShadowSegments, is_closed: bool) -> vec3f {
     return select(sight.x_open, sight.x, is_closed);
 }
 
-fn sight_rays_of(sight: sight_Sight, is_closed: bool) -> points_Rays {
+fn sight_rays_of(sight: sight_ShadowSegments, is_closed: bool) -> points_Rays {
     let to_center = points_to_center_from(inputs_light_source, sight.axis, sight_origin_of(sight, is_closed));
     return points_Rays(to_center, sight.right, sight.up, sight.axis, points_inverse_end_of(inputs_light_source));
 }
@@ -410,12 +410,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,

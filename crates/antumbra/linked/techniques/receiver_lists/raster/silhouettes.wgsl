@@ -26,7 +26,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -45,7 +45,7 @@ struct windows_Window {
     low: vec2f,
     scale: vec2f,
     depth: f32,
-    hair: f32,
+    ray_offset: f32,
     reach: f32
 }
 
@@ -72,10 +72,10 @@ fn windows_direction_to(settings: settings_SampleSettings, p: vec3f) -> vec2f {
     return select(p.xy / max(p.z, 1e-30), p.xy, settings.projection == settings_PROJECT_PARALLEL);
 }
 
-fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, ray_offset: f32) -> windows_Window {
     let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
     let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return windows_Window(low, f32(side) / size, depth, hair, reach);
+    return windows_Window(low, f32(side) / size, depth, ray_offset, reach);
 }
 
 fn windows_texel_at(window: windows_Window, direction: vec2f) -> vec2f {
@@ -185,7 +185,7 @@ struct region_Region {
     is_behind: bool
 }
 
-const region_MOST_SIDES = 16.0;
+const region_MAX_SIDES = 16.0;
 
 const region_DIRECTION_SLACK = 7.62939453125e-6;
 
@@ -234,13 +234,13 @@ fn region_region_of(settings: settings_SampleSettings, window: windows_Window, l
     let reach = max(window.reach, max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y))));
     let largest = max(abs(light.low), abs(light.high));
     let terms = select((length(v) + length(largest)) / beyond, length(v) + length(largest) * (abs(v.z) + abs(window.depth)), is_parallel);
-    let slack = region_DIRECTION_SLACK * reach + region_SHADOW_SLACK * terms + 2.0 * window.hair * (1.0 + window.reach);
+    let slack = region_DIRECTION_SLACK * reach + region_SHADOW_SLACK * terms + 2.0 * window.ray_offset * (1.0 + window.reach);
     let room = 0.5 + region_TEXEL_SLACK;
     region.low = windows_texel_at(window, low - slack) - room;
     region.high = windows_texel_at(window, high + slack) + room;
     let side = f32(settings.window_side);
     let middle = 0.5 * side;
-    region.is_unbounded = !(all(abs(region.low - middle) < vec2f(region_MOST_SIDES * side)) && all(abs(region.high - middle) < vec2f(region_MOST_SIDES * side)));
+    region.is_unbounded = !(all(abs(region.low - middle) < vec2f(region_MAX_SIDES * side)) && all(abs(region.high - middle) < vec2f(region_MAX_SIDES * side)));
     return region;
 }
 
@@ -355,7 +355,7 @@ fn supporting_plane_cut_of(settings: settings_SampleSettings, window: windows_Wi
     }
     let depth_across = select(window.depth, 1.0, is_parallel);
     let terms = window.reach * abs(depth_across) * (abs(normal.x) + abs(normal.y)) + abs(normal.z * window.depth) + dot(abs(normal), abs(a));
-    let slack = supporting_plane_CUT_SLACK * terms + 2.0 * length(normal) * window.hair * abs(depth_across);
+    let slack = supporting_plane_CUT_SLACK * terms + 2.0 * length(normal) * window.ray_offset * abs(depth_across);
     let per_texel = side * depth_across * normal.xy / window.scale;
     let at_low = side * (depth_across * dot(normal.xy, window.low) + normal.z * window.depth - height);
     return vec3f(-per_texel, slack - at_low + 0.5 * (abs(per_texel.x) + abs(per_texel.y)));
@@ -387,12 +387,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,

@@ -35,10 +35,10 @@ struct runs_TriangleRun {
 
 const runs_RUNS_LOG2 = 9u;
 
-const runs_MOST_RUNS = 1u << runs_RUNS_LOG2;
+const runs_MAX_RUNS = 1u << runs_RUNS_LOG2;
 
 @group(1) @binding(0)
-var<uniform> runs_runs: array<runs_TriangleRun, runs_MOST_RUNS>;
+var<uniform> runs_runs: array<runs_TriangleRun, runs_MAX_RUNS>;
 
 @group(1) @binding(1)
 var<storage, read> runs_mesh_positions: array<f32>;
@@ -60,7 +60,7 @@ struct runs_Triangle {
 fn runs_run_of(thread: u32) -> runs_TriangleRun {
     var run = 0u;
     for (var halving = 1u; halving <= runs_RUNS_LOG2; halving++) {
-        let step = runs_MOST_RUNS >> halving;
+        let step = runs_MAX_RUNS >> halving;
         if runs_runs[run + step].first_thread <= thread {
             run += step;
         }
@@ -107,12 +107,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,

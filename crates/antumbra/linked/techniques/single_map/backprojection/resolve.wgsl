@@ -11,8 +11,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let plane = receiver_light_biased_plane(receiver, map_receiver_TEXEL_BIAS * settings_backprojection.bias_scale);
     let pos_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
     let extent = blocker_range_seen_extent(settings_backprojection.light_extent, settings_backprojection.light_extent_axis, pos_in_light);
-    let most_g = blocker_range_largest_g(plane, extent);
-    if most_g <= 0.0 && horizon_has_horizon_share() {
+    let max_g = blocker_range_largest_g(plane, extent);
+    if max_g <= 0.0 && horizon_has_horizon_share() {
         return share;
     }
     let shift = select(vec2f(), noise_shift_of_pixel(pixel), settings_backprojection.rotate == 1u);
@@ -20,14 +20,14 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let texels = light_taps_texels_per_offset();
     let reach = abs(texels[0]) * extent.x + abs(texels[1]) * extent.y;
     let at = map_receiver_map_receiver(plane, pos_in_light.z);
-    var ring = squares_outermost(at, pos_in_light.z, reach, most_g, settings_backprojection.squares, shown_texel_shown_share(shift));
+    var ring = squares_outermost(at, pos_in_light.z, reach, max_g, settings_backprojection.squares, shown_texel_shown_share(shift));
     let whole = light_area_whole_of(light);
     var above = share * whole;
     if !horizon_has_horizon_share() {
         above = light_area_points_above_horizon(light);
     }
     var visible = above;
-    for (var i = 0u; i < squares_MOST_RINGS; i++) {
+    for (var i = 0u; i < squares_MAX_RINGS; i++) {
         if settings_IS_PATCHES {
             visible -= patches_enclosed_by_patches(light, ring);
         }
@@ -184,10 +184,10 @@ fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> sp
     return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
 }
 
-fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
-    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, min_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), min_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, min_sine);
 }
 
 struct space_LightViewGpu {
@@ -206,7 +206,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -282,7 +282,7 @@ fn space_uv_step_at(view: space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
     return space_uv_step_of_plane(view, in_warp);
 }
 
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, min_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -295,14 +295,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
+        let k_min = min_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
         faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        let nz = select(max(n.z, min_sine), min(n.z, -min_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
         faces_away = n.z > 0.0;
     }
@@ -318,7 +318,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
 }
 
 fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+    return select(1e30, 1.0 / max(view.complete_from_m, 1e-30) - 1.0 / z_m, view.complete_from_m > 0.0);
 }
 
 fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
@@ -526,7 +526,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -544,11 +544,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -675,7 +675,7 @@ fn light_area_points_beside(seen: light_area_SeenLight, p: vec2f, q: vec2f) -> f
     return select(-sum, sum, rise > 0.0);
 }
 
-fn light_area_least_facing(seen: light_area_SeenLight) -> f32 {
+fn light_area_min_facing(seen: light_area_SeenLight) -> f32 {
     let n = length(seen.light.nearness.xy) / max(1.0 - seen.light.center_nearness, 0.001);
     return 0.5 / (1.0 + n);
 }
@@ -685,14 +685,14 @@ fn light_area_facing_at(seen: light_area_SeenLight, p: vec2f) -> f32 {
 }
 
 fn light_area_on_this_side(seen: light_area_SeenLight, p: vec2f) -> vec2f {
-    let least = light_area_least_facing(seen);
+    let least = light_area_min_facing(seen);
     let beyond = least - light_area_facing_at(seen, p);
     let share = (1.0 - least) / (1.0 - least + max(beyond, 0.0));
     return seen.middle + share * (p - seen.middle);
 }
 
 fn light_area_crossing(seen: light_area_SeenLight, p: vec2f, q: vec2f) -> vec2f {
-    let ends = vec2f(light_area_facing_at(seen, p), light_area_facing_at(seen, q)) - light_area_least_facing(seen);
+    let ends = vec2f(light_area_facing_at(seen, p), light_area_facing_at(seen, q)) - light_area_min_facing(seen);
     let share = ends.x / (ends.x - select(ends.y, 0.0, ends.x == ends.y));
     return select(q, p + share * (q - p), (ends.x > 0.0) != (ends.y > 0.0));
 }
@@ -772,9 +772,9 @@ fn outlines_enclosed_between(light: light_area_SeenLight, ring: squares_Ring, fo
 fn outlines_enclosed_by_outlines(light: light_area_SeenLight, ring: squares_Ring) -> f32 {
     let count = squares_count_of(ring);
     var sum = 0.0;
-    for (var y = 0u; y + 1u < min(count.y, squares_MOST_SQUARES); y++) {
+    for (var y = 0u; y + 1u < min(count.y, squares_MAX_SQUARES); y++) {
         var left = vec2f();
-        for (var x = 0u; x + 1u < min(count.x, squares_MOST_SQUARES); x++) {
+        for (var x = 0u; x + 1u < min(count.x, squares_MAX_SQUARES); x++) {
             let right = vec2f(squares_g_in(ring, vec2u(x + 1u, y)), squares_g_in(ring, vec2u(x + 1u, y + 1u)));
             let four = outlines_four_of(ring, vec4f(left.x, right, left.y), squares_center_of(ring, vec2u(x, y)));
             if (four.blocks & ~four.joins) != 0u {
@@ -795,8 +795,8 @@ fn patches_enclosed_by_patches(light: light_area_SeenLight, ring: squares_Ring) 
     let half = 0.5 * squares_side_of(ring);
     let count = squares_count_of(ring);
     var sum = 0.0;
-    for (var y = 1u; y + 1u < min(count.y, squares_MOST_SQUARES); y++) {
-        for (var x = 1u; x + 1u < min(count.x, squares_MOST_SQUARES); x++) {
+    for (var y = 1u; y + 1u < min(count.y, squares_MAX_SQUARES); y++) {
+        for (var x = 1u; x + 1u < min(count.x, squares_MAX_SQUARES); x++) {
             let own = squares_g_in(ring, vec2u(x, y));
             if own > 0.0 {
                 let beside = vec4f(squares_g_in(ring, vec2u(x - 1u, y)), squares_g_in(ring, vec2u(x, y - 1u)), 0.0, 0.0);
@@ -826,9 +826,9 @@ var<uniform> settings_backprojection: settings_BackprojectionUniform;
 
 override settings_IS_PATCHES: bool = false;
 
-const squares_MOST_SQUARES = 70u;
+const squares_MAX_SQUARES = 70u;
 
-const squares_MOST_RINGS = 14u;
+const squares_MAX_RINGS = 14u;
 
 const squares_LARGEST_SPAN = 1000000.0;
 
@@ -865,13 +865,13 @@ fn squares_with_inside(ring: squares_Ring) -> squares_Ring {
     return open;
 }
 
-fn squares_outermost(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, most_g: f32, along: u32, share: vec2f) -> squares_Ring {
+fn squares_outermost(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, max_g: f32, along: u32, share: vec2f) -> squares_Ring {
     let farthest = max(abs(at.center), abs(map_light_view.map_size - at.center)) + 1.0;
-    let reach = min(extent * most_g, farthest);
+    let reach = min(extent * max_g, farthest);
     var ring = squares_Ring(at, 1.0 / z_m, reach, 0u, false, vec2i(), vec2i(), vec2i(), vec2i(), share, 0.0);
-    ring.far = max(squares_FAR_OFF * most_g * max(extent.x, extent.y), 2.0 * max(farthest.x, farthest.y));
+    ring.far = max(squares_FAR_OFF * max_g * max(extent.x, extent.y), 2.0 * max(farthest.x, farthest.y));
     let span = 2.0 * max(reach.x, reach.y);
-    ring.level = min(32u - countLeadingZeros(u32(min(span, squares_LARGEST_SPAN)) / along), squares_MOST_RINGS - 1u);
+    ring.level = min(32u - countLeadingZeros(u32(min(span, squares_LARGEST_SPAN)) / along), squares_MAX_RINGS - 1u);
     ring.first = squares_first_within(ring, reach) - 1;
     ring.last = squares_last_within(ring, reach) + 1;
     return squares_with_inside(ring);
@@ -896,7 +896,7 @@ fn squares_may_block_inside(ring: squares_Ring, plane: space_ReceiverPlane) -> b
 }
 
 fn squares_count_of(ring: squares_Ring) -> vec2u {
-    return min(vec2u(ring.last - ring.first) + 3u, vec2u(squares_MOST_SQUARES));
+    return min(vec2u(ring.last - ring.first) + 3u, vec2u(squares_MAX_SQUARES));
 }
 
 fn squares_place_of_square(ring: squares_Ring, square: vec2u) -> vec2i {
@@ -1068,7 +1068,7 @@ struct map_receiver_MapReceiver {
     away_margin: f32
 }
 
-const map_receiver_LEAST_MARGIN = 1e-30;
+const map_receiver_MIN_MARGIN = 1e-30;
 
 fn map_receiver_faces_away(receiver: map_receiver_MapReceiver) -> bool {
     return receiver.away_margin > 0.0;
@@ -1079,7 +1079,7 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_LEAST_MARGIN), plane.faces_away));
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_MIN_MARGIN), plane.faces_away));
 }
 
 fn map_receiver_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
@@ -1093,11 +1093,11 @@ fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
     return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
 }
 
-fn map_receiver_least_depth() -> f32 {
+fn map_receiver_min_depth() -> f32 {
     return min(map_light_view.depth_sign, 0.0);
 }
 
-fn map_receiver_most_depth() -> f32 {
+fn map_receiver_max_depth() -> f32 {
     return max(map_light_view.depth_sign, 0.0);
 }
 
@@ -1112,7 +1112,7 @@ struct map_receiver_BlockingDepths {
 
 fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
     let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), map_receiver_faces_away(receiver));
-    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_min_depth()), vec4f(map_receiver_max_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
 }
 
 fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {

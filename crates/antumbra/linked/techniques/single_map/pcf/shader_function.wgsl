@@ -89,11 +89,11 @@ fn map_gap_of(plane: space_ReceiverPlane, stored: f32) -> f32 {
 
 const map_ANY_GAP = 1e20;
 
-fn map_lit_narrowed(plane: space_ReceiverPlane, uv: vec2f, width: f32, most_gap: f32) -> f32 {
+fn map_lit_narrowed(plane: space_ReceiverPlane, uv: vec2f, width: f32, max_gap: f32) -> f32 {
     if !map_is_in_map(uv) {
         return 1.0;
     }
-    return map_narrowed(map_quad_at(plane, uv), plane, width, vec2f(-map_ANY_GAP, most_gap));
+    return map_narrowed(map_quad_at(plane, uv), plane, width, vec2f(-map_ANY_GAP, max_gap));
 }
 
 fn map_narrowed(quad: map_Quad, plane: space_ReceiverPlane, width: f32, gaps: vec2f) -> f32 {
@@ -102,7 +102,7 @@ fn map_narrowed(quad: map_Quad, plane: space_ReceiverPlane, width: f32, gaps: ve
     return space_bilinear(lit, saturate((quad.t - 0.5) / max(width, 0.001) + 0.5));
 }
 
-const receiver_light_MOST_COARSE_SINE = 0.0175;
+const receiver_light_MAX_COARSE_SINE = 0.0175;
 
 fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
     let least = space_min_grazing_sine(map_light_view);
@@ -110,7 +110,7 @@ fn receiver_light_coarse_grazing_sine(receiver: inputs_Receiver) -> f32 {
         return least;
     }
     let rise = horizon_rise_above_center(horizon_half_axis_heights(receiver));
-    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MOST_COARSE_SINE);
+    return clamp(rise / distance(inputs_light_source.center_in_world, receiver.pos_in_world), least, receiver_light_MAX_COARSE_SINE);
 }
 
 fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
@@ -118,10 +118,10 @@ fn receiver_light_faces_light_center(receiver: inputs_Receiver) -> bool {
     return dot(receiver.normal_in_world, towards) > 0.0;
 }
 
-fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
-    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, min_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), min_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, min_sine);
 }
 
 struct space_LightViewGpu {
@@ -140,7 +140,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -192,7 +192,7 @@ fn space_is_warped(view: space_LightViewGpu) -> bool {
     return any(view.warp != vec2f());
 }
 
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, min_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -205,14 +205,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
+        let k_min = min_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
         faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        let nz = select(max(n.z, min_sine), min(n.z, -min_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
         faces_away = n.z > 0.0;
     }
@@ -351,7 +351,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -369,11 +369,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 

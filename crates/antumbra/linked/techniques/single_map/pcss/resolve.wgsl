@@ -215,10 +215,10 @@ fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> sp
     return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
 }
 
-fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
-    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, min_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), min_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, min_sine);
 }
 
 struct space_LightViewGpu {
@@ -237,7 +237,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -313,7 +313,7 @@ fn space_uv_step_at(view: space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
     return space_uv_step_of_plane(view, in_warp);
 }
 
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, min_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -326,14 +326,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
+        let k_min = min_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
         faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        let nz = select(max(n.z, min_sine), min(n.z, -min_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
         faces_away = n.z > 0.0;
     }
@@ -353,7 +353,7 @@ fn space_bilinear(quad: vec4f, t: vec2f) -> f32 {
 }
 
 fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+    return select(1e30, 1.0 / max(view.complete_from_m, 1e-30) - 1.0 / z_m, view.complete_from_m > 0.0);
 }
 
 fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
@@ -573,7 +573,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -591,11 +591,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -762,7 +762,7 @@ struct map_receiver_MapReceiver {
     away_margin: f32
 }
 
-const map_receiver_LEAST_MARGIN = 1e-30;
+const map_receiver_MIN_MARGIN = 1e-30;
 
 fn map_receiver_faces_away(receiver: map_receiver_MapReceiver) -> bool {
     return receiver.away_margin > 0.0;
@@ -773,7 +773,7 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_LEAST_MARGIN), plane.faces_away));
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_MIN_MARGIN), plane.faces_away));
 }
 
 fn map_receiver_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
@@ -787,11 +787,11 @@ fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
     return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
 }
 
-fn map_receiver_least_depth() -> f32 {
+fn map_receiver_min_depth() -> f32 {
     return min(map_light_view.depth_sign, 0.0);
 }
 
-fn map_receiver_most_depth() -> f32 {
+fn map_receiver_max_depth() -> f32 {
     return max(map_light_view.depth_sign, 0.0);
 }
 
@@ -806,7 +806,7 @@ struct map_receiver_BlockingDepths {
 
 fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
     let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), map_receiver_faces_away(receiver));
-    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_min_depth()), vec4f(map_receiver_max_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
 }
 
 fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
@@ -865,9 +865,9 @@ fn map_receiver_scale_share(index: u32, scale_shift: f32) -> f32 {
     return fract(light_taps_taps[index].w + scale_shift);
 }
 
-fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
+fn map_receiver_look_at(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, max_g: f32, scale_shift: f32, index: u32) -> map_receiver_Look {
     let scale = map_receiver_scale_share(index, scale_shift);
-    return map_receiver_look_at_scale(receiver, light, most_g * (scale * scale), index);
+    return map_receiver_look_at_scale(receiver, light, max_g * (scale * scale), index);
 }
 
 const comparison_WIDEST_TANGENT = 0.05;
@@ -1049,13 +1049,13 @@ struct penumbra_width_Scales {
 }
 
 fn penumbra_width_scales_of(blockers: search_Blockers, extent: vec2f) -> penumbra_width_Scales {
-    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.least_g)) * map_light_view.map_size;
+    let near_extent = abs(space_uv_step_of_plane(map_light_view, extent * blockers.min_g)) * map_light_view.map_size;
     let is_contact = max(near_extent.x, near_extent.y) < penumbra_width_CONTACT_TEXELS;
     let means = select(vec4f(map_receiver_NO_G), blockers.g, blockers.g > vec4f());
-    let least_mean = min(min(means.x, means.y), min(means.z, means.w));
-    let is_near = is_contact && least_mean < map_receiver_NO_G && blockers.least_g < penumbra_width_NEAR_SHARE * least_mean;
-    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.least_g * least_mean));
-    let near = penumbra_width_Scale(blockers.least_g, near_range, vec2u(0u, behind_LAYER_COUNT));
+    let min_mean = min(min(means.x, means.y), min(means.z, means.w));
+    let is_near = is_contact && min_mean < map_receiver_NO_G && blockers.min_g < penumbra_width_NEAR_SHARE * min_mean;
+    let near_range = vec2f(-map_receiver_NO_G, sqrt(blockers.min_g * min_mean));
+    let near = penumbra_width_Scale(blockers.min_g, near_range, vec2u(0u, behind_LAYER_COUNT));
     return penumbra_width_Scales(blockers, near, blockers.groups | select(0u, 1u << penumbra_width_NEAREST, is_near && settings_pcss.attach_contacts == 1u));
 }
 
@@ -1065,14 +1065,14 @@ fn penumbra_width_scale_of(scales: penumbra_width_Scales, index: u32) -> penumbr
     }
     let g = scales.blockers.g[index];
     if settings_MEANS_OF_RANGES {
-        return penumbra_width_Scale(g, search_range_of_group(index, scales.blockers.most_g), vec2u(0u, behind_LAYER_COUNT));
+        return penumbra_width_Scale(g, search_range_of_group(index, scales.blockers.max_g), vec2u(0u, behind_LAYER_COUNT));
     }
     return penumbra_width_Scale(g, penumbra_width_ANY_G, vec2u(index, index + 1u));
 }
 
 const search_ENOUGH_BLOCKERS = 4u;
 
-const search_LEAST_TAPS = 8u;
+const search_MIN_TAPS = 8u;
 
 const search_BEHIND_TAPS = 8u;
 
@@ -1090,7 +1090,7 @@ fn search_comparison_plane(receiver: inputs_Receiver) -> space_ReceiverPlane {
 struct search_Window {
     at: map_receiver_MapReceiver,
     surface_step: f32,
-    most_g: f32,
+    max_g: f32,
     scale_shift: f32,
     search_count: u32
 }
@@ -1101,22 +1101,22 @@ fn search_search_count(reach: vec2f) -> u32 {
 }
 
 fn search_window_of(plane: space_ReceiverPlane, extent: vec2f, shift: vec2f, z_m: f32) -> search_Window {
-    let most_g = blocker_range_largest_g(plane, extent);
+    let max_g = blocker_range_largest_g(plane, extent);
     let texels = light_taps_texels_per_offset();
-    return search_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, most_g, shift.x + shift.y, search_search_count(blocker_range_RIM * most_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
+    return search_Window(map_receiver_map_receiver(plane, z_m), plane.surface_step, max_g, shift.x + shift.y, search_search_count(blocker_range_RIM * max_g * (abs(texels[0]) * extent.x + abs(texels[1]) * extent.y)));
 }
 
 struct search_Blockers {
     g: vec4f,
     groups: u32,
-    least_g: f32,
-    most_g: f32
+    min_g: f32,
+    max_g: f32
 }
 
 struct search_Sums {
     g: vec4f,
     weight: vec4f,
-    least_g: f32,
+    min_g: f32,
     found: u32
 }
 
@@ -1126,39 +1126,39 @@ const search_GROUPS = 4.0;
 
 const search_OVERLAP = 1.25;
 
-fn search_group_of(g: f32, most_g: f32, layer: u32) -> u32 {
+fn search_group_of(g: f32, max_g: f32, layer: u32) -> u32 {
     if !settings_MEANS_OF_RANGES {
         return layer;
     }
-    return u32(clamp(floor(search_GROUPS * sqrt(saturate(g / max(most_g, 1e-20)))), 0.0, search_GROUPS - 1.0));
+    return u32(clamp(floor(search_GROUPS * sqrt(saturate(g / max(max_g, 1e-20)))), 0.0, search_GROUPS - 1.0));
 }
 
-fn search_range_of_group(group: u32, most_g: f32) -> vec2f {
+fn search_range_of_group(group: u32, max_g: f32) -> vec2f {
     let ends = vec2f(f32(group), f32(group + 1u)) / search_GROUPS;
-    return ends * ends * vec2f(1.0 / search_OVERLAP, search_OVERLAP) * most_g;
+    return ends * ends * vec2f(1.0 / search_OVERLAP, search_OVERLAP) * max_g;
 }
 
 fn search_add(sums: search_Sums, window: search_Window, look: map_receiver_Look, layer: u32) -> search_Sums {
     let g = map_receiver_blocking_g_about(window.at, look.texel, layer);
     let counts = g > 0.0 && g >= look.hiding_g;
-    let least_g = select(sums.least_g, min(sums.least_g, g), counts);
+    let min_g = select(sums.min_g, min(sums.min_g, g), counts);
     let weight = select(0.0, select(search_RIM_WEIGHT, 1.0, g >= blocker_range_RIM * look.hiding_g), counts);
     let found = sums.found + select(0u, 1u, counts);
     if !settings_MEANS_OF_RANGES && layer == 0u {
-        return search_Sums(vec4f(sums.g.x + weight * g, sums.g.yzw), vec4f(sums.weight.x + weight, sums.weight.yzw), least_g, found);
+        return search_Sums(vec4f(sums.g.x + weight * g, sums.g.yzw), vec4f(sums.weight.x + weight, sums.weight.yzw), min_g, found);
     }
-    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(search_group_of(g, window.most_g, layer));
-    return search_Sums(sums.g + select(vec4f(), vec4f(weight * g), group), sums.weight + select(vec4f(), vec4f(weight), group), least_g, found);
+    let group = vec4u(0u, 1u, 2u, 3u) == vec4u(search_group_of(g, window.max_g, layer));
+    return search_Sums(sums.g + select(vec4f(), vec4f(weight * g), group), sums.weight + select(vec4f(), vec4f(weight), group), min_g, found);
 }
 
 fn search_search(window: search_Window, light: light_taps_LightPlane) -> search_Sums {
     let own = floor(window.at.center);
     let own_g = map_receiver_blocking_g_about(window.at, own, 0u);
     var sums = search_Sums(vec4f(), vec4f(), select(map_receiver_NO_G, own_g, map_receiver_is_texel(own) && own_g > 0.0), 0u);
-    let least = settings_part_of(settings_pcss.search_count, search_LEAST_TAPS);
+    let least = settings_part_of(settings_pcss.search_count, search_MIN_TAPS);
     let enough = settings_part_of(settings_pcss.search_count, search_ENOUGH_BLOCKERS);
     for (var i = 0u; i < min(window.search_count, settings_pcss.search_count); i++) {
-        let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+        let look = map_receiver_look_at(window.at, light, window.max_g, window.scale_shift, i);
         sums = search_add(sums, window, look, 0u);
         if (light_taps_IS_PROGRESSIVE && i + 1u >= least && sums.found >= enough) || (i + 1u >= settings_pcss.search_enough && sums.found > 0u) {
             break;
@@ -1175,9 +1175,9 @@ fn search_search_behind(window: search_Window, light: light_taps_LightPlane, fir
     for (var layer = 1u; layer < behind_LAYER_COUNT && found > 0u; layer++) {
         let before = sums.found;
         let own_g = map_receiver_blocking_g_about(window.at, own, layer);
-        sums.least_g = select(sums.least_g, min(sums.least_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
+        sums.min_g = select(sums.min_g, min(sums.min_g, own_g), map_receiver_is_texel(own) && own_g > 0.0);
         for (var i = 0u; i < count; i++) {
-            let look = map_receiver_look_at(window.at, light, window.most_g, window.scale_shift, i);
+            let look = map_receiver_look_at(window.at, light, window.max_g, window.scale_shift, i);
             sums = search_add(sums, window, look, layer);
         }
         found = sums.found - before;
@@ -1188,7 +1188,7 @@ fn search_search_behind(window: search_Window, light: light_taps_LightPlane, fir
 fn search_blockers_of(sums: search_Sums, window: search_Window) -> search_Blockers {
     let some = sums.weight > vec4f();
     let groups = dot(select(vec4u(), vec4u(1u, 2u, 4u, 8u), some), vec4u(1u));
-    return search_Blockers(sums.g / max(sums.weight, vec4f(search_RIM_WEIGHT)), groups, sums.least_g, window.most_g);
+    return search_Blockers(sums.g / max(sums.weight, vec4f(search_RIM_WEIGHT)), groups, sums.min_g, window.max_g);
 }
 
 struct settings_PcssUniform {

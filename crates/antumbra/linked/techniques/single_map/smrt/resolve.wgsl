@@ -4,7 +4,7 @@ struct SmrtUniform {
     tile_search_count: u32,
     search_count: u32,
     ray_count: u32,
-    most_steps: u32,
+    max_steps: u32,
     rotate: u32,
     bias_scale: f32,
     light_extent: vec2f,
@@ -43,9 +43,9 @@ struct Open {
     has_rays: bool,
     visibility: f32,
     shift: vec2f,
-    most_g: f32,
+    max_g: f32,
     magnification_per_g: f32,
-    least_magnification: f32,
+    min_magnification: f32,
     pixel_m: f32,
     fan: fan_Fan,
     light: light_taps_LightPlane,
@@ -176,7 +176,7 @@ fn end_of(light: light_taps_LightPlane, tap: vec3f) -> vec3f {
 struct Rays {
     weight: f32,
     free: f32,
-    least_g: f32
+    min_g: f32
 }
 
 fn is_undecided(rays: Rays) -> bool {
@@ -208,7 +208,7 @@ fn follow(open: Open, steps: bins_Steps, before: Rays, begin: u32, end: u32) -> 
             let jitter = fract(first + f32(i) * R3);
             let g = blocker_g(open.fan, light_taps_texels_of(open.light, place), steps, jitter);
             sums.free += select(0.0, weight, g == map_receiver_NO_G);
-            sums.least_g = min(sums.least_g, g);
+            sums.min_g = min(sums.min_g, g);
         }
     }
     return sums;
@@ -232,18 +232,18 @@ fn tile_bins() -> bins_Bins {
     return bins_bins_between(bins_depth_of_bits(atomicLoad(&farthest_bits)), bins_depth_of_bits(atomicLoad(&nearest_bits)));
 }
 
-fn magnification(open: Open, least_g: f32) -> f32 {
+fn magnification(open: Open, min_g: f32) -> f32 {
     if !open.has_rays {
         return noisy_NO_SMOOTHING;
     }
-    if least_g == map_receiver_NO_G {
+    if min_g == map_receiver_NO_G {
         return noisy_NO_MAGNIFICATION;
     }
-    return max(open.magnification_per_g * least_g, open.least_magnification);
+    return max(open.magnification_per_g * min_g, open.min_magnification);
 }
 
-fn is_narrow(open: Open, least_g: f32) -> bool {
-    return 2.0 * smrt.narrow_half_extent * magnification(open, least_g) < WIDE_PX * open.pixel_m;
+fn is_narrow(open: Open, min_g: f32) -> bool {
+    return 2.0 * smrt.narrow_half_extent * magnification(open, min_g) < WIDE_PX * open.pixel_m;
 }
 
 fn write_pixel(pixel: vec2u, visibility: f32, magnification: f32) {
@@ -260,7 +260,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     let pixel = inputs_known_pixel(id.xy);
     let is_pixel = inputs_is_inside(pixel);
     if lane == 0u {
-        atomicStore(&farthest_bits, bins_depth_bits(map_receiver_most_depth()));
+        atomicStore(&farthest_bits, bins_depth_bits(map_receiver_max_depth()));
         atomicStore(&nearest_bits, 0u);
         atomicStore(&rays_found, 0u);
     }
@@ -273,22 +273,22 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
         is_receiver = !receiver.is_background;
         open = opened(receiver, pixel);
     }
-    let may_be_blocked = open.has_rays && open.most_g > 0.0;
+    let may_be_blocked = open.has_rays && open.max_g > 0.0;
     if may_be_blocked {
         atomicMin(&farthest_bits, bins_depth_bits(open.fan.at.depth));
-        atomicMax(&nearest_bits, bins_depth_bits(map_receiver_depth_at_g(open.fan.at, open.most_g)));
+        atomicMax(&nearest_bits, bins_depth_bits(map_receiver_depth_at_g(open.fan.at, open.max_g)));
     }
     workgroupBarrier();
     let bins = tile_bins();
     if may_be_blocked {
         let shift = shift_of(id.xy - place.xy);
         let search_taps = bins_SearchTaps(smrt.tile_search_count, lane, shift.x + shift.y);
-        bins_search(open.fan.at, light_taps_shifted(open.light, shift), open.most_g, search_taps, smrt.search_count, bins);
+        bins_search(open.fan.at, light_taps_shifted(open.light, shift), open.max_g, search_taps, smrt.search_count, bins);
     }
     workgroupBarrier();
     bins_join_bins(lane);
     workgroupBarrier();
-    let steps = bins_steps_of(open.fan.at, bins, smrt.most_steps);
+    let steps = bins_steps_of(open.fan.at, bins, smrt.max_steps);
     let has_rays = open.has_rays && (steps.some > 0u || !horizon_has_horizon_share());
     var sums = Rays(0.0, 0.0, map_receiver_NO_G);
     if has_rays {
@@ -297,7 +297,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     }
     workgroupBarrier();
     if has_rays && atomicLoad(&rays_found) == (FREE | BLOCKED) {
-        if !IS_SMOOTHED || is_narrow(open, sums.least_g) || sums.weight <= 0.0 {
+        if !IS_SMOOTHED || is_narrow(open, sums.min_g) || sums.weight <= 0.0 {
             sums = follow(open, steps, sums, probes(TILE_PROBES), probes(PIXEL_PROBES));
             if is_undecided(sums) {
                 sums = follow(open, steps, sums, probes(PIXEL_PROBES), smrt.ray_count);
@@ -307,7 +307,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_i
     if select(is_pixel, is_receiver, IS_SMOOTHED) {
         let share = select(1.0, open.visibility, horizon_has_horizon_share());
         let visibility = select(open.visibility, share * sums.free / max(sums.weight, 1e-20), has_rays);
-        write_pixel(pixel, visibility, magnification(open, sums.least_g));
+        write_pixel(pixel, visibility, magnification(open, sums.min_g));
     }
 }
 
@@ -449,10 +449,10 @@ fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> sp
     return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
 }
 
-fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
-    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, min_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), min_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, min_sine);
 }
 
 struct space_LightViewGpu {
@@ -471,7 +471,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -547,7 +547,7 @@ fn space_uv_step_at(view: space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
     return space_uv_step_of_plane(view, in_warp);
 }
 
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, min_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -560,14 +560,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
+        let k_min = min_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
         faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        let nz = select(max(n.z, min_sine), min(n.z, -min_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
         faces_away = n.z > 0.0;
     }
@@ -583,7 +583,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
 }
 
 fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+    return select(1e30, 1.0 / max(view.complete_from_m, 1e-30) - 1.0 / z_m, view.complete_from_m > 0.0);
 }
 
 fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
@@ -831,7 +831,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -849,11 +849,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -1028,7 +1028,7 @@ struct map_receiver_MapReceiver {
     away_margin: f32
 }
 
-const map_receiver_LEAST_MARGIN = 1e-30;
+const map_receiver_MIN_MARGIN = 1e-30;
 
 fn map_receiver_faces_away(receiver: map_receiver_MapReceiver) -> bool {
     return receiver.away_margin > 0.0;
@@ -1039,7 +1039,7 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_LEAST_MARGIN), plane.faces_away));
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_MIN_MARGIN), plane.faces_away));
 }
 
 fn map_receiver_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
@@ -1057,11 +1057,11 @@ fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
     return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
 }
 
-fn map_receiver_least_depth() -> f32 {
+fn map_receiver_min_depth() -> f32 {
     return min(map_light_view.depth_sign, 0.0);
 }
 
-fn map_receiver_most_depth() -> f32 {
+fn map_receiver_max_depth() -> f32 {
     return max(map_light_view.depth_sign, 0.0);
 }
 
@@ -1076,7 +1076,7 @@ struct map_receiver_BlockingDepths {
 
 fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
     let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), map_receiver_faces_away(receiver));
-    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_min_depth()), vec4f(map_receiver_max_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
 }
 
 fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
@@ -1160,11 +1160,11 @@ fn bins_bin_at(place: f32) -> u32 {
 }
 
 fn bins_depth_bits(depth: f32) -> u32 {
-    return bitcast<u32>(clamp(depth, map_receiver_least_depth(), map_receiver_most_depth()) - map_receiver_least_depth());
+    return bitcast<u32>(clamp(depth, map_receiver_min_depth(), map_receiver_max_depth()) - map_receiver_min_depth());
 }
 
 fn bins_depth_of_bits(bits: u32) -> f32 {
-    return bitcast<f32>(bits) + map_receiver_least_depth();
+    return bitcast<f32>(bits) + map_receiver_min_depth();
 }
 
 fn bins_empty_bins(lane: u32) {
@@ -1193,13 +1193,13 @@ struct bins_Marks {
     free: u32
 }
 
-fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, most_g: f32, search_taps: bins_SearchTaps, count: u32, bins: bins_Bins) {
+fn bins_search(receiver: map_receiver_MapReceiver, light: light_taps_LightPlane, max_g: f32, search_taps: bins_SearchTaps, count: u32, bins: bins_Bins) {
     let own = floor(receiver.center);
     var marks = bins_with_blockers_at(bins_Marks(0u, 0u, 0u, 0u), receiver, map_receiver_Look(own, select(map_receiver_NO_G, 0.0, map_receiver_is_texel(own))), bins);
     for (var i = 0u; i < count; i++) {
         let tap = (search_taps.first + bins_TILE_PIXELS * i) % search_taps.tile_count;
         let share = map_receiver_scale_share(tap, search_taps.scale_shift);
-        let g = most_g * share * select(share, 1.0, i % 2u == 0u);
+        let g = max_g * share * select(share, 1.0, i % 2u == 0u);
         marks = bins_with_blockers_at(marks, receiver, map_receiver_look_at_scale(receiver, light, g, tap), bins);
     }
     atomicOr(&bins_bins_found, marks.found);
@@ -1285,7 +1285,7 @@ fn bins_begin_of_step(steps: bins_Steps, step: u32) -> f32 {
 
 fn bins_g_in_step(receiver: map_receiver_MapReceiver, steps: bins_Steps, step: u32, along: f32) -> f32 {
     var between = bins_found_between[steps.first + step];
-    if between.y <= map_receiver_least_depth() {
+    if between.y <= map_receiver_min_depth() {
         between = vec2f(bins_begin_of_step(steps, step), bins_begin_of_step(steps, step + 1u));
     }
     return max(map_receiver_g_of(receiver, mix(between.x, between.y, along)), 0.0);

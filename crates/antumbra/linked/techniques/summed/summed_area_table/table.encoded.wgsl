@@ -379,7 +379,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -519,7 +519,7 @@ fn encode_encode(range: depth_range_DepthRange, stored: f32) -> vec4f {
 @group(3) @binding(7)
 var source_tiles: texture_storage_2d<rgba32float, write>;
 
-const source_MOST_TILES = 16u;
+const source_MAX_TILES = 16u;
 
 var<workgroup> source_least: array<atomic<u32>, 32>;
 
@@ -607,11 +607,11 @@ fn source_bounds_between(ends: vec2f, slope: vec2f, first: vec2f, last: vec2f) -
     let b = tile_basis_nearness(ends.y);
     let near_end = slope * first;
     let far_end = slope * last;
-    let least_rise = min(near_end, far_end);
+    let min_rise = min(near_end, far_end);
     let greatest_rise = max(near_end, far_end);
     let low = min(a, b);
     let high = max(a, b);
-    return source_Bounds(vec2f(low, low - greatest_rise.x - greatest_rise.y), vec2f(high, high - least_rise.x - least_rise.y));
+    return source_Bounds(vec2f(low, low - greatest_rise.x - greatest_rise.y), vec2f(high, high - min_rise.x - min_rise.y));
 }
 
 fn source_block_bounds(size: vec2u, first: vec2u, side: u32, level: u32, slope: vec2f) -> source_Bounds {
@@ -674,11 +674,11 @@ fn source_begin_values(size: vec2u, origin: vec2u, region: u32, side: u32, t: u3
     source_values_origin = origin;
     source_values_side = side;
     source_values_across = region / side;
-    if t < 2u * source_MOST_TILES {
+    if t < 2u * source_MAX_TILES {
         atomicStore(&source_least[t], 4294967295u);
         atomicStore(&source_greatest[t], 0u);
     }
-    if t < source_MOST_TILES {
+    if t < source_MAX_TILES {
         source_tile_slopes[t] = vec2f();
     }
     workgroupBarrier();

@@ -1,6 +1,6 @@
 // Linked from src/primitives/depth_basis/probe.wesl by `cargo xtask shaders`: edit that, not this.
 
-const MOST_TERMS = 16u;
+const MAX_TERMS = 16u;
 
 struct ProbeInput {
     z: vec4f,
@@ -54,10 +54,10 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     let variance_v = variance_variance_visibility(variance, t, input.least_variance);
     outputs[id.x][0] = vec2f(variance_v, variance_mean_blocker_depth(variance_mean_variance(variance).mean, t, variance_v));
     var layered_v = layered_layered_visibility(layer_near, near, t, input.least_variance, input.quantum);
-    var printed_v = layered_layered_visibility_as_printed(layer_near, near, t, input.least_variance, input.quantum);
+    var printed_v = layered_layered_visibility_as_published(layer_near, near, t, input.least_variance, input.quantum);
     var layered_mean = layered_layer_mean_share(layer_near.x, input.split);
     if is_far {
-        printed_v = layered_layered_visibility_as_printed(layer_far, far, t, input.least_variance, input.quantum);
+        printed_v = layered_layered_visibility_as_published(layer_far, far, t, input.least_variance, input.quantum);
         layered_v = layered_layered_visibility(layer_far, far, t, input.least_variance, input.quantum);
         layered_mean += layered_layer_mean_share(layer_far.x, 1.0 - input.split);
     }
@@ -69,7 +69,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
     outputs[id.x][4] = vec2f(exponential_exponential_visibility(exponential.x, t, input.exponent), exponential_exponential_blocker_depth(exponential, t, input.exponent));
     var term_sum = 0.0;
     var z_term_sum = 0.0;
-    for (var k = 1u; k <= min(input.term_count, MOST_TERMS); k++) {
+    for (var k = 1u; k <= min(input.term_count, MAX_TERMS); k++) {
         var term = vec2f();
         var z_term = vec2f();
         for (var i = 0u; i < 4u; i++) {
@@ -206,7 +206,7 @@ fn layered_layered_visibility(filtered: vec2f, layer: layered_DepthLayer, t: f32
     return variance_bounded_visibility(filtered, layered_warp_to_layer(layer, t), least);
 }
 
-fn layered_layered_visibility_as_printed(filtered: vec2f, layer: layered_DepthLayer, t: f32, least_variance: f32, quantum: f32) -> f32 {
+fn layered_layered_visibility_as_published(filtered: vec2f, layer: layered_DepthLayer, t: f32, least_variance: f32, quantum: f32) -> f32 {
     let width = layer.far - layer.near;
     let spread = 8.0 * quantum;
     return variance_variance_visibility(filtered, layered_warp_to_layer(layer, t), least_variance / (width * width) + spread * spread);

@@ -31,7 +31,7 @@
 //! - The least variance is that of each receiver's own plane (eq. 7 scales it to the layer). The paper has one σ²min for all
 //!   (`least_variance = global`).
 //! - Over the map, as published, the relaxation places means *on* second occluders, but a split must lie behind one to clamp
-//!   it. Splits are therefore shifted by 1.5 δ (not with `relax_over = map_as_printed`). The paper does not say whether
+//!   it. Splits are therefore shifted by 1.5 δ (not with `relax_over = map_as_published`). The paper does not say whether
 //!   background is an occluder: here it is ignored (`relax_background` counts it), and so is the optional clamp of weights
 //!   (`relax_from`, `relax_up_to`).
 //! - Splits keep gaps of 3 δ, and clusters teleport by inertia rather than only when they have no weight (see

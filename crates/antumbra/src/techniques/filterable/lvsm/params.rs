@@ -21,7 +21,7 @@ param_choice! {
         /// Discontinuities of the light map, independent of the camera.
         Map = "map",
         /// Discontinuities as published: splits lie on second occluders, and μ + σ may lie beyond them.
-        MapAsPrinted = "map_as_printed",
+        MapAsPublished = "map_as_published",
     }
 }
 
@@ -119,7 +119,7 @@ filterable_params! {
         /// Source of the histogram for Lloyd's relaxation.
         relax_over: RelaxOver = RelaxOver::View,
             more "view spends layers where the camera sees light bleed; map does not depend on the camera; splits of \
-                  map_as_printed cut the occluders that they should lie behind.";
+                  map_as_published cut the occluders that they should lie behind.";
         /// Whether texels without a caster count as occluders at the far end, unless `relax_over` is view.
         relax_background: bool = false,
             more "true spends layers on the edges of what stands before nothing.";
@@ -146,7 +146,7 @@ filterable_params! {
         anisotropy: 16, ours "8 probes have the same error at half the reads.";
         depth_axis: DepthAxis::Distance, ours "Depth is measured along the world's axis nearest to the light's.";
         splits_per_frame: 2, ours "All splits move in every frame.";
-        relax_over: RelaxOver::MapAsPrinted, ours "Splits are placed where receivers in view see light bleed.";
+        relax_over: RelaxOver::MapAsPublished, ours "Splits are placed where receivers in view see light bleed.";
         teleport: LvsmTeleport::Weight, ours "Clusters merge and split by inertia.";
         layers_by: LvsmLayersBy::Targets, ours "Layers are encoded from the light map's depths.";
         transition: LvsmTransition::Mixed, ours "Where layers overlap the lesser of both bounds counts at the split.";

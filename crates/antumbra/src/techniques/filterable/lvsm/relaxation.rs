@@ -25,7 +25,7 @@ const MAX_NEIGHBOURHOODS: u32 = 512;
 const MAX_RECEIVERS: u32 = 128;
 
 /// Smallest width of a layer as published, in t: two bins of the histogram. A layer without depth would have no moments.
-const LEAST_LAYER: f32 = 2.0 / 4096.0;
+const MIN_LAYER: f32 = 2.0 / 4096.0;
 
 /// Threads along each side of a workgroup of the histogram.
 const TILE: u32 = 8;
@@ -44,8 +44,8 @@ struct Gathering {
 impl Gathering {
     fn shader(self) -> &'static str {
         match (self.source, self.multisampled) {
-            (RelaxOver::Map | RelaxOver::MapAsPrinted, false) => shaders::LVSM_HISTOGRAM,
-            (RelaxOver::Map | RelaxOver::MapAsPrinted, true) => shaders::LVSM_HISTOGRAM_MULTISAMPLED,
+            (RelaxOver::Map | RelaxOver::MapAsPublished, false) => shaders::LVSM_HISTOGRAM,
+            (RelaxOver::Map | RelaxOver::MapAsPublished, true) => shaders::LVSM_HISTOGRAM_MULTISAMPLED,
             (RelaxOver::View, false) => shaders::LVSM_BLEEDING,
             (RelaxOver::View, true) => shaders::LVSM_BLEEDING_MULTISAMPLED,
         }
@@ -82,7 +82,7 @@ impl LayerRelaxation {
         let lloyd = Lloyd::new(gpu);
         let layout = Wanted::layout(gpu);
         let uniform = create_uniform::<LvsmHistogramUniform>(gpu, "antumbra wanted splits");
-        let bind_group = Wanted { grid: &uniform, histogram: lloyd.histogram() }.kept_group(gpu, &layout);
+        let bind_group = Wanted { grid: &uniform, histogram: lloyd.histogram() }.cached_group(gpu, &layout);
         Self { lloyd, layout, uniform, bind_group, pipelines: [const { None }; 24], gathering: None }
     }
 
@@ -110,7 +110,7 @@ impl LayerRelaxation {
     ) -> PreparedRelaxation {
         let multisampled = map.sample_count > 1;
         let (stride, grid) = match params.relax_over {
-            RelaxOver::Map | RelaxOver::MapAsPrinted => {
+            RelaxOver::Map | RelaxOver::MapAsPublished => {
                 let stride = map.size.max_element().div_ceil(MAX_NEIGHBOURHOODS);
                 (stride, UVec2::new(map.size.x.div_ceil(stride), map.size.y.div_ceil(stride)))
             }
@@ -127,8 +127,8 @@ impl LayerRelaxation {
             stride,
             overlap,
             kernel_size: params.kernel_size,
-            least_weight: params.relax_from.powi(2),
-            most_weight: params.relax_up_to.powi(2),
+            min_weight: params.relax_from.powi(2),
+            max_weight: params.relax_up_to.powi(2),
             ..LvsmHistogramUniform::default()
         };
         write_uniform(stage, &self.uniform, &uniform);
@@ -137,7 +137,7 @@ impl LayerRelaxation {
             moved_count: params.splits_per_frame,
             // A second occluder needs a split behind it; a receiver names the split itself.
             shift: if params.relax_over == RelaxOver::Map { 1.5 * overlap } else { 0.0 },
-            least_gap: if params.relax_over == RelaxOver::MapAsPrinted { LEAST_LAYER } else { 3.0 * overlap },
+            min_gap: if params.relax_over == RelaxOver::MapAsPublished { MIN_LAYER } else { 3.0 * overlap },
             teleport: match params.teleport {
                 LvsmTeleport::Inertia => Teleport::Inertia,
                 LvsmTeleport::Weight => Teleport::Weight,
@@ -147,10 +147,11 @@ impl LayerRelaxation {
         let (layout, pipeline) = (&self.layout, &mut self.pipelines[gathering.index()]);
         let [distance] = passes.distance_constant();
         let pipeline = pipeline.get_or_insert_with(|| match params.relax_over {
-            RelaxOver::Map | RelaxOver::MapAsPrinted => {
-                let as_printed = ("AS_PRINTED", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPrinted)));
+            RelaxOver::Map | RelaxOver::MapAsPublished => {
+                let as_published =
+                    ("AS_PUBLISHED", f64::from(u8::from(params.relax_over == RelaxOver::MapAsPublished)));
                 let background = ("COUNTS_BACKGROUND", f64::from(u8::from(params.relax_background)));
-                let constants = [as_printed, background, distance];
+                let constants = [as_published, background, distance];
                 let layouts = [basis.encode_layout(), layout];
                 compute_entry(stage, "second occluders", gathering.shader(), None, &constants, &layouts)
             }
@@ -179,7 +180,7 @@ impl LayerRelaxation {
         recorder.compute("splits", Span::First, |pass| {
             pass.set_pipeline(pipeline);
             match gathering.source {
-                RelaxOver::Map | RelaxOver::MapAsPrinted => {
+                RelaxOver::Map | RelaxOver::MapAsPublished => {
                     pass.set_bind_group(0, basis.encode_group(), &[]);
                     pass.set_bind_group(1, &self.bind_group, &[]);
                 }

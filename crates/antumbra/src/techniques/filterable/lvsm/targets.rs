@@ -26,13 +26,13 @@ bindings! {
 
 /// Number of outputs of the shaders: WebGPU's default `max_color_attachments`; at four bytes each, also its default
 /// `max_color_attachment_bytes_per_sample`.
-const MOST_TARGETS: u32 = 8;
+const MAX_TARGETS: u32 = 8;
 
 /// Returns the maximum number of targets of a draw on this device.
-fn most_targets(gpu: &Gpu) -> usize {
+fn max_targets(gpu: &Gpu) -> usize {
     let limits = gpu.device.limits();
     let by_bytes = limits.max_color_attachment_bytes_per_sample / 4;
-    MOST_TARGETS.min(limits.max_color_attachments).min(by_bytes).max(1) as usize
+    MAX_TARGETS.min(limits.max_color_attachments).min(by_bytes).max(1) as usize
 }
 
 /// Programs that draw the casters once per eight words.
@@ -80,7 +80,7 @@ impl LayerTargets {
         let clear = wgpu::Color { r: f64::from(packing.word_of_ones()), ..wgpu::Color::TRANSPARENT };
         let word_count = basis.layer_views().len();
         let mut draws = Vec::new();
-        let most = most_targets(stage);
+        let most = max_targets(stage);
         for first in (0..word_count).step_by(most) {
             let words = first..word_count.min(first + most);
             let program = self.program(stage, passes, casters, words.len());

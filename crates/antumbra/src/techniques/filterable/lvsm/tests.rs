@@ -167,7 +167,7 @@ fn targets_say_that_they_have_one_sample_a_texel() {
     let case = boards(gpu, 3.0);
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();
     let params =
-        LvsmParams { layers_by: LvsmLayersBy::Targets, msaa: Multisampling::Four, ..params(RelaxOver::MapAsPrinted) };
+        LvsmParams { layers_by: LvsmLayersBy::Targets, msaa: Multisampling::Four, ..params(RelaxOver::MapAsPublished) };
     let mut lvsm = Lvsm::new(gpu).expect("no features needed");
     let error = case
         .with_prepared(&casters, |frame| lvsm.prepare(&Stage::at_once(gpu), frame, &params).expect_err("four samples"));
@@ -181,7 +181,7 @@ fn what_asks_for_splits_is_switched() {
     let Some(gpu) = gpu() else { return };
     let case = boards(gpu, 3.0);
     let found = |change: LvsmParams| frame(gpu, &mut Lvsm::new(gpu).expect("no features needed"), &case, &change);
-    let usual = params(RelaxOver::MapAsPrinted);
+    let usual = params(RelaxOver::MapAsPublished);
     let plain = found(usual);
     let with_background = found(LvsmParams { relax_background: true, ..usual });
     println!("{plain:?}, with background {with_background:?}");

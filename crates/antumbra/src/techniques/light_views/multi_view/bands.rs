@@ -44,15 +44,15 @@ impl Bands {
         size_px: UVec2,
         bytes_each: u64,
     ) -> Result<Vec<Band>, Error> {
-        let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
+        let max_bytes = stage.device.limits().max_storage_buffer_binding_size;
         let row_bytes = bytes_each * u64::from(size_px.x.max(1));
-        let fitting = (most_bytes / row_bytes).min(u64::from(size_px.y.next_multiple_of(ROWS))) as u32;
+        let fitting = (max_bytes / row_bytes).min(u64::from(size_px.y.next_multiple_of(ROWS))) as u32;
         let rows_each = fitting / ROWS * ROWS;
         if rows_each == 0 {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("a buffer of {} bytes, {bytes_each} for each pixel of {ROWS} rows", row_bytes * 8),
-                had: format!("at most {most_bytes}"),
+                had: format!("at most {max_bytes}"),
                 remedy: "set `compare` to gather",
             });
         }

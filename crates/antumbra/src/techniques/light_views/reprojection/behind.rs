@@ -12,7 +12,7 @@ use glam::{DVec4, Vec3};
 
 use crate::contract::MeshCaster;
 use crate::light_map::light_spread::LightSpread;
-use crate::light_map::light_view::{Followed, LightView, MIDDLE_TANGENT, ViewFit};
+use crate::light_map::light_view::{FollowedLight, LightView, MIDDLE_TANGENT, ViewFit};
 use crate::light_map::occluding_bounds::Between;
 
 /// Tangent at which the light's edge is seen, just within the middle face of a cube. From nearer, casters in front of the light's rim would
@@ -33,11 +33,11 @@ pub(super) struct Behind {
 impl Behind {
     /// Position behind a light; `None` if the view `from_middle` holds the casters near the light.
     pub(super) fn of(light: &Light, from_middle: &LightView) -> Option<Self> {
-        if from_middle.held_from_m == 0.0 {
+        if from_middle.complete_from_m == 0.0 {
             return None;
         }
         let LightSpread { extent, extent_axis, .. } = LightSpread::of(light);
-        let tangent = light.reach_tangent().map_or(LIGHT_TANGENT, |reach| reach.min(LIGHT_TANGENT));
+        let tangent = light.max_angle_tangent().map_or(LIGHT_TANGENT, |reach| reach.min(LIGHT_TANGENT));
         let depth_m = extent.max_element() / tangent;
         let center = from_middle.frame.center - (depth_m + extent_axis) * from_middle.frame.axis;
         let frame = LightFrame { center, ..from_middle.frame };
@@ -59,9 +59,17 @@ impl Behind {
         };
         let ends: Vec<Vec3> = receivers.iter().copied().chain((0..8).map(corner)).collect();
         let between = Between::new(light, casters, receivers);
-        let fit = ViewFit::perspective(self.frame, Followed::Middle, 0.0, 0.0, light.reach_tangent(), &between, &ends)
-            .beginning_at(self.depth_m)
-            .for_many_windows();
+        let fit = ViewFit::perspective(
+            self.frame,
+            FollowedLight::Center,
+            0.0,
+            0.0,
+            light.max_angle_tangent(),
+            &between,
+            &ends,
+        )
+        .beginning_at(self.depth_m)
+        .for_many_windows();
         let view = fit.view(LightView::best_roll(|window| fit.view(window)));
         (view.window.half_size.max_element() <= MIDDLE_TANGENT).then_some(view)
     }

@@ -8,7 +8,7 @@ use super::behind::Behind;
 use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{ReprojectionProjection, Settings};
 use crate::light_map::central_view::{central_fit, central_reach};
-use crate::light_map::light_view::{Followed, LightView, LightViewGpu, Window};
+use crate::light_map::light_view::{FollowedLight, LightView, LightViewGpu, Window};
 use crate::light_map::occluding_bounds::Between;
 use crate::techniques::light_views::{Batch, views_from};
 
@@ -88,8 +88,8 @@ impl Views {
         let of_receivers = Aabb::of(receivers.iter().copied());
         let of_casters = || Between::new(light, casters, receivers).all().fold(Aabb::EMPTY, Aabb::union);
         let all = if of_receivers.is_empty() { of_casters() } else { of_receivers };
-        let looks_back = light.shines_all_around() && is_behind(&from_middle.frame, receivers, all);
-        let behind = behind.filter(|_| !light.shines_all_around());
+        let looks_back = light.is_omnidirectional() && is_behind(&from_middle.frame, receivers, all);
+        let behind = behind.filter(|_| !light.is_omnidirectional());
         let middle = behind.map_or(from_middle.frame, |behind| behind.frame);
         let (central, targets) = central_and_target_cubes(middle, points, all, looks_back, (central_size, view_size));
         Self { central, targets, central_size, view_size, behind }
@@ -184,7 +184,7 @@ impl Matrices {
 
 /// Central view in a single plane.
 fn central_plane(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> LightView {
-    let fit = central_fit(light, Followed::All, central_reach(light), casters, receivers).for_many_windows();
+    let fit = central_fit(light, FollowedLight::Whole, central_reach(light), casters, receivers).for_many_windows();
     fit.view(LightView::best_roll(|window| fit.view(window)))
 }
 
@@ -202,7 +202,7 @@ fn needs_cube(light: &Light, plane: &LightView, projection: ReprojectionProjecti
             ReprojectionProjection::Plane => false,
             ReprojectionProjection::Cube => true,
             ReprojectionProjection::Auto => {
-                light.reach_tangent().is_none() && plane.window.half_size.max_element() > WIDEST_PLANE_TANGENT
+                light.max_angle_tangent().is_none() && plane.window.half_size.max_element() > WIDEST_PLANE_TANGENT
             }
         }
 }
@@ -247,7 +247,7 @@ fn cube_faces(frame: LightFrame, far_m: f32, size: u32) -> [LightView; CUBE_FACE
         window: Window::square(half_size),
         near_m: far_m * CUBE_NEAR_FRACTION,
         far_m: far_m * 1.001,
-        held_from_m: 0.0,
+        complete_from_m: 0.0,
     })
 }
 

@@ -12,7 +12,7 @@ pub(crate) struct Targets {
 }
 
 /// Maximum texels of a surfel to each side, as in `splat.wesl`.
-const MOST_TEXELS: f32 = 16.0;
+const MAX_TEXELS: f32 = 16.0;
 
 /// Maximum difference of slopes within a flat piece, as in `surfels.wesl`.
 const FLAT: f32 = 0.0625;
@@ -112,7 +112,7 @@ impl Targets {
             let b = m.y_axis + m.z_axis * gradient.y;
             let p = h.xy() / h.w;
             let half_extent =
-                (((a.xy() - p * a.w).abs() + (b.xy() - p * b.w).abs()) * (reach / h.w)).min(Vec2::splat(MOST_TEXELS));
+                (((a.xy() - p * a.w).abs() + (b.xy() - p * b.w).abs()) * (reach / h.w)).min(Vec2::splat(MAX_TEXELS));
             let low = (p - half_extent - 0.5).ceil().max(Vec2::ZERO);
             let high = (p + half_extent - 0.5).floor().min(Vec2::splat(last));
             let mut y = low.y;

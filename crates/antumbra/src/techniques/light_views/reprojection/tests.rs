@@ -34,7 +34,7 @@ fn moved() -> Mat4 {
 }
 
 #[test]
-fn twin_s_surfels_give_the_plane_itself_without_gaps() {
+fn cpu_reference_s_surfels_give_the_plane_itself_without_gaps() {
     // In the moved view (x, y) = (X/2 + 11 d − 4, Y/2 − 7 d + 3), d as in the centre: solved for (X, Y, d).
     let depth_in_view = |p: Vec2| {
         // d = .4 + .002 X − .001 Y with X = 2 (x + 4 − 11 d), Y = 2 (y − 3 + 7 d).
@@ -66,7 +66,7 @@ fn twin_s_surfels_give_the_plane_itself_without_gaps() {
 }
 
 #[test]
-fn twin_keeps_the_nearest_and_drops_what_is_outside() {
+fn cpu_reference_keeps_the_nearest_and_drops_what_is_outside() {
     let mut targets = Targets::new(4, 1);
     for (pos, depth) in [(Vec2::new(1.5, 2.5), 0.5), (Vec2::new(1.2, 2.9), 0.7), (Vec2::new(1.7, 2.1), 0.6)] {
         targets.scatter_point(&[(0, Mat4::IDENTITY)], pos, depth, None);
@@ -147,7 +147,7 @@ fn gradients_of(bytes: &[u8]) -> Vec<Vec2> {
 }
 
 #[test]
-fn twin_s_flat_pieces_are_one_surfel_and_bent_ones_four() {
+fn cpu_reference_s_flat_pieces_are_one_surfel_and_bent_ones_four() {
     let widths = (0.0, 0.01);
     let flat = |x: f32, y: f32| Surfel {
         pos: Vec2::new(x, y),
@@ -173,7 +173,7 @@ fn twin_s_flat_pieces_are_one_surfel_and_bent_ones_four() {
 }
 
 #[test]
-fn each_view_equals_the_twin_s() {
+fn each_view_equals_the_cpu_reference_s() {
     let Some(gpu) = gpu() else { return };
     let case = case(gpu);
     for (splat, projection) in [
@@ -189,7 +189,7 @@ fn each_view_equals_the_twin_s() {
         let Parts { matrices, widths, central: [depths, gradients], .. } = engine.parts();
         let side = side(&settings);
         let map_count = texels.len() / (side * side) as usize;
-        let mut twin = Targets::new(side, map_count as u32);
+        let mut cpu_reference = Targets::new(side, map_count as u32);
         let mut flat = 0;
         for slice in 0..depths.depth_or_array_layers() {
             let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&read_layer(gpu, depths, slice));
@@ -210,9 +210,9 @@ fn each_view_equals_the_twin_s() {
                 let quad = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| fragment(x, y));
                 for point in quad.iter().filter(|point| point.depth > 0.0) {
                     match splat {
-                        Splat::Point => twin.scatter_point(&matrices, point.pos, point.depth, None),
+                        Splat::Point => cpu_reference.scatter_point(&matrices, point.pos, point.depth, None),
                         Splat::NearCentre(reach) => {
-                            twin.scatter_point(&matrices, point.pos, point.depth, Some(reach));
+                            cpu_reference.scatter_point(&matrices, point.pos, point.depth, Some(reach));
                         }
                         Splat::Surfel(_) => {}
                     }
@@ -220,14 +220,14 @@ fn each_view_equals_the_twin_s() {
                 if matches!(splat, Splat::Surfel(_)) {
                     let surfels = surfels_of(&quad, widths[view]);
                     flat += usize::from(surfels.len() == 1 && quad.iter().all(|f| f.depth > 0.0));
-                    surfels.iter().for_each(|surfel| twin.scatter_surfel(&matrices, surfel));
+                    surfels.iter().for_each(|surfel| cpu_reference.scatter_surfel(&matrices, surfel));
                 }
             }
         }
         // A cube's surfels divide by a sum of products, which compilers may order as they like.
         let units = if matches!((splat, projection), (Splat::Surfel(_), ReprojectionProjection::Cube)) { 4 } else { 0 };
-        let differing = texels.iter().zip(&twin.texels).filter(|(a, b)| a.abs_diff(**b) > units).count();
-        let stored = twin.texels.iter().filter(|texel| **texel != 0).count();
+        let differing = texels.iter().zip(&cpu_reference.texels).filter(|(a, b)| a.abs_diff(**b) > units).count();
+        let stored = cpu_reference.texels.iter().filter(|texel| **texel != 0).count();
         assert!(stored > texels.len() / 20, "{splat:?}: only {stored} of {} texels", texels.len());
         // A graphics card's compiler fuses products and sums as it likes, and its division is not exact: 65 of 25 045 on an NVIDIA
         // H200.
@@ -263,7 +263,7 @@ fn names_of(depths: &[f32], gradients: &[Vec2], size: usize, widths: (f32, f32))
 }
 
 #[test]
-fn the_list_holds_each_of_the_twin_s_surfels_once() {
+fn the_list_holds_each_of_the_cpu_reference_s_surfels_once() {
     let Some(gpu) = gpu() else { return };
     let (smooth, crumpled) = (case(gpu), crumpled(gpu));
     // Whole workgroups of 16 texels, one texel more and less, less than one, and an odd side; and fragments of which any may be the

@@ -298,21 +298,21 @@ impl Meshes {
             });
         }
         let is_first = self.nodes.buffer.is_none();
-        let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
+        let max_bytes = stage.device.limits().max_storage_buffer_binding_size;
         let needed =
             asked.iter().map(Asked::vectors).fold([0; 2], |[a, b], [nodes, triangles]| [a + nodes, b + triangles]);
         for (room, needed) in [&mut self.nodes, &mut self.triangles].into_iter().zip(needed) {
-            if needed * VECTOR_BYTES > most_bytes {
+            if needed * VECTOR_BYTES > max_bytes {
                 let count: u64 = asked.iter().map(|mesh| u64::from(mesh.triangle_count())).sum();
                 return Err(Error::Unsupported {
                     technique,
                     needed: format!("{} bytes for the trees of {count} triangles", needed * VECTOR_BYTES),
-                    had: format!("at most {most_bytes} bytes a binding"),
+                    had: format!("at most {max_bytes} bytes a binding"),
                     remedy: "cast with fewer or coarser meshes, or ask for a larger max_storage_buffer_binding_size",
                 });
             }
             let with_more = if is_first { needed } else { needed + needed / 2 };
-            room.renew(stage, with_more.min(most_bytes / VECTOR_BYTES).max(u64::from(FRAME_VECTORS)));
+            room.renew(stage, with_more.min(max_bytes / VECTOR_BYTES).max(u64::from(FRAME_VECTORS)));
         }
         self.kept.clear();
         for mesh in asked {

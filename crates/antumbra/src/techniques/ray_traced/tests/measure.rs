@@ -174,12 +174,12 @@ fn a_frame_of_five_hundred_instances_and_a_skinned_mesh() {
         gpu.queue().write_buffer(&skinned.positions, 0, bytemuck::cast_slice(&bent));
         set.mesh_changed(skinned_id, &skinned.mesh()).expect("the same size");
         update(gpu, &mut set);
-        let before = gpu.objects_made();
+        let before = gpu.objects_created();
         let of_rays = times(gpu, &mut timer, &case, &set, &mut rays);
         let of_hard = times(gpu, &mut timer, &case, &set, &mut hard);
         println!("frame {frame}: {of_rays:.3?}; hard: {of_hard:.3?}");
         if frame > 3 {
-            assert_eq!(gpu.objects_made(), before, "objects made in a steady frame");
+            assert_eq!(gpu.objects_created(), before, "objects made in a steady frame");
         }
     }
 }

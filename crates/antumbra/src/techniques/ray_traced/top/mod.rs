@@ -66,13 +66,13 @@ impl Top {
         mesh_nodes: &wgpu::Buffer,
     ) -> Result<(), Error> {
         let count: u64 = casters.iter().map(|caster| u64::from(caster.instance_count)).sum();
-        let most_bytes = stage.device.limits().max_storage_buffer_binding_size;
+        let max_bytes = stage.device.limits().max_storage_buffer_binding_size;
         let needed = 16 * u64::from(INSTANCE_VECTORS) * count;
-        if needed > most_bytes {
+        if needed > max_bytes {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{needed} bytes for {count} instances"),
-                had: format!("at most {most_bytes} bytes a binding"),
+                had: format!("at most {max_bytes} bytes a binding"),
                 remedy: "cast with fewer instances, or ask for a larger max_storage_buffer_binding_size",
             });
         }

@@ -73,7 +73,7 @@ impl Technique for AliasFree {
             lookup_size: 0,
             rotations: 0,
             turn: 0.0,
-            hair_scale: params.bias_scale,
+            ray_offset_scale: params.bias_scale,
             keep_bits: false,
             counts: false,
             is_sparse: false,

@@ -163,7 +163,7 @@ impl Technique for SampleBased {
             lookup_size: if params.evaluation == SampleEvaluation::Lookup { params.lookup_size } else { 0 },
             rotations,
             turn: (f64::from(run_of_turns) * TURN_OF_FRAME).fract() as f32,
-            hair_scale: params.bias_scale,
+            ray_offset_scale: params.bias_scale,
             keep_bits: params.keep_bits || weighs_irradiance,
             counts: params.count_tests,
             is_sparse: params.sub,

@@ -4,7 +4,7 @@ use crate::gpu::{gpu_structs, shared_constants};
 
 shared_constants! {
     /// Maximum number of squares along a ring, including those around it.
-    pub(crate) const MOST_SQUARES: u32 = 70, as in BACKPROJECTION_RESOLVE;
+    pub(crate) const MAX_SQUARES: u32 = 70, as in BACKPROJECTION_RESOLVE;
 }
 
 gpu_structs! {

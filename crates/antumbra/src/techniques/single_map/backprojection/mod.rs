@@ -36,7 +36,7 @@
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
-use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::light_map::map::{MapSearch, MapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{TapLists, TapUse, Taps, TapsProgram};
@@ -47,7 +47,7 @@ mod params;
 #[cfg(test)]
 mod tests;
 
-use gpu_types::{BackprojectionUniform, MOST_SQUARES};
+use gpu_types::{BackprojectionUniform, MAX_SQUARES};
 pub use params::{BackprojectionGaps, BackprojectionOccluders, BackprojectionParams};
 
 /// Additional squares along a ring: at either end two of the size of one square of the ring outside, and one that shows nothing.
@@ -80,7 +80,7 @@ impl Technique for Backprojection {
         let spread = LightSpread::of(frame.light);
         let uniform = BackprojectionUniform {
             sample_count: params.samples,
-            squares: params.squares.min(MOST_SQUARES - CUT_AND_EMPTY),
+            squares: params.squares.min(MAX_SQUARES - CUT_AND_EMPTY),
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
             light_extent: spread.extent,
@@ -91,7 +91,7 @@ impl Technique for Backprojection {
             },
         };
         let pass = ResolvePass {
-            map: OwnMapSettings::narrow(params.map_size),
+            map: MapSettings::narrow(params.map_size),
             constants: &constants(TapsProgram::of(&taps, 1), params.occluders),
             is_sparse: false,
         };

@@ -3,7 +3,7 @@
 use antumbra_light::{EmissionTexture, Light, LightShape};
 use glam::{Vec2, Vec3};
 
-use super::gpu_types::MOST_SQUARES;
+use super::gpu_types::MAX_SQUARES;
 use super::{BackprojectionParams, CUT_AND_EMPTY};
 use crate::TechniqueKind;
 use crate::contract::Params;
@@ -146,5 +146,5 @@ fn a_cover_that_fills_the_map_hides_all() {
 #[test]
 fn loops_hold_every_number_of_squares() {
     let spec = BackprojectionParams::specs().iter().find(|spec| spec.key == "squares").expect("a parameter");
-    assert_eq!(spec.range, Some((4.0, f64::from(MOST_SQUARES - CUT_AND_EMPTY))));
+    assert_eq!(spec.range, Some((4.0, f64::from(MAX_SQUARES - CUT_AND_EMPTY))));
 }

@@ -4,7 +4,7 @@ use crate::gpu::{gpu_structs, shared_constants};
 
 shared_constants! {
     /// Maximum number of 32-bit words; each light point has one bit.
-    pub(crate) const MOST_WORDS: u32 = 8, as in BITMASK_RESOLVE;
+    pub(crate) const MAX_WORDS: u32 = 8, as in BITMASK_RESOLVE;
 }
 
 gpu_structs! {

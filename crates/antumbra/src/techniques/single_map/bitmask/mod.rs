@@ -42,7 +42,7 @@
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
-use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::light_map::map::{MapSearch, MapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::taps::{TapLists, TapUse, Taps, TapsProgram};
@@ -53,7 +53,7 @@ mod params;
 #[cfg(test)]
 mod tests;
 
-use gpu_types::{BitmaskUniform, MOST_WORDS};
+use gpu_types::{BitmaskUniform, MAX_WORDS};
 pub use params::{BitmaskGaps, BitmaskParams};
 
 /// Bitmask soft shadows.
@@ -103,7 +103,7 @@ impl Technique for Bitmask {
             light_extent_axis: spread.extent_axis,
             bias_scale: params.bias_scale,
         };
-        let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
+        let map = MapSettings { layers, ..MapSettings::narrow(params.map_size) };
         let constants = constants(TapsProgram::of(&taps, layers), params.samples);
         let pass = ResolvePass { map, constants: &constants, is_sparse: false };
         let lists = TapLists([(taps, TapUse::Filter, params.samples)]);
@@ -127,5 +127,5 @@ impl Technique for Bitmask {
 fn constants(taps: TapsProgram, samples: u32) -> [(&'static str, f64); 4] {
     // The shader visits all points, whatever their order.
     let [kind, layers, emission, _] = taps.constants();
-    [kind, layers, emission, ("WORD_COUNT", f64::from(samples.div_ceil(32).min(MOST_WORDS)))]
+    [kind, layers, emission, ("WORD_COUNT", f64::from(samples.div_ceil(32).min(MAX_WORDS)))]
 }

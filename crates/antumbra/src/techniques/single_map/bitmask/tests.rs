@@ -154,5 +154,5 @@ fn larger_patches_keep_the_mean() {
 #[test]
 fn words_hold_every_number_of_samples() {
     let spec = BitmaskParams::specs().iter().find(|spec| spec.key == "samples").expect("a parameter");
-    assert_eq!(spec.range, Some((1.0, f64::from(32 * gpu_types::MOST_WORDS))));
+    assert_eq!(spec.range, Some((1.0, f64::from(32 * gpu_types::MAX_WORDS))));
 }

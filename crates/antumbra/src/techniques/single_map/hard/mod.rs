@@ -10,8 +10,8 @@
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
-use crate::light_map::light_view::Followed;
-use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::light_map::light_view::FollowedLight;
+use crate::light_map::map::{MapSearch, MapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::{KernelPoints, MapResolve, PreparedMapResolve, ResolvePass};
@@ -44,7 +44,7 @@ impl Technique for Hard {
         params: &HardParams,
     ) -> Result<PreparedMapResolve, Error> {
         let uniform = HardUniform { bias_scale: params.bias_scale };
-        let map = OwnMapSettings { followed: Followed::Middle, ..OwnMapSettings::narrow(params.map_size) };
+        let map = MapSettings { followed: FollowedLight::Center, ..MapSettings::narrow(params.map_size) };
         let pass = ResolvePass::of(map);
         self.resolve.prepare(stage, frame, &pass, &uniform, KernelPoints::without_points())
     }

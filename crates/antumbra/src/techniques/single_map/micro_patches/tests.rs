@@ -45,7 +45,7 @@ fn probed(gpu: &Gpu, squares: &[ProbedSquare]) -> Vec<[Patch; 3]> {
     gpu.queue().write_buffer(&input, 0, bytemuck::cast_slice(squares));
     let layout = Probe::layout(gpu);
     let pipeline = compute_pipeline(gpu, "test probe", shaders::PATCH_PROBE, &[&layout]);
-    let group = Probe { inputs: &input, outputs: &output }.kept_group(gpu, &layout);
+    let group = Probe { inputs: &input, outputs: &output }.cached_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     pass.set_pipeline(&pipeline);

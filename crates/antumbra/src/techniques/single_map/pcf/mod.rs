@@ -24,8 +24,8 @@ use glam::Vec2;
 
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Embeddable, Gpu, Recorder, Stage, TableKey};
-use crate::light_map::light_view::Followed;
-use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::light_map::light_view::FollowedLight;
+use crate::light_map::map::{MapSearch, MapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::{KernelPoints, MapResolve, PreparedMapResolve, ResolvePass};
@@ -79,7 +79,7 @@ impl Technique for Pcf {
             bias_scale: params.bias_scale,
             attach_contacts: params.attach_contacts.into(),
         };
-        let map = OwnMapSettings { followed: Followed::Middle, ..OwnMapSettings::square(params.map_size) };
+        let map = MapSettings { followed: FollowedLight::Center, ..MapSettings::square(params.map_size) };
         let pass = ResolvePass::of(map);
         self.resolve.prepare(stage, frame, &pass, &uniform, kernel)
     }

@@ -57,7 +57,7 @@ use antumbra_light::Light;
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame};
 use crate::gpu::{Embeddable, Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
-use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::light_map::map::{MapSearch, MapSettings};
 use crate::receivers::inputs::kind_of;
 use crate::shaders;
 use crate::techniques::Technique;
@@ -97,7 +97,7 @@ impl Technique for Pcss {
         let run = stage.noise_frame();
         let taps = Taps { light: frame.light, set: params.sample_set, seed: params.seed, run };
         // Lists of points are used in full.
-        let least = if taps.are_progressive() { LEAST_BEFORE_LIT } else { 1 };
+        let least = if taps.are_progressive() { MIN_BEFORE_LIT } else { 1 };
         let search_count = params.search_samples.max(least);
         let lists = TapLists([(taps, TapUse::Search, search_count), (taps, TapUse::Filter, params.samples)]);
         // With the sketch's comparison the nearest blocker would be the receiver itself. A host's map has no further layers.
@@ -116,7 +116,7 @@ impl Technique for Pcss {
             taps: TapsProgram::of(&taps, layers),
             means_of_ranges: attach_contacts && params.means == PcssMeans::Ranges,
         };
-        let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
+        let map = MapSettings { layers, ..MapSettings::narrow(params.map_size) };
         let pass = ResolvePass { map, constants: &program.constants(), is_sparse: params.sub };
         lists.with_kernel(|kernel| self.resolve.prepare(stage, frame, &pass, &uniform, kernel))
     }
@@ -140,7 +140,7 @@ impl Technique for Pcss {
 
 /// Minimum number of search taps without a blocker before a receiver counts as lit. With 8 of them and the mean of many frames, the
 /// outer penumbra on `leaning-plank` is too bright by an rmse of .016; with these, by .009.
-const LEAST_BEFORE_LIT: u32 = 16;
+const MIN_BEFORE_LIT: u32 = 16;
 
 /// Override constants of the pass.
 #[derive(Clone, Copy, Debug)]

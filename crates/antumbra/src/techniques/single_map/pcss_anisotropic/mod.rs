@@ -18,7 +18,7 @@
 use crate::contract::{DrawnMap, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::light_map::light_spread::LightSpread;
-use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::light_map::map::{MapSearch, MapSettings};
 use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::single_map::pcss::gpu_types::PcssUniform;
@@ -70,7 +70,7 @@ impl Technique for PcssAnisotropic {
             ..PcssUniform::of(params.search_samples, params.samples, &light)
         };
         let pass = ResolvePass {
-            map: OwnMapSettings::square(params.map_size),
+            map: MapSettings::square(params.map_size),
             constants: &search_constants(frame.light),
             is_sparse: params.sub,
         };

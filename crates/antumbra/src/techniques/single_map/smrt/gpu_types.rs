@@ -12,7 +12,7 @@ gpu_structs! {
         /// Number of rays, whose ends are the remaining taps.
         ray_count: u32,
         /// Maximum number of reads along a ray.
-        most_steps: u32,
+        max_steps: u32,
         rotate: u32,
         bias_scale: f32,
         /// Bound on the light points' offsets along right and up from the map's origin, metres (tangents for a sun).

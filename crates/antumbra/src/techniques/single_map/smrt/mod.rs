@@ -82,7 +82,7 @@ use glam::{UVec2, Vec2};
 use crate::contract::{DrawnMap, Error, PreparedCasters, PreparedFrame, SampleWeights};
 use crate::gpu::{Bindings, Gpu, Recorder, Stage, bindings, passed_texture};
 use crate::light_map::light_spread::LightSpread;
-use crate::light_map::map::{MapSearch, OwnMapSettings};
+use crate::light_map::map::{MapSearch, MapSettings};
 use crate::mask::smoothing::NOISY_FORMAT;
 use crate::shaders;
 use crate::techniques::Technique;
@@ -99,7 +99,7 @@ pub use params::SmrtParams;
 const TILE_PIXELS: u32 = 64;
 
 /// Maximum number of search taps of a tile: so many over the light and all scales leave no gap that matters.
-const MOST_SEARCH_TAPS: u32 = 4096;
+const MAX_SEARCH_TAPS: u32 = 4096;
 
 bindings! {
     struct NoisyWritten = "noisy visibility, written", COMPUTE, group 3 of [SMRT_RESOLVE] {
@@ -159,12 +159,12 @@ impl Technique for Smrt {
         let layers = if is_own { params.layers } else { 1 };
         let program = TapsProgram::of(&taps, layers);
         // Taps of all of a tile's pixels, up to a number that is enough for any.
-        let tile_search_count = (TILE_PIXELS * params.search_samples).min(MOST_SEARCH_TAPS.max(params.search_samples));
+        let tile_search_count = (TILE_PIXELS * params.search_samples).min(MAX_SEARCH_TAPS.max(params.search_samples));
         let uniform = SmrtUniform {
             tile_search_count,
             search_count: params.search_samples,
             ray_count: params.samples,
-            most_steps: params.steps,
+            max_steps: params.steps,
             rotate: params.rotate.into(),
             bias_scale: params.bias_scale,
             light_extent: spread.extent,
@@ -177,7 +177,7 @@ impl Technique for Smrt {
         let search_taps = Taps { set: SampleSet::Sobol, ..taps };
         let search = (search_taps, TapUse::Search, tile_search_count);
         let lists = TapLists([search, (taps, TapUse::Filter, params.samples)]);
-        let map = OwnMapSettings { layers, ..OwnMapSettings::narrow(params.map_size) };
+        let map = MapSettings { layers, ..MapSettings::narrow(params.map_size) };
         let pass = ResolvePass {
             map,
             constants: &constants(program, frame.noisy.is_some(), params.weights),

@@ -44,7 +44,7 @@ fn table(gpu: &Gpu, made: &mut SummedAreaTable, source: &[u8], size: UVec2, side
 }
 
 #[test]
-fn twin_matches_the_definition() {
+fn cpu_reference_matches_the_definition() {
     let size = UVec2::new(7, 5);
     let values: Vec<u32> = (0..35).map(|i| random(i, 0) >> 20).collect();
     for tile in [2, 4, 8] {
@@ -60,7 +60,7 @@ fn twin_matches_the_definition() {
 }
 
 #[test]
-fn twin_chooses_the_largest_tile_that_holds() {
+fn cpu_reference_chooses_the_largest_tile_that_holds() {
     // 2^20 per texel: 64² texels sum to exactly 2^32, one too many.
     let size = UVec2::splat(128);
     let mut values = vec![[1 << 20, 0, 0, 0]; 128 * 128];
@@ -106,7 +106,7 @@ fn check_integer(gpu: &Gpu, made: &mut SummedAreaTable, size: UVec2, side: u32) 
 }
 
 #[test]
-fn integer_tables_equal_the_twin_exactly() {
+fn integer_tables_equal_the_cpu_reference_exactly() {
     let Some(gpu) = gpu() else { return };
     let sizes = || SIZES.map(UVec2::splat).into_iter().chain([UVec2::new(1, 40), UVec2::new(129, 16)]);
     for scan in [Scan::Blocks, Scan::Doubling] {
@@ -126,7 +126,7 @@ fn integer_tables_equal_the_twin_exactly() {
 
 #[test]
 #[ignore = "long"]
-fn large_integer_tables_in_tiles_equal_the_twin_exactly() {
+fn large_integer_tables_in_tiles_equal_the_cpu_reference_exactly() {
     let Some(gpu) = gpu() else { return };
     let mut tiles = of(gpu, Sums::Integer, Scan::Blocks, Tiling::Tiles);
     check_integer(gpu, &mut tiles, UVec2::splat(4095), 64);
@@ -134,7 +134,7 @@ fn large_integer_tables_in_tiles_equal_the_twin_exactly() {
 }
 
 #[test]
-fn float_tables_equal_the_twin_to_1e_5() {
+fn float_tables_equal_the_cpu_reference_to_1e_5() {
     let Some(gpu) = gpu() else { return };
     for scan in [Scan::Blocks, Scan::Doubling] {
         let mut made = of(gpu, Sums::Float, scan, Tiling::Whole);
@@ -156,7 +156,7 @@ fn float_tables_equal_the_twin_to_1e_5() {
 }
 
 #[test]
-fn the_gpu_chooses_the_twin_s_tile() {
+fn the_gpu_chooses_the_cpu_reference_s_tile() {
     let Some(gpu) = gpu() else { return };
     let mut seen = std::collections::BTreeSet::new();
     let mut counts = std::collections::BTreeSet::new();

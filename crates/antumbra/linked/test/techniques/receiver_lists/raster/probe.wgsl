@@ -38,14 +38,14 @@ struct windows_Window {
     low: vec2f,
     scale: vec2f,
     depth: f32,
-    hair: f32,
+    ray_offset: f32,
     reach: f32
 }
 
-fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, hair: f32) -> windows_Window {
+fn windows_window_from(side: u32, low: vec2f, high: vec2f, depth: f32, ray_offset: f32) -> windows_Window {
     let reach = max(max(abs(low.x), abs(low.y)), max(abs(high.x), abs(high.y)));
     let size = max(high - low, vec2f(0.0001 * reach + 1e-30));
-    return windows_Window(low, f32(side) / size, depth, hair, reach);
+    return windows_Window(low, f32(side) / size, depth, ray_offset, reach);
 }
 
 struct region_Region {
@@ -131,7 +131,7 @@ fn supporting_plane_cut_of(settings: settings_SampleSettings, window: windows_Wi
     }
     let depth_across = select(window.depth, 1.0, is_parallel);
     let terms = window.reach * abs(depth_across) * (abs(normal.x) + abs(normal.y)) + abs(normal.z * window.depth) + dot(abs(normal), abs(a));
-    let slack = supporting_plane_CUT_SLACK * terms + 2.0 * length(normal) * window.hair * abs(depth_across);
+    let slack = supporting_plane_CUT_SLACK * terms + 2.0 * length(normal) * window.ray_offset * abs(depth_across);
     let per_texel = side * depth_across * normal.xy / window.scale;
     let at_low = side * (depth_across * dot(normal.xy, window.low) + normal.z * window.depth - height);
     return vec3f(-per_texel, slack - at_low + 0.5 * (abs(per_texel.x) + abs(per_texel.y)));
@@ -158,12 +158,12 @@ struct settings_SampleSettings {
     pixel_words: u32,
     rotations: u32,
     turn: f32,
-    hair_scale: f32,
-    most_groups: u32,
+    ray_offset_scale: f32,
+    max_groups: u32,
     cells_across: u32,
-    most_cells: u32,
-    turns_per_triangle: u32,
-    most_turns: u32,
+    max_cells: u32,
+    iterations_per_triangle: u32,
+    max_iterations: u32,
     first_passed: u32,
     window_count: u32,
     window: u32,

@@ -3,13 +3,13 @@
 const LEVELS = 13u;
 
 struct Hidden {
-    words: array<u32, settings_MOST_WORDS>
+    words: array<u32, settings_MAX_WORDS>
 }
 
 fn below_horizon(light: light_taps_LightPlane, share: f32) -> Hidden {
     var hidden = Hidden();
     let is_whole = horizon_has_horizon_share() && share >= 1.0;
-    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MAX_WORDS); word++) {
         for (var i = 0u; i < 32u; i++) {
             let point = 32u * word + i;
             if point >= settings_bitmask.sample_count {
@@ -25,7 +25,7 @@ fn below_horizon(light: light_taps_LightPlane, share: f32) -> Hidden {
 
 fn is_all_hidden(hidden: Hidden) -> bool {
     var bits = 4294967295u;
-    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MAX_WORDS); word++) {
         bits &= hidden.words[word];
     }
     return bits == 4294967295u;
@@ -38,7 +38,7 @@ fn open_points(bits: u32, bins: light_bits_Bins, word: u32) -> u32 {
 
 fn hide_by(patch_: patch_Patch, wider: patch_Patch, bins: light_bits_Bins, light: light_taps_LightPlane, hidden: ptr<function, Hidden>) -> bool {
     var has_more = false;
-    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MAX_WORDS); word++) {
         let before = (*hidden).words[word];
         var bits = before;
         for (var rest = open_points(before, bins, word); rest > 0u; rest &= rest - 1u) {
@@ -130,7 +130,7 @@ fn hide_below(window: window_Window, root: vec2u, layers: Layers, light: light_t
 
 fn visible_share(light: light_taps_LightPlane, hidden: Hidden) -> f32 {
     var sums = vec2f();
-    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MAX_WORDS); word++) {
         if !light_taps_HAS_EMISSION {
             sums += vec2f(f32(countOneBits(~hidden.words[word])), 0.0);
             continue;
@@ -156,7 +156,7 @@ fn hide_all(window: window_Window, layers: Layers, light: light_taps_LightPlane,
 
 fn open_bounds(light: light_taps_LightPlane, hidden: Hidden) -> patch_Patch {
     var bounds = patch_Patch(vec2f(1e30), vec2f(-1e30));
-    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MAX_WORDS); word++) {
         for (var rest = ~hidden.words[word]; rest > 0u; rest &= rest - 1u) {
             let offset = light_taps_texels_of(light, light_taps_place_of(light, light_taps_taps[32u * word + countTrailingZeros(rest)].xyz));
             bounds = patch_Patch(min(bounds.low, offset), max(bounds.high, offset));
@@ -176,8 +176,8 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let plane = receiver_light_biased_plane(receiver, map_receiver_TEXEL_BIAS * settings_bitmask.bias_scale);
     let pos_in_light = space_light_from_world(map_light_view, receiver.pos_in_world);
     let extent = blocker_range_seen_extent(settings_bitmask.light_extent, settings_bitmask.light_extent_axis, pos_in_light);
-    let most_g = blocker_range_largest_g(plane, extent);
-    if most_g <= 0.0 && horizon_has_horizon_share() {
+    let max_g = blocker_range_largest_g(plane, extent);
+    if max_g <= 0.0 && horizon_has_horizon_share() {
         return share;
     }
     let shift = select(vec2f(), noise_shift_of_pixel(pixel), settings_bitmask.rotate == 1u);
@@ -185,7 +185,7 @@ fn visibility(receiver: inputs_Receiver, pixel: vec2u) -> f32 {
     let texels = light_taps_texels_per_offset();
     let reach = abs(texels[0]) * extent.x + abs(texels[1]) * extent.y;
     let at = map_receiver_map_receiver(plane, pos_in_light.z);
-    var window = window_window_of(at, pos_in_light.z, reach, most_g, settings_bitmask.patches, shown_texel_shown_share(shift));
+    var window = window_window_of(at, pos_in_light.z, reach, max_g, settings_bitmask.patches, shown_texel_shown_share(shift));
     var hidden = below_horizon(light, share);
     for (var part = 0u; part < min(behind_LAYER_COUNT, 2u) && !is_all_hidden(hidden); part++) {
         if part == 1u {
@@ -344,10 +344,10 @@ fn receiver_light_biased_plane(receiver: inputs_Receiver, bias_scale: f32) -> sp
     return receiver_light_biased_plane_within(receiver, bias_scale, space_min_grazing_sine(map_light_view));
 }
 
-fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, least_sine: f32) -> space_ReceiverPlane {
-    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), least_sine);
+fn receiver_light_biased_plane_within(receiver: inputs_Receiver, bias_scale: f32, min_sine: f32) -> space_ReceiverPlane {
+    let sine = max(space_grazing_sine(map_light_view, receiver.pos_in_world, receiver.normal_in_world), min_sine);
     let bias_m = bias_automatic_bias_m(space_texel_width_m(map_light_view, receiver.pos_in_world), sine, bias_scale);
-    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, least_sine);
+    return space_receiver_plane_within(map_light_view, receiver.pos_in_world, receiver.normal_in_world, bias_m, min_sine);
 }
 
 struct space_LightViewGpu {
@@ -366,7 +366,7 @@ struct space_LightViewGpu {
     near_m: f32,
     far_m: f32,
     texel_in_plane: f32,
-    held_from_m: f32,
+    complete_from_m: f32,
     warp: vec2f,
     plane_center: vec2f
 }
@@ -442,7 +442,7 @@ fn space_uv_step_at(view: space_LightViewGpu, uv: vec2f, step: vec2f) -> vec2f {
     return space_uv_step_of_plane(view, in_warp);
 }
 
-fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, least_sine: f32) -> space_ReceiverPlane {
+fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f, bias_m: f32, min_sine: f32) -> space_ReceiverPlane {
     let p = space_light_from_world(view, x);
     let n = vec3f(dot(normal_in_world, view.right_in_world), dot(normal_in_world, view.up_in_world), dot(normal_in_world, view.axis_in_world));
     var plane: vec2f;
@@ -455,14 +455,14 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
         let toward = max(1.0 - bias_m / distance, 0.001);
         biased_z = p.z * toward;
         let k = dot(n, p) * toward;
-        let k_min = least_sine * distance;
+        let k_min = min_sine * distance;
         depth_per_plane = view.depth_scale * n.xy / select(max(k, k_min), min(k, -k_min), k < 0.0);
         faces_away = k > 0.0;
     }
     else {
         plane = p.xy;
         biased_z = p.z - bias_m;
-        let nz = select(max(n.z, least_sine), min(n.z, -least_sine), n.z < 0.0);
+        let nz = select(max(n.z, min_sine), min(n.z, -min_sine), n.z < 0.0);
         depth_per_plane = -view.depth_scale * n.xy / nz;
         faces_away = n.z > 0.0;
     }
@@ -478,7 +478,7 @@ fn space_receiver_plane_within(view: space_LightViewGpu, x: vec3f, normal_in_wor
 }
 
 fn space_g_beyond_window(view: space_LightViewGpu, z_m: f32) -> f32 {
-    return select(1e30, 1.0 / max(view.held_from_m, 1e-30) - 1.0 / z_m, view.held_from_m > 0.0);
+    return select(1e30, 1.0 / max(view.complete_from_m, 1e-30) - 1.0 / z_m, view.complete_from_m > 0.0);
 }
 
 fn space_grazing_sine(view: space_LightViewGpu, x: vec3f, normal_in_world: vec3f) -> f32 {
@@ -694,7 +694,7 @@ struct light_LightSource {
     half_up: f32,
     axis_in_world: vec3f,
     half_axis: f32,
-    reach_tangent: f32,
+    max_angle_tangent: f32,
     point_count: u32,
     emission_size: vec2u,
     cone_cosine: f32,
@@ -712,11 +712,11 @@ fn light_reaches(light: light_LightSource, x: vec3f) -> bool {
     if light.cone_cosine > 0.0 && depth < light.cone_cosine * length(from_center) {
         return false;
     }
-    if light.reach_tangent == 0.0 {
+    if light.max_angle_tangent == 0.0 {
         let has_front = light.kind == light_KIND_RECTANGLE || light.kind == light_KIND_DISK;
         return depth > 0.0 || !has_front;
     }
-    let half_width = depth * light.reach_tangent;
+    let half_width = depth * light.max_angle_tangent;
     return depth > 0.0 && abs(dot(from_center, light.right_in_world)) <= half_width && abs(dot(from_center, light.up_in_world)) <= half_width;
 }
 
@@ -752,10 +752,10 @@ fn light_bits_has_table() -> bool {
     return light_taps_LIGHT_KIND != light_KIND_ELLIPSOID && light_taps_LIGHT_KIND != light_KIND_POINTS;
 }
 
-var<workgroup> light_bits_prefixes: array<u32, 2u * light_bits_PREFIXES * settings_MOST_WORDS>;
+var<workgroup> light_bits_prefixes: array<u32, 2u * light_bits_PREFIXES * settings_MAX_WORDS>;
 
 fn light_bits_word_of(axis: u32, bins: u32, word: u32) -> u32 {
-    return (axis * light_bits_PREFIXES + bins) * settings_MOST_WORDS + word;
+    return (axis * light_bits_PREFIXES + bins) * settings_MAX_WORDS + word;
 }
 
 fn light_bits_table_place(tap: vec2f) -> vec2f {
@@ -765,7 +765,7 @@ fn light_bits_table_place(tap: vec2f) -> vec2f {
 fn light_bits_make_prefix(lane: u32) {
     let axis = lane / light_bits_BINS;
     let bin = lane % light_bits_BINS;
-    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MOST_WORDS); word++) {
+    for (var word = 0u; word < min(settings_WORD_COUNT, settings_MAX_WORDS); word++) {
         var bits = 0u;
         for (var i = 0u; i < 32u; i++) {
             let point = 32u * word + i;
@@ -830,7 +830,7 @@ var<uniform> settings_bitmask: settings_BitmaskUniform;
 
 override settings_WORD_COUNT: u32 = 2u;
 
-const settings_MOST_WORDS: u32 = 8;
+const settings_MAX_WORDS: u32 = 8;
 
 override light_taps_LIGHT_KIND: u32 = 0u;
 
@@ -958,7 +958,7 @@ struct map_receiver_MapReceiver {
     away_margin: f32
 }
 
-const map_receiver_LEAST_MARGIN = 1e-30;
+const map_receiver_MIN_MARGIN = 1e-30;
 
 fn map_receiver_faces_away(receiver: map_receiver_MapReceiver) -> bool {
     return receiver.away_margin > 0.0;
@@ -969,7 +969,7 @@ fn map_receiver_map_receiver(plane: space_ReceiverPlane, z_m: f32) -> map_receiv
     let center = plane.uv * map_light_view.map_size;
     let slope = sign * plane.depth_per_uv / map_light_view.map_size;
     let depth = sign * plane.depth;
-    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_LEAST_MARGIN), plane.faces_away));
+    return map_receiver_MapReceiver(center, depth, depth + dot(slope, 0.5 - center), slope, 1.0 / abs(map_light_view.depth_scale), space_g_beyond_window(map_light_view, z_m), select(0.0, max(2.0 * abs(plane.bias), map_receiver_MIN_MARGIN), plane.faces_away));
 }
 
 fn map_receiver_g_of(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
@@ -983,16 +983,16 @@ fn map_receiver_stored_depth(texel: vec2u, layer: u32) -> f32 {
     return map_light_view.depth_sign * textureLoad(behind_further_layers, texel, layer - 1u, 0);
 }
 
-fn map_receiver_least_depth() -> f32 {
+fn map_receiver_min_depth() -> f32 {
     return min(map_light_view.depth_sign, 0.0);
 }
 
-fn map_receiver_most_depth() -> f32 {
+fn map_receiver_max_depth() -> f32 {
     return max(map_light_view.depth_sign, 0.0);
 }
 
 fn map_receiver_held(receiver: map_receiver_MapReceiver, depth: f32) -> f32 {
-    return clamp(max(depth, receiver.depth), map_receiver_least_depth(), map_receiver_most_depth());
+    return clamp(max(depth, receiver.depth), map_receiver_min_depth(), map_receiver_max_depth());
 }
 
 fn map_receiver_plane_depth_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> f32 {
@@ -1006,7 +1006,7 @@ struct map_receiver_BlockingDepths {
 
 fn map_receiver_blocking_depths(receiver: map_receiver_MapReceiver, plane_depths: vec4f) -> map_receiver_BlockingDepths {
     let least = select(max(plane_depths, vec4f(receiver.depth)), vec4f(receiver.depth), map_receiver_faces_away(receiver));
-    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_least_depth()), vec4f(map_receiver_most_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
+    return map_receiver_BlockingDepths(clamp(least, vec4f(map_receiver_min_depth()), vec4f(map_receiver_max_depth())), select(vec4f(map_receiver_NO_G), plane_depths - receiver.away_margin, map_receiver_faces_away(receiver)));
 }
 
 fn map_receiver_blocking_depths_at(receiver: map_receiver_MapReceiver, texel: vec2f) -> vec2f {
@@ -1137,10 +1137,10 @@ struct window_Square {
 
 const window_ROOTS = 4u;
 
-fn window_window_of(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, most_g: f32, parts: u32, share: vec2f) -> window_Window {
+fn window_window_of(at: map_receiver_MapReceiver, z_m: f32, extent: vec2f, max_g: f32, parts: u32, share: vec2f) -> window_Window {
     let last = map_light_view.map_size - 1.0;
-    let low = vec2u(clamp(at.center - extent * most_g, vec2f(), last));
-    let high = vec2u(clamp(at.center + extent * most_g, vec2f(), last));
+    let low = vec2u(clamp(at.center - extent * max_g, vec2f(), last));
+    let high = vec2u(clamp(at.center + extent * max_g, vec2f(), last));
     let span = max(high.x - low.x, high.y - low.y);
     let level = 32u - countLeadingZeros(span / window_ROOTS);
     let first = low >> vec2u(level);

@@ -97,10 +97,14 @@ fn every_shape_has_the_sum_over_its_bits() {
             let all: DVec3 = given.iter().sum();
             let open = |(slot, _): &(usize, &DVec3)| is_open(*pixel, *slot);
             let seen: DVec3 = given.iter().enumerate().filter(open).map(|(_, given)| *given).sum();
-            let twin = seen / all;
+            let cpu_reference = seen / all;
             let ours = DVec3::from([0, 1, 2].map(|k| f64::from(masks[k][*pixel])));
-            assert!(ours.abs_diff_eq(twin, 2e-4), "{:?} at {p}: {ours}, twin {twin}", case.light.shape);
-            partly += usize::from(twin.x > 0.05 && twin.x < 0.95);
+            assert!(
+                ours.abs_diff_eq(cpu_reference, 2e-4),
+                "{:?} at {p}: {ours}, CPU reference {cpu_reference}",
+                case.light.shape
+            );
+            partly += usize::from(cpu_reference.x > 0.05 && cpu_reference.x < 0.95);
         }
         assert!(partly > 100, "{:?}: {partly} pixels in penumbra", case.light.shape);
     }

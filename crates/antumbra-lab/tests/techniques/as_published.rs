@@ -8,7 +8,7 @@ use antumbra_lab::metrics::Metrics;
 use crate::common::{Judged, lab};
 
 /// Metrics with the paper's parameters, overridden by `then`.
-fn as_printed(lab: &LabDevice, judged: &Judged, kind: TechniqueKind, then: &[(&str, &str)]) -> Metrics {
+fn as_published(lab: &LabDevice, judged: &Judged, kind: TechniqueKind, then: &[(&str, &str)]) -> Metrics {
     let printed: Vec<_> =
         kind.quality_settings(Quality::Paper).into_iter().map(|(key, value)| (key, value.to_string())).collect();
     let mut settings: Vec<(&str, &str)> = printed.iter().map(|(key, value)| (*key, value.as_str())).collect();
@@ -25,7 +25,7 @@ fn rmse(metrics: &Metrics) -> f64 {
 
 /// RMSE with the paper's parameters alone.
 fn printed(lab: &LabDevice, judged: &Judged, kind: TechniqueKind) -> f64 {
-    rmse(&as_printed(lab, judged, kind, &[]))
+    rmse(&as_published(lab, judged, kind, &[]))
 }
 
 /// 256 light samples suffice for errors of hundredths.
@@ -59,7 +59,7 @@ fn papers_keep_their_figures() {
 fn the_consistent_exponent_of_essm_holds() {
     let Some(lab) = lab() else { return };
     let judged = judged("builtin:leaning-plank");
-    let error = |then: &[(&str, &str)]| rmse(&as_printed(lab, &judged, TechniqueKind::Essm, then));
+    let error = |then: &[(&str, &str)]| rmse(&as_published(lab, &judged, TechniqueKind::Essm, then));
     let contradictory = error(&[("exponent", "80")]);
     let consistent = error(&[]);
     let more_bits = error(&[("precision_bits", "24"), ("exponent", "16.635")]);
@@ -106,7 +106,7 @@ fn each_switch_of_multi_layer_is_what_it_says() {
     let Some(lab) = lab() else { return };
     let (plank, overlap) = (judged("builtin:leaning-plank"), judged("builtin:overlap"));
     let error =
-        |judged: &Judged, then: &[(&str, &str)]| rmse(&as_printed(lab, judged, TechniqueKind::MultiLayer, then));
+        |judged: &Judged, then: &[(&str, &str)]| rmse(&as_published(lab, judged, TechniqueKind::MultiLayer, then));
     let paper = [error(&plank, &[]), error(&overlap, &[])];
     // Figure 10: without interpolation between levels, steps between them are visible.
     let bilinear = [("level_weights", "none")];
@@ -165,7 +165,7 @@ fn a_fixed_level_blurs_by_its_width() {
 
 /// Lauritzen and McCool 2008: leakage that each of our switches removes, judged against the filter kernel.
 #[test]
-fn lvsm_as_printed_bleeds_more_than_ours_and_less_than_one_layer() {
+fn lvsm_as_published_bleeds_more_than_ours_and_less_than_one_layer() {
     let Some(lab) = lab() else { return };
     let judged = judged("builtin:overlap");
     let leak = |kind: TechniqueKind, settings: &[(&str, &str)]| {
@@ -175,16 +175,16 @@ fn lvsm_as_printed_bleeds_more_than_ours_and_less_than_one_layer() {
         leak
     };
     let by_distance = ("depth_axis", "distance");
-    let as_printed = as_printed(lab, &judged, TechniqueKind::Lvsm, &[]).umbra_leak.expect("an umbra");
+    let as_published = as_published(lab, &judged, TechniqueKind::Lvsm, &[]).umbra_leak.expect("an umbra");
     let vsm = leak(TechniqueKind::Vsm, &[by_distance]);
     let ours = leak(TechniqueKind::Lvsm, &[by_distance]);
-    assert!(ours < as_printed && as_printed < 0.5 * vsm, "ours {ours}, printed {as_printed}, one layer {vsm}");
+    assert!(ours < as_published && as_published < 0.5 * vsm, "ours {ours}, printed {as_published}, one layer {vsm}");
     // Settings in which a switch has an effect: many layers with much overlap, or the few layers of the map alone.
     let wide = [("depth_axis", "light"), ("relax_over", "map"), ("layers", "8"), ("overlap", "4"), ("map_size", "512")];
     let few = [("relax_over", "map")];
     for (usual, switch) in [
         (wide.as_slice(), ("bound", "chebyshev")),
-        (&wide, ("relax_over", "map_as_printed")),
+        (&wide, ("relax_over", "map_as_published")),
         (&wide, ("transition", "mixed")),
         (&few, ("teleport", "weight")),
         (&few, ("relax_background", "true")),
