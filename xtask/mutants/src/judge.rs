@@ -46,7 +46,7 @@ impl Record {
 /// What is thought of a test that has not been asked yet: that of one beside the source, that uses little else than what
 /// is changed, or that holds whole masks against kept ones.
 fn at_first(test: &Test, known: Option<&Measured>, source: &str, shaders: &BTreeSet<String>) -> f64 {
-    if test.is_kept() {
+    if test.is_golden() {
         return 0.5;
     }
     let shared = test.name.split("::").zip(source.split('/')).take_while(|(a, b)| a == b).count();

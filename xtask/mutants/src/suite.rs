@@ -12,7 +12,7 @@ use crate::sources::{Folder, write};
 
 /// The laboratory's tests of whole techniques, and those among them that are asked always.
 const TECHNIQUES: &str = "techniques";
-const KEPT: &str = "kept::";
+const GOLDEN: &str = "golden::";
 
 /// One test of one test program.
 #[derive(Clone, Debug)]
@@ -24,8 +24,8 @@ pub struct Test {
 
 impl Test {
     /// Whether it holds a technique's masks against kept ones.
-    pub fn is_kept(&self) -> bool {
-        self.program.ends_with(TECHNIQUES) && self.name.starts_with(KEPT)
+    pub fn is_golden(&self) -> bool {
+        self.program.ends_with(TECHNIQUES) && self.name.starts_with(GOLDEN)
     }
 
     /// As reports name it.
@@ -92,7 +92,7 @@ impl Suite {
         let mut suite = Self { programs, tests: Vec::new(), measured: Mutex::new(measured), store: store.to_owned() };
         suite.tests = suite.listed()?;
         if !is_wide {
-            suite.tests.retain(|test| !test.program.ends_with(TECHNIQUES) || test.is_kept());
+            suite.tests.retain(|test| !test.program.ends_with(TECHNIQUES) || test.is_golden());
         }
         Ok(suite)
     }
@@ -130,7 +130,7 @@ impl Suite {
     /// # Errors
     /// Where a program cannot be run, or a test fails.
     pub fn learn(&self, folder: &Folder) -> Result<(), String> {
-        let is_new = |test: &&Test| test.is_kept() && self.known(test).is_none();
+        let is_new = |test: &&Test| test.is_golden() && self.known(test).is_none();
         for test in self.tests.iter().filter(is_new) {
             if self.run(test, folder, false, Duration::from_secs(600))?.outcome != Outcome::Passed {
                 return Err(format!("`{}` fails with nothing changed", test.shown()));

@@ -1,8 +1,8 @@
-//! Golden masks in `tests/kept/`. Every technique is drawn with small maps on several test scenes, and on one of them with
+//! Golden masks in `tests/golden/`. Every technique is drawn with small maps on several test scenes, and on one of them with
 //! each of its parameters at another value, so that no change of a shader passes unnoticed.
 //!
 //! Other modules compare masks with traced rays; golden masks show that nothing has changed. After an intended change
-//! update them by `ANTUMBRA_KEEP=1 cargo test -p antumbra-lab --test techniques kept`, and inspect them.
+//! update them by `ANTUMBRA_UPDATE_GOLDEN=1 cargo test -p antumbra-lab --test techniques golden`, and inspect them.
 //!
 //! A technique's image contains a mask for each test scene, parameter or combination; each line of its text names a mask and its mean.
 
@@ -42,7 +42,7 @@ const SAME_PIXELS: usize = 3;
 const SAME_MEAN: f64 = 2e-5;
 /// Larger tolerances for masks that depend on last bits: technique, label, number of pixels, change of the mean, and reason. Versions of
 /// software Mesa that share a name differ by these, because they compile sums in other orders and with other rounding.
-const ROUGH: [(TechniqueKind, &str, usize, f64, &str); 2] = [
+const LOOSE_TOLERANCES: [(TechniqueKind, &str, usize, f64, &str); 2] = [
     (TechniqueKind::Vssm, "a ball at the stairs' horizon", 16, 5e-4, NEAR_NONE),
     (TechniqueKind::Evssm, "a ball at the stairs' horizon", 20, 1.2e-3, NEAR_NONE),
 ];
@@ -124,14 +124,14 @@ const FRAMES: u32 = 4;
 const OVER_TIME: [&str; 2] = ["jitter", "accumulate"];
 
 /// Test scene and settings of a golden mask, with its label.
-struct Kept {
+struct GoldenCase {
     label: String,
     stage: usize,
     settings: Vec<(&'static str, String)>,
     is_denoised: bool,
 }
 
-impl Kept {
+impl GoldenCase {
     fn is_over_time(&self) -> bool {
         self.is_denoised || self.settings.iter().any(|(key, _)| OVER_TIME.contains(key))
     }
@@ -205,19 +205,19 @@ const TOGETHER: [Together; 18] = [
 
 /// Returns a technique's golden masks: on every test scene; on the first one also with the paper's parameters, with each
 /// parameter at another value, and denoised for one technique; and the combinations.
-fn all_of(kind: TechniqueKind) -> Vec<Kept> {
-    let on_stages = stages().iter().enumerate().map(|(stage, Stage { name, .. })| Kept {
+fn all_of(kind: TechniqueKind) -> Vec<GoldenCase> {
+    let on_stages = stages().iter().enumerate().map(|(stage, Stage { name, .. })| GoldenCase {
         label: (*name).to_owned(),
         stage,
         settings: Vec::new(),
         is_denoised: false,
     });
-    let of_the_first = |label: String, settings| Kept { label, stage: 0, settings, is_denoised: false };
+    let of_the_first = |label: String, settings| GoldenCase { label, stage: 0, settings, is_denoised: false };
     let paper: Vec<_> =
         kind.quality_settings(Quality::Paper).into_iter().map(|(key, value)| (key, value.to_string())).collect();
     let paper = (!paper.is_empty()).then(|| of_the_first("quality=paper".to_owned(), paper));
     // Few samples, which are spread differently in each frame.
-    let denoised = (kind == TechniqueKind::Pcss).then(|| Kept {
+    let denoised = (kind == TechniqueKind::Pcss).then(|| GoldenCase {
         is_denoised: true,
         ..of_the_first("denoised".to_owned(), vec![("samples", "8".to_owned()), ("search_samples", "8".to_owned())])
     });
@@ -230,7 +230,7 @@ fn all_of(kind: TechniqueKind) -> Vec<Kept> {
             .into_iter()
             .map(kept)
     });
-    let together = TOGETHER.iter().filter(|(of, ..)| *of == kind).map(|(_, name, settings, is_denoised)| Kept {
+    let together = TOGETHER.iter().filter(|(of, ..)| *of == kind).map(|(_, name, settings, is_denoised)| GoldenCase {
         label: format!(
             "{name}, {}{}",
             settings.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" "),
@@ -271,7 +271,7 @@ fn others(spec: &ParamSpec, value: String) -> Vec<String> {
 }
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/kept")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
 }
 
 /// Colour in place of a mask that the technique refuses; no mask has it.
@@ -283,7 +283,7 @@ struct Mask {
     mean: f64,
 }
 
-fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &Kept) -> Mask {
+fn mask_of(lab: &LabDevice, kind: TechniqueKind, kept: &GoldenCase) -> Mask {
     let settings = small(kind).into_iter().chain(kept.settings.iter().cloned());
     let settings = settings.map(|(key, value)| (key.to_owned(), value)).collect();
     let choice = TechniqueChoice::with_settings(kind, settings)
@@ -308,7 +308,7 @@ fn mean_of(visibility: &Visibility) -> f64 {
 type Tolerance = (usize, f64);
 
 fn tolerance(kind: TechniqueKind, label: &str) -> Tolerance {
-    let rough = ROUGH.iter().find(|(of, mask, ..)| (*of, *mask) == (kind, label));
+    let rough = LOOSE_TOLERANCES.iter().find(|(of, mask, ..)| (*of, *mask) == (kind, label));
     rough.map_or((SAME_PIXELS, SAME_MEAN), |(_, _, pixels, mean, _)| (*pixels, *mean))
 }
 
@@ -341,20 +341,20 @@ fn mask_in(sheet: &RgbImage, i: u32) -> RgbImage {
 }
 
 /// Whether the golden masks are to be updated.
-fn keeps_anew() -> bool {
-    std::env::var_os("ANTUMBRA_KEEP").is_some()
+fn updates_golden() -> bool {
+    std::env::var_os("ANTUMBRA_UPDATE_GOLDEN").is_some()
 }
 
-const AGAIN: &str = "ANTUMBRA_KEEP=1 keeps them anew";
+const UPDATE_HINT: &str = "ANTUMBRA_UPDATE_GOLDEN=1 updates them";
 
 /// First line of a text file: the adapter of its masks or numbers.
 fn heading(lab: &LabDevice) -> String {
-    format!("kept on {}", lab.adapter.name)
+    format!("drawn on {}", lab.adapter.name)
 }
 
 /// Returns the lines of a text file, and whether they are from this adapter.
-fn kept_text(lab: &LabDevice, path: &Path) -> (Vec<String>, bool) {
-    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}; {AGAIN}", path.display()));
+fn golden_text(lab: &LabDevice, path: &Path) -> (Vec<String>, bool) {
+    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}; {UPDATE_HINT}", path.display()));
     let mut lines = text.lines().map(str::to_owned);
     let is_same_adapter = lines.next() == Some(heading(lab));
     (lines.collect(), is_same_adapter)
@@ -366,11 +366,11 @@ fn keep_text(lab: &LabDevice, path: &Path, lines: &[String]) {
 }
 
 /// Compares the first `most` masks of a technique with the golden masks.
-fn pictures_are_kept(kind: TechniqueKind, most: usize) {
+fn masks_equal_golden_ones(kind: TechniqueKind, most: usize) {
     let Some(lab) = lab() else { return };
     let (picture, words) = (folder().join(format!("{kind}.png")), folder().join(format!("{kind}.txt")));
     let all = all_of(kind);
-    if keeps_anew() {
+    if updates_golden() {
         let masks: Vec<Mask> = all.iter().map(|kept| mask_of(lab, kind, kept)).collect();
         fs::create_dir_all(folder()).expect("a folder");
         sheet_of(&masks).save(&picture).expect("a picture");
@@ -378,13 +378,13 @@ fn pictures_are_kept(kind: TechniqueKind, most: usize) {
         keep_text(lab, &words, &lines.collect::<Vec<_>>());
         return;
     }
-    let (lines, is_same_adapter) = kept_text(lab, &words);
+    let (lines, is_same_adapter) = golden_text(lab, &words);
     let lines: Vec<_> = lines.iter().map(|line| line.rsplit_once(": ").expect("a line of ours")).collect();
     let labels: Vec<_> = all.iter().map(|kept| kept.label.as_str()).collect();
-    let kept_labels: Vec<_> = lines.iter().map(|(label, _)| *label).collect();
-    assert_eq!(kept_labels, labels, "{}: parameters are other ones; {AGAIN}", words.display());
+    let golden_labels: Vec<_> = lines.iter().map(|(label, _)| *label).collect();
+    assert_eq!(golden_labels, labels, "{}: parameters are other ones; {UPDATE_HINT}", words.display());
     let sheet =
-        image::open(&picture).unwrap_or_else(|error| panic!("{}: {error}; {AGAIN}", picture.display())).to_rgb8();
+        image::open(&picture).unwrap_or_else(|error| panic!("{}: {error}; {UPDATE_HINT}", picture.display())).to_rgb8();
     for ((i, kept), (_, mean)) in (0..).zip(&all).zip(lines).take(most) {
         let was = Mask { picture: mask_in(&sheet, i), mean: mean.parse().expect("a number of ours") };
         // Another adapter may support what this one refused.
@@ -393,17 +393,17 @@ fn pictures_are_kept(kind: TechniqueKind, most: usize) {
         }
         let tolerance = is_same_adapter.then(|| tolerance(kind, &kept.label));
         if let Some(difference) = difference(&was, &mask_of(lab, kind, kept), tolerance) {
-            panic!("{kind}, {}: {difference}; {} has it as mask {i}; {AGAIN}", kept.label, picture.display());
+            panic!("{kind}, {}: {difference}; {} has it as mask {i}; {UPDATE_HINT}", kept.label, picture.display());
         }
     }
 }
 
 /// Declares a test for each technique, so that a technique can be tested alone.
-macro_rules! kept {
+macro_rules! golden_masks {
     ($($name:ident: $kind:ident),* $(,)?) => {
         $(#[test]
         fn $name() {
-            pictures_are_kept(TechniqueKind::$kind, usize::MAX);
+            masks_equal_golden_ones(TechniqueKind::$kind, usize::MAX);
         })*
 
         #[test]
@@ -413,7 +413,7 @@ macro_rules! kept {
     };
 }
 
-kept! {
+golden_masks! {
     hard: Hard,
     pcf: Pcf,
     pcss: Pcss,
@@ -445,8 +445,8 @@ kept! {
 /// Quick test: only the first mask of each technique, on one test scene.
 #[test]
 fn one_mask_of_each_technique() {
-    if !keeps_anew() {
-        TechniqueKind::ALL.iter().for_each(|kind| pictures_are_kept(*kind, 1));
+    if !updates_golden() {
+        TechniqueKind::ALL.iter().for_each(|kind| masks_equal_golden_ones(*kind, 1));
     }
 }
 
@@ -458,7 +458,7 @@ const MIN_WORK: f64 = 4.0;
 /// Tolerance for cells: the grouping of a cell's receivers is random and changes the work by a fiftieth; drawing instead of
 /// walking would change it by half.
 const CELLS: &str = "columns, cells";
-const CHANCE: f64 = 0.1;
+const CELLS_TOLERANCE: f64 = 0.1;
 
 /// Culling changes no mask, so the work of `sample_based` is recorded, too, in `work.txt`. Each line is a scene and
 /// traversal with the numbers of tested boxes, triangles, pairs, near pairs, words and points.
@@ -502,17 +502,17 @@ fn work() {
         lines.push(format!("{what}: {}", counts.map(|count| count.to_string()).join(" ")));
         all.push(counts);
     }
-    if keeps_anew() {
+    if updates_golden() {
         keep_text(lab, &path, &lines);
         return;
     }
-    let (kept, is_same_adapter) = kept_text(lab, &path);
+    let (kept, is_same_adapter) = golden_text(lab, &path);
     // Other GPUs rasterise receivers a fraction of a pixel away, which moves some to other cells.
     let part = if is_same_adapter { SAME_WORK } else { OTHER_WORK };
     assert_eq!(kept.len(), all.len(), "{}: other scenes", path.display());
     for (line, counts) in kept.iter().zip(all) {
         let (what, numbers) = line.split_once(": ").expect("a line of ours");
-        let part = if what == CELLS { CHANCE } else { part };
+        let part = if what == CELLS { CELLS_TOLERANCE } else { part };
         for (was, is) in numbers.split(' ').zip(counts) {
             let (was, is): (f64, f64) = (was.parse().expect("a number"), is.into());
             let may = MIN_WORK + part * was;
@@ -540,10 +540,10 @@ fn one_level_or_a_few_pixels_are_no_difference() {
     assert!(difference(&was, &brighter, same).is_some() && difference(&was, &brighter, None).is_none());
 }
 
-/// An entry of `ROUGH` that matches no mask would have no effect, unnoticed.
+/// An entry of `LOOSE_TOLERANCES` that matches no mask would have no effect, unnoticed.
 #[test]
 fn rough_masks_are_masks_of_their_techniques() {
-    for (kind, label, pixels, mean, why) in ROUGH {
+    for (kind, label, pixels, mean, why) in LOOSE_TOLERANCES {
         assert!(all_of(kind).iter().any(|kept| kept.label == label), "{kind} has no mask `{label}`");
         assert!(pixels > SAME_PIXELS && mean > SAME_MEAN && !why.is_empty(), "{kind}, {label}: {pixels}, {mean}");
     }
