@@ -66,13 +66,14 @@ fn plans_are_kept(device: &Device, kinds: &[TechniqueKind], pairs: &[(Size, wgpu
     /// Maximum of unreported memory: uniforms and placeholder textures of one texel, bytes for all views into which a light is split.
     const MAX_LEFT_OUT: u64 = 128 << 10;
     for kind in kinds {
+        // Of a technique of its own, or what another keeps would be shared; of one light after the other, which finds its programs compiled.
+        let gpu = Gpu::new(device.wgpu(), device.queue());
         for (size, format) in pairs {
             let (size_px, settings) = size.of(*kind);
             for light in lights() {
                 let half_m = if light.is_distant() { 2500.0 } else { 10.0 };
                 let scene = Scene::base(half_m);
                 let picture = Picture::draw(device, &scene, &Camera { size_px, ..Camera::base() });
-                let gpu = Gpu::new(device.wgpu(), device.queue());
                 let casters = HostCasters::for_gpu(device, &gpu, &scene);
                 let what = format!("{kind}, {size_px}, {format:?}, {:?}", light.shape);
                 let mask = Mask::with_format(device.wgpu(), size_px, MaskChannels::One, *format);

@@ -6,6 +6,7 @@
 mod caches;
 mod keys;
 
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError};
 
@@ -13,9 +14,9 @@ use super::budget::Budget;
 use super::scratch::{Scratch, ScratchTextureKey};
 use super::shared_values::SharedValues;
 use super::uniforms::{self, UniformAccess};
-use super::{programs, quirks};
+use super::{constant_branches, programs, quirks};
 use caches::{DescriptorCache, SharedPool};
-use keys::{ComputeKey, EntryKey, LayoutKey, RenderKey};
+use keys::{ComputeKey, Constants, EntryKey, LayoutKey, LinkedText, RenderKey, constants_of};
 
 /// Host's device, with the objects on it that all lights share.
 #[derive(Clone, Debug)]
@@ -65,8 +66,9 @@ struct Programs {
     max_iterations: u32,
     bind_group_layouts: DescriptorCache<LayoutKey, wgpu::BindGroupLayout>,
     pipeline_layouts: DescriptorCache<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
-    /// By address and length of the linked text, which is static.
-    modules: DescriptorCache<(usize, usize), wgpu::ShaderModule>,
+    modules: DescriptorCache<LinkedText, wgpu::ShaderModule>,
+    /// Modules without the branches that a pipeline's constants exclude, by whole module and constants.
+    decided_modules: DescriptorCache<(wgpu::ShaderModule, Constants), wgpu::ShaderModule>,
     compute_pipelines: DescriptorCache<ComputeKey, wgpu::ComputePipeline>,
     render_pipelines: DescriptorCache<RenderKey, wgpu::RenderPipeline>,
     /// By descriptor, as text, because it contains floats.
@@ -215,9 +217,36 @@ impl Device {
     /// Returns the module of a linked shader, shared.
     pub(crate) fn create_shader_module(&self, label: &str, wgsl: &'static str) -> wgpu::ShaderModule {
         let Programs { modules, counts, .. } = &*self.programs;
-        modules.get_or_make((wgsl.as_ptr() as usize, wgsl.len()), &counts.programs, || {
+        modules.get_or_make(LinkedText(wgsl), &counts.programs, || {
             let text = self.programs.uniforms.shader_text(crate::shaders::text_of(wgsl));
             programs::create_shader_module(&self.device, label, text)
+        })
+    }
+
+    /// Returns the module of a linked shader without the branches that a pipeline's constants exclude. Listeners of `programs` are told
+    /// of the whole module only.
+    fn decided(
+        &self,
+        label: Option<&str>,
+        module: &wgpu::ShaderModule,
+        options: &wgpu::PipelineCompilationOptions<'_>,
+    ) -> wgpu::ShaderModule {
+        let Programs { modules, decided_modules, counts, uniforms, .. } = &*self.programs;
+        let linked = {
+            let known = modules.0.lock().unwrap_or_else(PoisonError::into_inner);
+            known.iter().find(|(_, made)| *made == module).map(|(linked, _)| linked.0)
+        };
+        // A plan compiles nothing.
+        let Some(linked) = linked.filter(|_| !self.is_planned()) else { return module.clone() };
+        decided_modules.get_or_make((module.clone(), constants_of(options)), &counts.programs, || {
+            let whole = uniforms.shader_text(crate::shaders::text_of(linked));
+            match constant_branches::without_excluded(&whole, options.constants) {
+                Cow::Borrowed(_) => module.clone(),
+                Cow::Owned(text) => {
+                    let source = wgpu::ShaderSource::Wgsl(text.into());
+                    self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source })
+                }
+            }
         })
     }
 
@@ -232,9 +261,11 @@ impl Device {
             ComputeKey { layout: descriptor.layout.cloned(), entry },
             &counts.programs,
             || {
+                programs::tell(programs::Made::Compute(descriptor));
                 let cache = pipeline_cache.as_ref();
-                let descriptor = wgpu::ComputePipelineDescriptor { cache, ..descriptor.clone() };
-                programs::create_compute_pipeline(&self.device, &descriptor)
+                let module = &self.decided(descriptor.label, descriptor.module, &descriptor.compilation_options);
+                let descriptor = wgpu::ComputePipelineDescriptor { cache, module, ..descriptor.clone() };
+                self.device.create_compute_pipeline(&descriptor)
             },
         )
     }
@@ -246,9 +277,18 @@ impl Device {
     ) -> wgpu::RenderPipeline {
         let Programs { render_pipelines, counts, pipeline_cache, .. } = &*self.programs;
         render_pipelines.get_or_make(RenderKey::new(descriptor), &counts.programs, || {
-            let cache = pipeline_cache.as_ref();
-            let descriptor = wgpu::RenderPipelineDescriptor { cache, ..descriptor.clone() };
-            programs::create_render_pipeline(&self.device, &descriptor)
+            programs::tell(programs::Made::Render(descriptor));
+            let (cache, label) = (pipeline_cache.as_ref(), descriptor.label);
+            let wgpu::RenderPipelineDescriptor { vertex, fragment, .. } = descriptor.clone();
+            let vertex_module = self.decided(label, vertex.module, &vertex.compilation_options);
+            let fragment_module =
+                fragment.as_ref().map(|fragment| self.decided(label, fragment.module, &fragment.compilation_options));
+            let vertex = wgpu::VertexState { module: &vertex_module, ..vertex };
+            let fragment = fragment
+                .zip(fragment_module.as_ref())
+                .map(|(fragment, module)| wgpu::FragmentState { module, ..fragment });
+            let descriptor = wgpu::RenderPipelineDescriptor { cache, vertex, fragment, ..descriptor.clone() };
+            self.device.create_render_pipeline(&descriptor)
         })
     }
 

@@ -6,6 +6,7 @@ mod budget;
 mod buffers;
 mod cached;
 mod commands;
+mod constant_branches;
 mod content;
 mod context;
 mod device;

@@ -32,7 +32,8 @@ pub fn listen(listener: impl Fn(Made<'_>) + Send + Sync + 'static) {
     assert!(LISTENER.set(Box::new(listener)).is_ok(), "one listener is enough");
 }
 
-fn tell(made: Made<'_>) {
+/// Tells the listener, if there is one.
+pub(super) fn tell(made: Made<'_>) {
     if let Some(listener) = LISTENER.get() {
         listener(made);
     }

@@ -1,16 +1,48 @@
 //! Cache keys of layouts and pipelines: everything that they are created from.
 
+use std::hash::{Hash, Hasher};
 use std::num::NonZeroU32;
 
 /// Entries of a layout, first as declared, then as the device receives them.
 pub(super) type LayoutKey = [Vec<wgpu::BindGroupLayoutEntry>; 2];
+
+/// Text of a linked shader. It is part of the program, and so equal if its address is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LinkedText(pub(super) &'static str);
+
+impl LinkedText {
+    fn address(self) -> (usize, usize) {
+        (self.0.as_ptr() as usize, self.0.len())
+    }
+}
+
+impl PartialEq for LinkedText {
+    fn eq(&self, other: &Self) -> bool {
+        self.address() == other.address()
+    }
+}
+
+impl Eq for LinkedText {}
+
+impl Hash for LinkedText {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.address().hash(state);
+    }
+}
+
+/// Overridable constants: names, with the bits of their values.
+pub(super) type Constants = Vec<(String, u64)>;
+
+pub(super) fn constants_of(options: &wgpu::PipelineCompilationOptions<'_>) -> Constants {
+    options.constants.iter().map(|(name, value)| ((*name).into(), value.to_bits())).collect()
+}
 
 /// Entry point, with values for its overridable constants.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub(super) struct EntryKey {
     module: wgpu::ShaderModule,
     entry_point: Option<String>,
-    constants: Vec<(String, u64)>,
+    constants: Constants,
     zeroed: bool,
 }
 
@@ -23,7 +55,7 @@ impl EntryKey {
         Self {
             module: module.clone(),
             entry_point: entry_point.map(Into::into),
-            constants: options.constants.iter().map(|(name, value)| ((*name).into(), value.to_bits())).collect(),
+            constants: constants_of(options),
             zeroed: options.zero_initialize_workgroup_memory,
         }
     }
