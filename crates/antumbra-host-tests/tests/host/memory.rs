@@ -66,7 +66,7 @@ fn plans_are_kept(device: &Device, kinds: &[TechniqueKind], pairs: &[(Size, wgpu
     /// Maximum of unreported memory: uniforms and placeholder textures of one texel, bytes for all views into which a light is split.
     const MAX_LEFT_OUT: u64 = 128 << 10;
     for kind in kinds {
-        // Of a technique of its own, or what another keeps would be shared; of one light after the other, which finds its programs compiled.
+        // One library handle for each technique: its lights share compiled programs, and what another technique shares is not counted.
         let gpu = Gpu::new(device.wgpu(), device.queue());
         for (size, format) in pairs {
             let (size_px, settings) = size.of(*kind);

@@ -1,10 +1,11 @@
-//! Removal of branches that a pipeline's constants exclude, before the driver compiles the shader.
+//! Branches over overridable constants, decided before a driver compiles a shader.
 //!
-//! Drivers inline all functions of a shader first, and only then drop branches that its constants exclude. The summed techniques'
-//! `resolve` of 950 statements grows to 14 000 that way, and software Mesa takes 1.3 s for each of its pipelines; without the excluded
-//! branches, .15 s. They are cut from the text here; the program stays the same.
+//! Drivers inline all functions of a shader before they drop branches that its constants exclude. `resolve` of the summed techniques has
+//! 950 statements, and 14 000 once inlined, most of which its constants exclude. Software Mesa 25 takes 1.3 s for such a pipeline, and
+//! 0.15 s where the branches are gone (`leaning-plank`, `overlap` and `lantern-wall` at 256 × 144, with the driver's disk cache warm). The
+//! branches are cut from the text; the program stays the same.
 //!
-//! The text is WGSL as the linker writes it: valid, without comments but its first line.
+//! The text is WGSL as the linker writes it: valid, and without comments except its first line.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -71,7 +72,8 @@ impl<'t> Known<'t> {
         self.value(condition).map(|value| value != 0.0)
     }
 
-    /// Terms joined by `||`, of which one that is `decisive` decides all, or by `&&`. What is called before it may write something.
+    /// Value of terms joined by `||`, where a term that holds decides all, or by `&&`, where one that does not hold does: `decisive` is the
+    /// deciding value. A term that calls a function may write something, so it stays and so does what follows it.
     fn first_of(&self, terms: &[&str], decisive: bool) -> Option<bool> {
         let mut all = Some(!decisive);
         for term in terms {
@@ -86,7 +88,7 @@ impl<'t> Known<'t> {
     }
 }
 
-/// The name as the text has it, which lives as long.
+/// A constant's name as a part of the text.
 fn name_in<'t>(wgsl: &'t str, name: &str) -> Option<&'t str> {
     let start = wgsl.find(&format!("override {name}"))? + "override ".len();
     wgsl.get(start..start + name.len())
