@@ -8,6 +8,7 @@ use super::super::exhibit::{Measure, error};
 use super::super::outcome::Measured;
 use super::*;
 use crate::metrics::compare_visibility;
+use crate::motion::flicker::{FlickerSums, TrueFrame};
 use crate::picture::Visibility;
 
 /// Claims about time refer to timed rows.
@@ -222,14 +223,73 @@ fn figures() -> Vec<(&'static str, Outcome)> {
     images.iter().map(|(name, image)| (*name, outcome(image))).collect()
 }
 
-/// Returns the figures of masks in motion, of which the flat ones never change.
-fn figures_in_motion() -> Vec<(&'static str, Outcome)> {
-    const CHANGE: f64 = 0.05;
-    let flickers = [0.0, 0.0005, 0.004, 0.012, 0.03, 0.045, 0.02, CHANGE, CHANGE, CHANGE];
-    let outcome = |flicker| {
-        Outcome::Measured(Measured { flicker: Some(flicker), still_flicker: Some(CHANGE), ..Measured::default() })
+/// Frames of masks in motion: the truth, which moves by a column a frame; nearly it; it under growing noise that is another one in each
+/// frame; a frame late; its hard edges; then what nothing may take for it: dark, lit and grey all over.
+fn frames_in_motion() -> [(&'static str, Vec<Visibility>); 10] {
+    const FRAMES: u32 = 6;
+    let still = truth();
+    let of = |change: &dyn Fn(u32, u32, u32) -> f32| {
+        let frame = |k: u32| {
+            let pixels = (0..still.size_px.y).flat_map(|y| (0..still.size_px.x).map(move |x| (x, y)));
+            Visibility::one(still.size_px, pixels.map(|(x, y)| change(k, x, y).clamp(0.0, 1.0)).collect())
+        };
+        (0..FRAMES).map(frame).collect()
     };
-    images().iter().zip(flickers).map(|((name, _), flicker)| (*name, outcome(flicker))).collect()
+    let moved = |k: u32, x: u32| still.at(x.saturating_sub(k) as usize, 0);
+    let noise =
+        |k: u32, x: u32, y: u32| ((k * 7919 + y * 48 + x).wrapping_mul(2_654_435_761) >> 7 & 255) as f32 / 255.0 - 0.5;
+    let noisy = |part: f32| of(&|k, x, y| moved(k, x) + part * noise(k, x, y));
+    [
+        ("the truth", of(&|k, x, _| moved(k, x))),
+        ("nearly", noisy(0.002)),
+        ("a little noise", noisy(0.01)),
+        ("noise", noisy(0.03)),
+        ("more noise", noisy(0.06)),
+        ("a frame late", of(&|k, x, _| moved(k.saturating_sub(1), x))),
+        ("hard shadows", of(&|k, x, _| moved(k, x).round())),
+        ("dark", of(&|_, _, _| 0.0)),
+        ("lit", of(&|_, _, _| 1.0)),
+        ("grey", of(&|_, _, _| 0.5)),
+    ]
+}
+
+/// The flicker of each of them.
+fn figures_in_motion() -> Vec<(&'static str, Outcome)> {
+    let frames = frames_in_motion();
+    let judged = vec![true; truth().size_px.element_product() as usize];
+    let truths: Vec<TrueFrame> =
+        frames[0].1.iter().map(|frame| TrueFrame { visibility: frame.clone(), judged: judged.clone() }).collect();
+    let outcome = |masks: &[Visibility]| {
+        let mut sums = FlickerSums::new(judged.len());
+        for (truths, masks) in truths.windows(2).zip(masks.windows(2)) {
+            sums.add([&truths[0], &truths[1]], [&masks[0], &masks[1]]);
+        }
+        Outcome::Measured(Measured {
+            flicker: sums.flicker(),
+            still_flicker: sums.truth_change(),
+            ..Measured::default()
+        })
+    };
+    frames.iter().map(|(name, masks)| (*name, outcome(masks))).collect()
+}
+
+/// Nothing that never changes flickers less than it, and noise flickers the more the more there is of it.
+#[test]
+fn masks_in_motion_are_what_they_are_called() {
+    let flickers: Vec<(f64, f64)> = figures_in_motion()
+        .iter()
+        .map(|(_, outcome)| match outcome {
+            Outcome::Measured(Measured { flicker: Some(flicker), still_flicker: Some(still), .. }) => {
+                (*flicker, *still)
+            }
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(flickers[0].0, 0.0);
+    assert!(flickers[..5].windows(2).all(|pair| pair[0].0 < pair[1].0), "{flickers:?}");
+    for (flicker, still) in &flickers[GOOD..] {
+        assert!((flicker / still - 1.0).abs() < 1e-6, "{flickers:?}");
+    }
 }
 
 /// Returns every assignment of one of `count` items to each of `places`.
@@ -237,8 +297,51 @@ fn assignments(places: usize, count: usize) -> impl Iterator<Item = Vec<usize>> 
     (0..count.pow(places as u32)).map(move |n| (0..places).map(|k| n / count.pow(k as u32) % count).collect())
 }
 
-/// Every rule about images is met by some images, but not if the images of praised rows are constant, nor
-/// if those of criticised rows are exact.
+/// No rule is of neither kind, which would be looked at by neither of the two tests below.
+#[test]
+fn every_rule_is_about_images_or_about_time() {
+    for exhibit in PAPERS.iter().flat_map(|paper| paper.exhibits) {
+        for rule in exhibit.claims.iter().flat_map(|claim| claim.rules) {
+            assert!(rule.figure().is_of_images() || rule.figure() == Figure::Ms, "{}: {}", exhibit.id, rule.text());
+            assert!(!rule.rows().is_empty(), "{}: {}", exhibit.id, rule.text());
+        }
+    }
+}
+
+/// Of things that meet a rule another one in the place of each of its rows is found that does not: no row is there for show. A rule
+/// that holds a ratio between two bounds has one on either side, the first row's figure too small and too large by `size_of`.
+fn assert_that_each_row_counts(
+    what: &str,
+    rule: &Rule,
+    good: &[Vec<usize>],
+    count: usize,
+    met_by: &dyn Fn(&[usize]) -> Met,
+    size_of: &dyn Fn(usize) -> f64,
+) {
+    for (k, row) in rule.rows().iter().enumerate() {
+        let wrong = good.iter().flat_map(|good| {
+            (0..count).filter(|other| *other != good[k]).map(move |other| {
+                let mut others = good.clone();
+                others[k] = other;
+                (others, good[k], other)
+            })
+        });
+        assert!(wrong.clone().any(|(others, ..)| met_by(&others) == Met::No), "{what}: any ‘{row}’ will do");
+        if matches!(rule, Rule::RatioWithin(..)) {
+            let is_rejected = |is_larger: bool| {
+                wrong.clone().any(|(others, was, is)| {
+                    (size_of(is) > size_of(was)) == is_larger
+                        && size_of(is) != size_of(was)
+                        && met_by(&others) == Met::No
+                })
+            };
+            assert!(is_rejected(true) && is_rejected(false), "{what}: one-sided in ‘{row}’");
+        }
+    }
+}
+
+/// For every rule about images: there are images that meet it; a constant in the place of what it finds good does not; where
+/// it finds something wanting, the exact image in that one's place does not; and none of its rows is there for show.
 #[test]
 fn every_rule_about_images_rejects_a_wrong_one() {
     let (of_images, in_motion) = (figures(), figures_in_motion());
@@ -282,16 +385,22 @@ fn every_rule_about_images_rejects_a_wrong_one() {
                 let is_rejected = good.iter().any(|good| met_by(&with(good, 0, 0)) != Met::Yes);
                 assert!(is_rejected, "{what}: the truth is found wanting");
             }
+            let size_of = |image: usize| match &figures[image].1 {
+                Outcome::Measured(measured) => measured.figure(rule.figure()).unwrap_or(0.0),
+                _ => 0.0,
+            };
+            assert_that_each_row_counts(&what, rule, &good, GOOD, &met_by, &size_of);
             looked_at += 1;
         }
     }
     assert!(looked_at > 60, "{looked_at}");
 }
 
-/// Every rule about time is met by some times, but not by equal times for all rows, or by times in reverse order.
+/// For every rule about time: there are times that meet it, and another time in the place of each of its rows that does not: where two
+/// bounds hold a ratio, one too short and one too long.
 #[test]
 fn every_rule_about_time_rejects_a_wrong_one() {
-    const MS: [f64; 10] = [10.0, 11.2, 12.0, 14.0, 16.0, 21.0, 30.0, 45.0, 105.0, 1150.0];
+    const MS: [f64; 11] = [8.0, 10.0, 11.2, 12.0, 14.0, 16.0, 21.0, 30.0, 45.0, 105.0, 1150.0];
     let mut looked_at = 0;
     for (paper, exhibit) in PAPERS.iter().flat_map(|paper| paper.exhibits.iter().map(move |exhibit| (paper, exhibit))) {
         for (claim, rule) in exhibit.claims.iter().flat_map(|claim| claim.rules.iter().map(move |rule| (claim, rule))) {
@@ -311,13 +420,11 @@ fn every_rule_about_time_rejects_a_wrong_one() {
                 bench.look(claim, rule, Form::Published).1
             };
             let what = format!("{}/{}: {}", paper.id, exhibit.id, rule.text());
-            let of = |places: &[usize]| -> Vec<f64> { places.iter().map(|i| MS[*i]).collect() };
-            let good =
-                assignments(rows.len(), MS.len()).map(|places| of(&places)).find(|times| met_by(times) == Met::Yes);
-            assert!(good.is_some(), "{what}: no times meet it");
-            let wrong =
-                assignments(rows.len(), MS.len()).map(|places| of(&places)).find(|times| met_by(times) == Met::No);
-            assert!(wrong.is_some(), "{what}: no times fail it");
+            let met_by = |places: &[usize]| met_by(&places.iter().map(|i| MS[*i]).collect::<Vec<f64>>());
+            let good: Vec<Vec<usize>> =
+                assignments(rows.len(), MS.len()).filter(|places| met_by(places) == Met::Yes).collect();
+            assert!(!good.is_empty(), "{what}: no times meet it");
+            assert_that_each_row_counts(&what, rule, &good, MS.len(), &met_by, &|i| MS[i]);
             looked_at += 1;
         }
     }
