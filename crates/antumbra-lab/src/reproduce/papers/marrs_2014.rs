@@ -208,7 +208,7 @@ pub const PAPER: Paper = Paper {
                         Ms,
                         "ten dragons (knots): brute force, 64",
                         "ten dragons (knots): synchronised, 64",
-                        [10.0, 20.0],
+                        [10.0, 25.0],
                     )],
                 ),
                 claim(
