@@ -335,7 +335,7 @@ pub const PAPER: Paper = Paper {
             .because_ours(
                 "along the world's axis a floor has one depth, and each of our layers is bounded where it ends: at 128 × 72 seven layers \
                  have .0096, with `depth_axis=distance` .0197, more than EVSM's .0165. Placement is not what does it: with \
-                 `relax_over=map_as_printed` they have .0077.",
+                 `relax_over=map_as_published` they have .0077.",
             ),
             ],
             note: "",
