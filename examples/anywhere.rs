@@ -1,8 +1,8 @@
-//! Visibility at points of the host's own, without a camera: a slice through the air under a table.
+//! Visibility at the host's own points, without a camera: a slice through the air under a table.
 //!
-//! Everything down to `main` makes a scene; the lines that ask for visibility are marked with `// shadows`. The points here are a
-//! grid in an upright plane, one for each pixel of a picture, `anywhere.png`: what a fog, a probe or a particle there would see of
-//! the light. Of this project it uses crate `antumbra` alone.
+//! Everything down to `main` creates a scene; the lines that compute visibility are marked with `// shadows`. The points are a
+//! grid in an upright plane, one for each pixel of an image, `anywhere.png`: the light's visibility for fog, a probe or a
+//! particle there. The only crate of this project is `antumbra`.
 //!
 //! ```text
 //! cargo run --example anywhere
@@ -14,10 +14,10 @@ use antumbra::{
 };
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
-/// Of the grid, and of the picture.
+/// Size of the grid and of the image.
 const SIZE: UVec2 = UVec2::new(480, 240);
 
-/// A box, twelve triangles wound counter-clockwise from outside.
+/// Adds a box: twelve triangles, counter-clockwise from outside.
 fn add_box(min: Vec3, max: Vec3, positions: &mut Vec<Vec3>, indices: &mut Vec<u32>) {
     let base = positions.len() as u32;
     positions.extend(Aabb { min, max }.corners());
@@ -27,7 +27,7 @@ fn add_box(min: Vec3, max: Vec3, positions: &mut Vec<Vec3>, indices: &mut Vec<u3
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The host's device. It asks for what the library can use, where the adapter has it.
+    // The host's device, with the optional features of the library that the adapter supports.
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..wgpu::DeviceDescriptor::default()
     }))?;
 
-    // The host's scene: a table of five boxes; and its points.
+    // The host's scene, a table of five boxes, and its points.
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     let mut add = |min, max| add_box(Vec3::from(min), Vec3::from(max), &mut positions, &mut indices);
     add([-1.0, 0.9, -0.7], [1.0, 1.0, 0.7]);
@@ -64,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         filled("instances", bytemuck::bytes_of(&Mat4::IDENTITY), wgpu::BufferUsages::VERTEX | readable);
     let point_buffer = filled("points", bytemuck::cast_slice(&points), readable);
 
-    // The light, what casts, the points, and a buffer for an `f32` of each.
+    // Light, casters, points, and a buffer with an `f32` for each point.
     let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) }; // shadows
     let light = Light::new(shape, Vec3::new(0.5, 4.5, 0.5), Vec3::ZERO); // shadows
     let mesh = MeshCaster::new(&position_buffer, &index_buffer, indices.len() as u32, &instance_buffer)
@@ -91,7 +91,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     work.record(&mut Recorder::new(&mut encoder, None)); // shadows
 
-    // Read the visibilities back and write them as a picture.
+    // Reads the visibilities back and writes them as an image.
     let readback = buffer("readback", bytes, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
     encoder.copy_buffer_to_buffer(&visibilities, 0, &readback, 0, bytes as u64);
     queue.submit([encoder.finish()]);

@@ -1,7 +1,7 @@
-//! Someone else's small wgpu renderer gains soft shadows.
+//! An independent small wgpu renderer gains soft shadows.
 //!
 //! Everything down to `main` is an ordinary renderer: its own meshes, camera, depth buffer and shader. The lines that
-//! add shadows are marked with `// shadows`. Of this project it uses crate `antumbra` alone. It writes `minimal.png`:
+//! add shadows are marked with `// shadows`. The only crate of this project is `antumbra`. It writes `minimal.png`:
 //!
 //! ```text
 //! cargo run --example minimal
@@ -14,7 +14,7 @@ use glam::{Mat4, UVec2, Vec2, Vec3};
 
 const SIZE: UVec2 = UVec2::new(960, 540);
 
-/// The host's own uniforms: camera, light, the size of the picture.
+/// Uniforms of the host: camera and light.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Globals {
@@ -43,7 +43,7 @@ const SHADER: &str = "
     }
 ";
 
-/// A box, twelve triangles wound counter-clockwise from outside.
+/// Adds a box: twelve triangles, counter-clockwise from outside.
 fn add_box(min: Vec3, max: Vec3, positions: &mut Vec<Vec3>, indices: &mut Vec<u32>) {
     let base = positions.len() as u32;
     positions.extend(Aabb { min, max }.corners());
@@ -53,7 +53,7 @@ fn add_box(min: Vec3, max: Vec3, positions: &mut Vec<Vec3>, indices: &mut Vec<u3
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The host's device. It asks for what the library can use, where the adapter has it.
+    // The host's device, with the optional features of the library that the adapter supports.
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
@@ -105,7 +105,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let depth_view = depth.create_view(&wgpu::TextureViewDescriptor::default());
     let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());
 
-    // The light, what casts, what receives: all that the library asks for.
+    // Light, casters and receivers are the library's only inputs.
     let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) }; // shadows
     let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO); // shadows
     let mesh = MeshCaster::new(&position_buffer, &index_buffer, indices.len() as u32, &instance_buffer)
@@ -206,7 +206,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     work.record(&mut Recorder::new(&mut encoder, None)); // shadows
     draw(&mut encoder, true);
 
-    // Read the picture back and write it.
+    // Reads the image back and writes it.
     let row_bytes = (SIZE.x * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let readback = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),

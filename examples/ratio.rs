@@ -1,9 +1,9 @@
 //! Radiance by the plain product and by the ratio estimator, against ray-traced radiance.
 //!
-//! Analytic irradiance of an area light times a mask is what a renderer shows of a white diffuse surface. With `weights=irradiance`
-//! masks hold the part of the light's irradiance that arrives, and otherwise the part of the light that is seen (Heitz, Hill, McGuire,
-//! "Combining Analytic Direct Illumination and Stochastic Shadows", I3D 2018). This prints, for each scene and technique, the root
-//! mean square error of both products over all pixels that show a surface, as parts of the mean unshadowed irradiance. *Exact* are those
+//! A renderer shows the analytic irradiance of an area light times a mask on a white diffuse surface. With `weights=irradiance` masks
+//! hold the arriving fraction of the light's irradiance, and otherwise the visible fraction of the light (Heitz, Hill, McGuire,
+//! "Combining Analytic Direct Illumination and Stochastic Shadows", I3D 2018). For each scene and technique this prints the root mean
+//! square error of both products over all pixels that show a surface, relative to the mean unshadowed irradiance. *Exact* is the product
 //! with perfect masks.
 //!
 //! ```text
@@ -37,7 +37,7 @@ const SCENES: [&str; 15] = [
     "builtin:town",
 ];
 const SIZE: UVec2 = UVec2::new(240, 135);
-/// Rays to the light from each pixel, for the truth.
+/// Number of rays from each pixel to the light, for the ground truth.
 const RAYS: u32 = 4096;
 const TECHNIQUES: [TechniqueKind; 3] = [TechniqueKind::RayTraced, TechniqueKind::SampleBased, TechniqueKind::Smrt];
 

@@ -1,4 +1,4 @@
-//! A rectangle over a cube: what Bevy alone gives no shadow.
+//! A rectangle light above a cube, which casts no shadow in Bevy alone.
 //!
 //! ```text
 //! cargo run --features window --example minimal
@@ -21,7 +21,7 @@ fn setup(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, mut materials
         MeshMaterial3d(materials.add(Color::srgb(0.7, 0.3, 0.25))),
         Transform::from_xyz(0.0, 0.5, 0.0),
     ));
-    // Its width and height are all that the shadow's softness comes from.
+    // Width and height alone determine how soft the shadow is.
     commands.spawn((
         RectLight { width: 1.5, height: 0.5, intensity: 400_000.0, ..default() },
         Transform::from_xyz(2.0, 3.5, 1.5).looking_at(Vec3::ZERO, Vec3::Y),

@@ -1,4 +1,4 @@
-//! Binding of each view's masks in the place of Bevy's maps.
+//! Binds each view's masks in place of Bevy's shadow maps.
 
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::pbr::ViewShadowBindings;
@@ -10,7 +10,7 @@ use crate::lights::{MAX_LAYERS, MaskLayers};
 use crate::masks::{Shape, ViewMasks};
 use crate::warnings::Warnings;
 
-/// Puts each view's masks where Bevy's own maps would be bound. After Bevy has made those, and before its bind groups.
+/// Replaces Bevy's shadow map binding of each view by its masks. Runs after Bevy creates the maps and before its bind groups.
 pub fn bind_masks(
     shadows: Option<ResMut<Shadows>>,
     layers: Res<MaskLayers>,
@@ -32,7 +32,7 @@ pub fn bind_masks(
             warnings.say(format!("a camera has {what} and so no soft shadows: give it {remedy}"));
         }
         let size_px = glam::UVec2::new(view.viewport.z, view.viewport.w);
-        // Without a prepass the shader looks for no masks; of samples that are not known it does, and is to find none.
+        // Without a prepass the shader reads no masks. With an unsupported sample count it must find the marker for none.
         if !has_depth || (!has_masks && !layers.are_beside_maps) || size_px.min_element() == 0 {
             continue;
         }
@@ -48,7 +48,7 @@ pub fn bind_masks(
         };
         let mut masks = match shadows.views.remove(&entity).filter(|masks| masks.shape.serves(&shape)) {
             Some(masks) => masks,
-            // Lights come and go: some layers to spare.
+            // Spare layers avoid a new texture whenever a light is added.
             None => {
                 let mask_count = shape.mask_count.next_multiple_of(4).min(MAX_LAYERS);
                 ViewMasks::new(device, Shape { mask_count, ..shape })
@@ -57,7 +57,7 @@ pub fn bind_masks(
         let shape = masks.shape;
         if shape.map_count + shape.slot_count() * shape.tiles().element_product() > shape.max_layers {
             warnings.say(format!(
-                "the device has {} layers, too few for the masks of all lights beside Bevy's own maps: larger maps                  (DirectionalLightShadowMap) take fewer layers",
+                "the device has {} layers, too few for the masks of all lights beside Bevy's own maps: larger maps (DirectionalLightShadowMap) take fewer layers",
                 shape.max_layers
             ));
         }

@@ -1,4 +1,4 @@
-//! Between Bevy's vectors and the library's, which are of another version of the same crate.
+//! Conversion from Bevy's vectors to the library's, which are of another version of glam.
 
 use antumbra::light::Aabb;
 use bevy::math::Affine3A;
@@ -15,7 +15,7 @@ pub fn affine(a: &Affine3A) -> glam::Mat4 {
     mat4(&bevy::math::Mat4::from(*a))
 }
 
-/// The box of a box as it stands in the world.
+/// Returns the bounds of a transformed box; an empty box stays empty.
 pub fn moved(bounds: Aabb, world_from_object: &glam::Mat4) -> Aabb {
     if bounds.is_empty() {
         return bounds;

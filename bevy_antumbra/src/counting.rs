@@ -7,7 +7,7 @@ use crate::counts::ShadowCounts;
 use crate::draw::Shadows;
 use crate::lights::ShadowLights;
 
-/// Counts what the frame had.
+/// Updates the frame's counts.
 pub fn count(
     counts: Res<ShadowCounts>,
     lights: Res<ShadowLights>,

@@ -1,4 +1,4 @@
-//! What belongs to a device.
+//! Initialisation of per-device resources.
 
 use antumbra::Gpu;
 use bevy::prelude::*;
@@ -7,7 +7,7 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use crate::casters::CasterStore;
 use crate::draw::Shadows;
 
-/// Makes all that belongs to a device: at start, and again where Bevy has lost one.
+/// Creates all per-device resources: at start, and again after Bevy has lost a device.
 pub fn init_device(mut commands: Commands, device: Res<RenderDevice>, queue: Res<RenderQueue>) {
     let gpu = Gpu::new(device.wgpu_device(), &queue);
     commands.insert_resource(CasterStore::new(&gpu));

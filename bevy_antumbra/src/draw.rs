@@ -1,4 +1,4 @@
-//! A view's masks: after its depth is there, and before it is shaded.
+//! Drawing of a view's masks, after its depth prepass and before its main pass.
 
 use std::collections::HashMap;
 use std::time::Instant;
@@ -25,10 +25,10 @@ use crate::seen::{Seen, SeenGatherer};
 use crate::settings::SoftShadows;
 use crate::warnings::Warnings;
 
-/// Frames after which what was not used is dropped.
+/// Number of frames after which unused resources are dropped.
 const RETAINED_FRAMES: u64 = 8;
 
-/// States of all lights in all views, and what their masks are written to.
+/// States of all lights in all views, and the resources that write their masks.
 #[derive(Resource)]
 pub struct Shadows {
     pub gpu: Gpu,
@@ -37,7 +37,7 @@ pub struct Shadows {
     pub writer: MaskWriter,
     states: HashMap<StateKey, State>,
     scratch: Vec<(ScratchMask, u64)>,
-    /// Views of depth textures, since Bevy's are not always the same ones from frame to frame.
+    /// Cached views of depth textures; Bevy's own can differ from frame to frame.
     depths: EntityHashMap<(wgpu::Texture, wgpu::TextureView)>,
     splits: EntityHashMap<Split>,
     deriver: NormalDeriver,
@@ -46,12 +46,12 @@ pub struct Shadows {
     seen: EntityHashMap<Seen>,
 }
 
-/// Whose a state is.
+/// Key of a light's state in a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct StateKey {
     light: Entity,
     view: Entity,
-    /// Of a view's two pictures the second. They share a state unless it remembers what the frame before had.
+    /// Whether this is the state of a view's second image. Both images share one state unless it depends on the last frame.
     is_second: bool,
 }
 
@@ -62,12 +62,12 @@ struct State {
     seen: u64,
 }
 
-/// What a view's lights are drawn with.
+/// Inputs for all lights of a view.
 struct ViewFrame<'a> {
     entity: Entity,
-    /// One, or two of a view of several samples a pixel: the nearest surface that a pixel sees, and the farthest.
+    /// Images of the view: one, or two if pixels have several samples: the nearest and the farthest surface of each pixel.
     pictures: Vec<Picture>,
-    /// How far each pixel's surface has come since the frame before, where Bevy draws it.
+    /// Motion vectors of each pixel, if Bevy draws them.
     motion: Option<wgpu::TextureView>,
     size_px: glam::UVec2,
     view_from_world: glam::Mat4,
@@ -76,7 +76,7 @@ struct ViewFrame<'a> {
     seen: &'a [glam::Vec3],
 }
 
-/// Receivers of one sample a pixel.
+/// Receivers with one sample per pixel.
 #[derive(Clone)]
 struct Picture {
     depth: wgpu::TextureView,
@@ -117,12 +117,12 @@ impl Shadows {
         }
     }
 
-    /// Bytes of GPU memory of all states.
+    /// Returns the GPU memory of all states, bytes.
     pub fn memory_bytes(&self) -> u64 {
         self.states.values().map(|state| state.shadow.memory_bytes()).sum()
     }
 
-    /// The same view of a depth texture as long as it is the same texture.
+    /// Returns the cached view of a depth texture, or creates it.
     fn depth_view(&mut self, view: Entity, texture: &wgpu::Texture) -> wgpu::TextureView {
         if let Some((kept, depth)) = self.depths.get(&view)
             && kept == texture
@@ -138,7 +138,7 @@ impl Shadows {
         depth
     }
 
-    /// The place of a scratch mask of a size.
+    /// Returns the index of a scratch mask of the given size and channels.
     fn scratch(&mut self, size_px: glam::UVec2, channels: MaskChannels) -> usize {
         let fits = |(scratch, _): &(ScratchMask, u64)| {
             scratch.mask.size_px() == size_px && scratch.mask.channels() == channels
@@ -151,7 +151,7 @@ impl Shadows {
         i
     }
 
-    /// A light's state, made where there is none or its technique is another one now.
+    /// Returns a light's state. Creates it if there is none or its technique has changed.
     fn state(&mut self, key: StateKey, settings: &SoftShadows) -> Result<&mut State, Error> {
         let kept = self.states.remove(&key);
         let state = match kept {
@@ -165,7 +165,7 @@ impl Shadows {
         Ok(self.states.entry(key).insert_entry(State { seen: self.frame, ..state }).into_mut())
     }
 
-    /// Records one light's masks into their layers; light everywhere where there is none.
+    /// Records one light's masks into their layers; fully lit if nothing can be in shadow.
     fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -189,7 +189,7 @@ impl Shadows {
         outcome.map(|_| ())
     }
 
-    /// Records one light's mask of a picture into a scratch mask; false where nothing can be in shadow.
+    /// Records one light's mask of an image into a scratch mask. Returns false if nothing can be in shadow.
     fn record_picture(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -217,7 +217,7 @@ impl Shadows {
         Ok(true)
     }
 
-    /// Splits a view of four samples a pixel, and leaves both depths where the shader tells by them whose a fragment is.
+    /// Splits a view of four samples per pixel. Writes both depths to the array, where the shader matches fragments to images.
     fn split(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -247,7 +247,7 @@ impl Shadows {
     }
 }
 
-/// What a view of several samples a pixel is split by.
+/// Resources that split a view of several samples per pixel.
 struct Split {
     receivers: SplitReceivers,
     depths: [CachedGroup; 2],
@@ -259,7 +259,7 @@ impl Split {
     }
 }
 
-/// What of a box a light reaches.
+/// Returns the part of a box within the light's range.
 fn within_range(bounds: Aabb, light: &ShadowLight) -> Aabb {
     let Some(range) = light.range.filter(|range| range.is_finite()) else { return bounds };
     let (min, max) = (bounds.min.max(light.light.center - range), bounds.max.min(light.light.center + range));
@@ -333,7 +333,11 @@ pub fn draw_masks(
     if is_split {
         match shadows.split(encoder, entity, &frame, &picture) {
             Ok(pictures) => frame.pictures = pictures,
-            Err(error) => return warnings.say(error),
+            // The points are read back next frame.
+            Err(error) => {
+                shadows.seen.insert(entity, seen);
+                return warnings.say(error);
+            }
         }
     }
     for light in &lights.lights {
@@ -346,7 +350,7 @@ pub fn draw_masks(
         warnings.of(outcome);
     }
     let world_from_clip = (clip_from_view * view_from_world).inverse();
-    // The split picture's depth lies in the view's own array.
+    // The split image's depth is in the view's own array.
     let gathered = match shadows.views.get(&entity) {
         Some(masks) if is_split => masks.depth_layer().map(|depth| (depth.clone(), glam::UVec2::ZERO)),
         _ => Some((picture.depth, origin_px)),
@@ -367,7 +371,7 @@ pub fn draw_masks(
     counts.spend(began);
 }
 
-/// Fetches what views see, as far as it has come. After a frame is submitted.
+/// Advances the readback of visible points without waiting. Runs after a frame is submitted.
 pub fn fetch_seen(shadows: Option<ResMut<Shadows>>) {
     if let Some(mut shadows) = shadows {
         shadows.seen.values_mut().for_each(Seen::advance);

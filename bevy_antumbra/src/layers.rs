@@ -2,10 +2,10 @@
 
 use bevy::camera::visibility::RenderLayers;
 
-/// The bit that layers beyond the first 31 share.
+/// Bit of all layers from 31 on.
 const LAST: usize = 31;
 
-/// A bit for each of the first 31 layers; the others share one.
+/// Returns the layers as bits: one for each of the first 31 layers; all others share the last bit.
 pub fn layer_bits(layers: &RenderLayers) -> u32 {
     layers.iter().fold(0, |bits, layer| bits | 1 << layer.min(LAST))
 }

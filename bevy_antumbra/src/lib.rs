@@ -7,17 +7,17 @@
 //! App::new().add_plugins((DefaultPlugins, AntumbraPlugin::default())).run();
 //! ```
 //!
-//! Materials, lights and scenes stay as they are. Lights with `shadow_maps_enabled` have soft shadows in place of Bevy's
-//! own, and every `RectLight` casts some. How soft they are follows from the lights' own sizes: `width` and `height` of a
-//! `RectLight`, `radius` of a `PointLight` or a `SpotLight`, the `SunDisk` of a `DirectionalLight`. No bias is to be set.
+//! Materials, lights and scenes stay unchanged. Lights with `shadow_maps_enabled` get soft shadows in place of Bevy's own, and
+//! every `RectLight` casts shadows. Softness depends on the lights' own sizes: `width` and `height` of a `RectLight`, `radius` of
+//! a `PointLight` or a `SpotLight`, the `SunDisk` of a `DirectionalLight`. There is no bias to set.
 //!
-//! [`SoftShadows`] on a light or a camera, or in the plugin, chooses technique, quality and parameters. [`CasterMaterial`] lets
-//! materials other than the standard one say what they cast.
+//! [`SoftShadows`] on a light or a camera, or in the plugin, sets technique, quality and parameters. [`CasterMaterial`] defines
+//! how materials other than the standard one cast.
 //!
 #![doc = include_str!("../docs/pictures.md")]
 //!
-//! How it works: [Antumbra](antumbra) writes for each light and view a mask of visibility, from the depth
-//! prepass and the casters' meshes, and Bevy's lighting is multiplied by it. The README says where its limits are.
+//! How it works: [Antumbra](antumbra) writes a visibility mask for each light and view, from the depth prepass and the
+//! casters' meshes. Bevy's lighting is multiplied by it. The README lists the limits.
 #![forbid(unsafe_code)]
 
 mod bind_masks;

@@ -1,4 +1,4 @@
-//! Lights: from Bevy's components to the library's shapes, and which layers of the masks are whose.
+//! Conversion of Bevy's lights to the library's, and assignment of mask layers to lights.
 
 use antumbra::light::{Cone, Light, LightShape};
 use bevy::camera::visibility::RenderLayers;
@@ -15,28 +15,28 @@ use crate::layers::layer_bits;
 use crate::patch::Patch;
 use crate::settings::{BevyMaps, NoSoftShadows, SoftShadows};
 
-/// A light that is to have soft shadows in this frame.
+/// Light with soft shadows in this frame.
 #[derive(Clone, Debug)]
 pub struct ShadowLight {
-    /// In the render world.
+    /// Entity in the render world.
     pub entity: Entity,
     pub light: Light,
-    /// Beyond it the light does not shine, metres.
+    /// Distance beyond which the light does not shine, metres.
     pub range: Option<f32>,
-    /// The layers that it is in, as Bevy has them.
+    /// Render layers of the light.
     pub render_layers: RenderLayers,
-    /// The same as bits of the set of casters.
+    /// Render layers as bits of the caster set.
     pub caster_layers: u32,
-    /// The light's own, if it has some.
+    /// Settings of the light itself, if it has any.
     pub settings: Option<SoftShadows>,
-    /// Its bias in Bevy's own map, where Bevy has maps of such lights.
+    /// Depth bias of its own map in Bevy; `None` for kinds of light that Bevy draws no maps for.
     own_bias: Option<f32>,
-    /// Fog is to be lit by it.
+    /// Whether the light is volumetric: fog needs its map.
     is_volumetric: bool,
 }
 
 impl ShadowLight {
-    /// Its bias in Bevy's own map, where Bevy is to draw that beside the mask.
+    /// Returns the depth bias of Bevy's own map if Bevy has to draw one beside the mask.
     fn map_beside(&self, defaults: &SoftShadows, some_have_no_mask: bool) -> Option<f32> {
         let is_drawn = match self.settings.as_ref().unwrap_or(defaults).maps {
             BevyMaps::WhereNeeded => some_have_no_mask || self.is_volumetric,
@@ -47,68 +47,68 @@ impl ShadowLight {
     }
 }
 
-/// What holds where lights have no settings of their own.
+/// Settings for lights without settings of their own.
 #[derive(Resource, Clone, Default)]
 pub struct DefaultSettings {
-    /// For all views.
+    /// Settings of all other views.
     pub everywhere: SoftShadows,
-    /// For single views.
+    /// Settings of single views.
     pub of_views: EntityHashMap<SoftShadows>,
 }
 
 impl DefaultSettings {
-    /// What a light's shadows are made by in a view.
+    /// Returns the settings of a light in a view.
     pub fn of<'a>(&'a self, light: &'a ShadowLight, view: Entity) -> &'a SoftShadows {
         light.settings.as_ref().or_else(|| self.of_views.get(&view)).unwrap_or(&self.everywhere)
     }
 }
 
-/// The lights of this frame, in an order that stays.
+/// Lights of this frame, in a stable order.
 #[derive(Resource, Default)]
 pub struct ShadowLights {
     pub lights: Vec<ShadowLight>,
-    /// Lights that keep Bevy's own maps, with the bias that those are drawn by.
+    /// Depth bias of each light that keeps Bevy's own map.
     left_alone: EntityHashMap<f32>,
-    /// Masks reach the picture; else all is left to Bevy.
+    /// Whether masks reach Bevy's image; if not, Bevy draws all shadows.
     are_on: bool,
 }
 
-/// Masks are numbered by 7 bits, of which 0 stands for none.
+/// Maximum number of mask layers: 7 bits number them, and 0 means none.
 pub const MAX_LAYERS: u32 = 127;
 
-/// The layers of each light's mask.
+/// Mask layers of each light.
 #[derive(Resource, Default)]
 pub struct MaskLayers {
     pub of_lights: EntityHashMap<LightLayers>,
-    /// All layers in use.
+    /// Number of layers in use.
     pub count: u32,
-    /// Spots or suns have maps of Bevy's own, which lie where the masks are to be bound.
+    /// Whether Bevy draws maps of its own for spots or suns, which share the masks' binding.
     pub are_beside_maps: bool,
-    /// The lights with Bevy's own maps in the frame before.
+    /// Lights with Bevy's own maps in the last frame, with their depth biases.
     with_maps: EntityHashMap<f32>,
 }
 
-/// Where a light's mask lies.
+/// Layers of a light's mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightLayers {
     pub first: u32,
-    /// 1, or 3 for red, green and blue.
+    /// Number of layers: 1, or 3 for red, green and blue.
     pub count: u32,
 }
 
 impl LightLayers {
-    /// What the shader reads; see `patch.wesl`.
+    /// Returns the number that the shader reads; see `patch.wesl`.
     fn number(self) -> u32 {
         (self.first + 1) | if self.count == 3 { 128 } else { 0 }
     }
 }
 
-/// What every light has besides its own component.
+/// Components of every light besides its own.
 type Common = (RenderEntity, &'static GlobalTransform, &'static ViewVisibility, Option<&'static RenderLayers>);
-/// What the plugin adds.
+/// Components that choose a light's shadows.
 type Chosen = (Option<&'static SoftShadows>, Has<NoSoftShadows>, Has<VolumetricLight>);
 
-/// Takes the lights over to the render world. All of them in every frame: they are few.
+/// Extracts the lights to the render world. All of them in every frame, because they are few.
 pub fn extract_lights(
     patch: Extract<Res<Patch>>,
     mut lights: ResMut<ShadowLights>,
@@ -176,23 +176,23 @@ pub fn extract_lights(
     lights.lights.sort_unstable_by_key(|light| light.entity);
 }
 
-/// A spot's cone with the angles that Bevy shines by: the outer below a right angle, the inner within it.
+/// Returns a spot's cone with Bevy's angles: the outer limited to less than 90°, the inner to less than the outer.
 fn cone_of(light: &SpotLight) -> Cone {
     let outer_rad = light.outer_angle.clamp(1e-3, std::f32::consts::FRAC_PI_2 - 1e-4);
     Cone { inner_rad: light.inner_angle.clamp(0.0, 0.999 * outer_rad), outer_rad }
 }
 
-/// A shape where its entity is. Bevy's lights look along −z, their rectangles lie along x and y.
+/// Returns the light at its entity's transform. Bevy's lights face −z, and its rectangles lie along x and y.
 fn placed(shape: LightShape, transform: &GlobalTransform, cone: Option<Cone>, name: String) -> Light {
     let (center, axis) = (vec3(transform.translation()), vec3(transform.forward().as_vec3()));
     let up = vec3(transform.up().as_vec3());
     Light { name, up, cone, axis, ..Light::new(shape, center, center + axis) }
 }
 
-/// Gives lights their layers, turns Bevy's own maps of them off and leaves the layers' number where the shader finds it; turns
-/// the maps of those on that are left alone, and of all that light what has no mask.
+/// Assigns mask layers to lights, turns off Bevy's own maps of these lights and stores the layer number where the shader reads
+/// it. Turns on the maps of excluded lights, and of lights that need a map for surfaces without a mask.
 ///
-/// In every frame: Bevy takes lights over again when they change, and only then.
+/// Runs in every frame, because Bevy extracts lights only when they change.
 pub fn claim_lights(
     lights: Res<ShadowLights>,
     colored: Res<ColoredLights>,
@@ -217,18 +217,18 @@ pub fn claim_lights(
     give_layers(&lights, &colored, layers, &mut has_warned);
     layers.are_beside_maps = false;
     let number = |entity| layers.of_lights.get(&entity).map_or(0, |layers| layers.number());
-    // Whether Bevy draws the map, and the bias with the number in it.
+    // Returns whether Bevy draws the map, and the bias with the number in it.
     let claim = |entity| {
         let own_bias = layers.with_maps.get(&entity).copied();
         (own_bias.is_some(), numbered(own_bias.unwrap_or(1.0), number(entity)))
     };
-    // Where in Bevy's array a spot's map lies depends on what other maps there are, and is asked only where lights change.
+    // The layer of a spot's map in Bevy's array depends on the other maps, and Bevy updates it only for changed lights.
     let have_maps_changed = layers.with_maps != maps_before;
     for (entity, mut light) in &mut points {
         if have_maps_changed {
             light.set_changed();
         }
-        // What Bevy derives from a light is derived again when it changes: only where it does.
+        // Change detection is bypassed, because Bevy would derive its data again for every changed light.
         let light = light.bypass_change_detection();
         (light.shadow_maps_enabled, light.shadow_depth_bias) = claim(entity);
         layers.are_beside_maps |= light.shadow_maps_enabled && light.spot_light_angles.is_some();
@@ -243,14 +243,14 @@ pub fn claim_lights(
     }
 }
 
-/// A quantity with a number in its lowest eight bits, which moves it by less than one part in 32 768. None is so near to 0 that a
-/// GPU might take it for 0, and none infinite, since that with a number is none.
+/// Stores a number in the lowest eight bits of a quantity, which changes it by less than one part in 32 768. Keeps the result
+/// away from 0, which a GPU might flush, and from infinity, which with a number would be NaN.
 fn numbered(quantity: f32, number: u32) -> f32 {
     let quantity = if quantity.abs() < 1e-6 { 1e-6 } else { quantity.clamp(f32::MIN, f32::MAX) };
     f32::from_bits((quantity.to_bits() & !0xff) | number)
 }
 
-/// Gives each light its layers. Those for which there are none keep Bevy's own maps.
+/// Assigns layers to each light. Lights beyond the maximum keep Bevy's own maps.
 fn give_layers(lights: &ShadowLights, colored: &ColoredLights, layers: &mut MaskLayers, has_warned: &mut bool) {
     layers.of_lights.clear();
     layers.count = 0;
@@ -269,7 +269,7 @@ fn give_layers(lights: &ShadowLights, colored: &ColoredLights, layers: &mut Mask
     }
 }
 
-/// The lights whose masks have three channels.
+/// Lights whose masks have three channels.
 #[derive(Resource, Default)]
 pub struct ColoredLights(pub bevy::ecs::entity::EntityHashSet);
 

@@ -1,53 +1,54 @@
-//! Masks as Bevy's bindings can carry them: layers of a depth array.
+//! Masks in a form that Bevy's bindings can carry: layers of a depth array.
 //!
-//! The library writes 32-bit floats; Bevy's view has a place for an array of depth textures, that of its maps of spots and
-//! suns, and both hold numbers from 0 to 1 as well. So each channel of each light's mask is drawn into a layer, by a pass that
-//! writes depth alone, and that array is bound in the maps' place. No layout changes, and no bind group is added.
+//! The library writes 32-bit floats. Bevy's view binds an array of depth textures, its shadow maps of spots and suns, and both
+//! hold values from 0 to 1. So a depth-only pass draws each channel of each light's mask into a layer, and that array is bound
+//! in place of the maps. No layout changes, and no bind group is added.
 //!
-//! The array is of the view's size, unless Bevy draws maps of its own, which belong into it: then it is of the maps' size, has copies of them in its first layers, and a mask of a view that is larger is cut into tiles. Masks are counted
-//! from the last layer back, for the shader does not know how many maps there are.
+//! The array has the view's size, unless Bevy draws maps of its own. In that case it has the maps' size, its first layers are
+//! copies of them, and the mask of a larger view is cut into tiles. Masks are numbered from the last layer backwards, because
+//! the shader does not know the number of maps.
 
 use antumbra::{Mask, MaskChannels};
 use bevy::render::render_resource::TextureView;
 
-/// What the array is made of; the library's masks are of as many bits, and Bevy's maps are of it too.
+/// Format of the array. It has as many bits as the library's masks, and Bevy's maps use it, too.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// A view's masks: slots of all lights, one behind the other. Of a view of several samples a pixel first the depths of its
-/// two pictures, then of each mask that of the one and that of the other.
+/// Masks of a view: one slot per light's mask channel. With several samples per pixel, the depths of both images come first,
+/// then for each mask a slot per image.
 pub struct ViewMasks {
     pub shape: Shape,
     layers: Vec<wgpu::TextureView>,
-    /// All layers, for Bevy.
+    /// View of all layers, for Bevy.
     pub array: TextureView,
-    /// Bevy's maps, which lie in the first layers too.
+    /// Bevy's own maps, which are copied to the first layers.
     pub maps: Option<Maps>,
-    /// The frame in which the view was last there.
+    /// Frame in which the view was last rendered.
     pub seen: u64,
 }
 
-/// What an array is made for.
+/// Dimensions of an array of masks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
-    /// The view.
+    /// Size of the view.
     pub size_px: glam::UVec2,
     pub samples: u32,
-    /// A mask's; the view is cut into such.
+    /// Size of a layer; the view is cut into tiles of this size.
     pub tile_px: glam::UVec2,
     pub map_count: u32,
-    /// Of each picture.
+    /// Number of mask slots of each image.
     pub mask_count: u32,
     pub max_layers: u32,
 }
 
-/// Bevy's own maps.
+/// Bevy's own shadow maps.
 pub struct Maps {
     pub texture: wgpu::Texture,
     group: wgpu::BindGroup,
 }
 
 impl Shape {
-    /// Layers of one slot, along both sides of the view.
+    /// Returns the number of tiles of a slot along both sides of the view.
     pub fn tiles(&self) -> glam::UVec2 {
         (self.size_px + self.tile_px - 1) / self.tile_px
     }
@@ -56,17 +57,17 @@ impl Shape {
         if self.samples > 1 { 2 + 2 * self.mask_count } else { self.mask_count }
     }
 
-    /// As many as there can be; masks that then have no room are as if there were none.
+    /// Returns the number of layers, limited by the device. Masks beyond it are treated as absent.
     fn layer_count(&self) -> u32 {
         (self.map_count + self.slot_count() * self.tiles().element_product()).min(self.max_layers)
     }
 
-    /// Whether there is room for another's masks.
+    /// Whether an array of this shape can hold the masks of another.
     pub fn serves(&self, other: &Self) -> bool {
         self.mask_count >= other.mask_count && Self { mask_count: other.mask_count, ..*self } == *other
     }
 
-    /// A slot's layers, each with the first pixel of the view that lies in it.
+    /// Returns a slot's layers, each with the first pixel of the view that it holds.
     fn tiles_of(self, slot: u32) -> impl Iterator<Item = (u32, glam::UVec2)> {
         let (tiles, layers) = (self.tiles(), self.layer_count());
         (0..tiles.element_product()).filter_map(move |tile| {
@@ -108,42 +109,42 @@ impl ViewMasks {
         Self { shape, layers, array, maps: None, seen: 0 }
     }
 
-    /// Where a mask of a picture lies.
+    /// Returns the slot of an image's mask.
     pub fn slot_of(&self, picture: u32, mask: u32) -> u32 {
         if self.shape.samples > 1 { 2 + 2 * mask + picture } else { mask }
     }
 
-    /// The depth of the nearest surfaces, where pixels have several samples and one layer holds all of the view.
+    /// Returns the depth of the nearest surfaces, if pixels have several samples and one layer holds all of the view.
     pub fn depth_layer(&self) -> Option<&wgpu::TextureView> {
         let is_whole = self.shape.samples > 1 && self.shape.tiles() == glam::UVec2::ONE;
         self.layers.last().filter(|_| is_whole)
     }
 
-    /// Whether the view has masks at all: of 2 or 8 samples a pixel it has none.
+    /// Whether the view has masks at all: none with 2 or 8 samples per pixel.
     pub fn has_masks(&self) -> bool {
         matches!(self.shape.samples, 1 | 4)
     }
 }
 
-/// A mask that the library writes, from which layers are drawn; lights of a view share it, one after the other.
+/// Mask that the library writes and that is drawn into layers. Lights of a view share it, one after the other.
 pub struct ScratchMask {
     pub mask: Mask,
     groups: Vec<wgpu::BindGroup>,
 }
 
-/// A group that is kept as long as it is of the same view.
+/// Bind group, cached as long as the bound view is the same.
 pub type CachedGroup = Option<(wgpu::TextureView, wgpu::BindGroup)>;
 
-/// Draws masks into layers.
+/// Pipelines that draw masks into layers.
 pub struct MaskWriter {
     device: wgpu::Device,
     of_masks: wgpu::RenderPipeline,
     of_maps: wgpu::RenderPipeline,
 }
 
-/// What a layer begins as: light, where no mask is drawn.
+/// Clear value of a mask layer: fully lit.
 const LIGHT: f32 = 1.0;
-/// The depth of no surface.
+/// Clear value of a depth layer: no surface.
 const NOTHING: f32 = 0.0;
 
 impl MaskWriter {
@@ -168,7 +169,7 @@ impl MaskWriter {
         }
     }
 
-    /// A scratch mask of a size.
+    /// Creates a scratch mask of a size.
     pub fn scratch(&self, size_px: glam::UVec2, channels: MaskChannels) -> ScratchMask {
         let mask = Mask::with_channels(&self.device, size_px, channels);
         let group = |layer| {
@@ -208,7 +209,7 @@ impl MaskWriter {
         Maps { texture: texture.clone(), group }
     }
 
-    /// Draws a mask's channels into slots; without a mask, light everywhere.
+    /// Draws a mask's channels into slots; without a mask, fully lit.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -221,7 +222,7 @@ impl MaskWriter {
         }
     }
 
-    /// Draws the depth of a view's picture into its slot, and into another texture of the same numbers.
+    /// Draws the depth of one of the view's images into its slot.
     pub fn record_view(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -235,8 +236,8 @@ impl MaskWriter {
         self.draw(encoder, masks, picture, Some(group));
     }
 
-    /// Draws what there is beside masks: Bevy's own maps, and where the view has no masks, depths that no fragment has, by
-    /// which the shader knows that.
+    /// Draws the other layers: copies of Bevy's own maps and, if the view has no masks, depths that match no fragment, which
+    /// tells the shader so.
     pub fn record_others(&self, encoder: &mut wgpu::CommandEncoder, masks: &ViewMasks) {
         if let Some(maps) = &masks.maps {
             for (layer, view) in (0..masks.shape.map_count).zip(&masks.layers) {

@@ -1,11 +1,11 @@
-// Writes masks and Bevy's own maps as depth, which is what Bevy's bindings have a place for.
+// Writes masks and Bevy's own maps as depth, the only format that Bevy's bindings have a place for.
 
 @group(0) @binding(0) var mask: texture_2d<f32>;
 @group(0) @binding(1) var maps: texture_depth_2d_array;
 
 struct Cover {
     @builtin(position) position: vec4<f32>,
-    // What is drawn: of a mask the part's first pixel, x in the low 16 bits; of maps the layer.
+    // Part to draw: the first pixel of a mask's tile, x in the low 16 bits; or the layer of the maps.
     @location(0) @interpolate(flat) part: u32,
 }
 

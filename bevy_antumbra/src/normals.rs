@@ -1,8 +1,8 @@
 //! Geometric normals of a view.
 //!
-//! The library keeps light off surfaces by their planes. It derives these from depth alone where it is given none, and at
-//! silhouettes and on what is thin then takes a neighbour's. Bevy's normal prepass knows which surface a pixel is of, but not
-//! its plane: normals are interpolated and mapped, in ten bits. Together they give what is wanted; `normals.wgsl` says how.
+//! The library uses surfaces' planes against light leaks. Without normals it derives the planes from depth alone, which gives a
+//! neighbour's plane at silhouettes and on thin surfaces. Bevy's normal prepass knows a pixel's surface, but not its plane: its
+//! normals are interpolated and mapped, with ten bits. `normals.wgsl` combines both.
 
 /// Uniform `View` of the shader.
 #[repr(C)]
@@ -14,24 +14,24 @@ struct View {
     size_px: glam::UVec2,
 }
 
-/// The pass, once a device.
+/// Normal derivation pass, one per device.
 pub struct NormalDeriver {
     device: wgpu::Device,
     pipeline: wgpu::ComputePipeline,
 }
 
-/// A view's normals.
+/// Geometric normals of a view.
 pub struct Normals {
-    /// `Rgba32Float`, of the depth texture's size.
+    /// Normals in world space: `Rgba32Float`, of the normal prepass's size.
     pub view: wgpu::TextureView,
     uniform: wgpu::Buffer,
-    /// What it is derived from.
+    /// Depth that the normals are derived from.
     depth: wgpu::TextureView,
     shading_normals: wgpu::Texture,
     group: wgpu::BindGroup,
 }
 
-/// What a view's normals are derived from.
+/// Inputs from which a view's normals are derived.
 pub struct NormalSources<'a> {
     pub depth: &'a wgpu::TextureView,
     pub shading_normals: &'a wgpu::Texture,
@@ -58,7 +58,7 @@ impl NormalDeriver {
         Self { device: device.clone(), pipeline }
     }
 
-    /// Records a view's normals, into what was made for an earlier frame where that fits.
+    /// Records a view's normals. Reuses an earlier frame's resources if they fit.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,10 +1,10 @@
-// Geometric normals from depth and from Bevy's normal prepass, whose normals are bent by smooth shading and by normal maps.
+// Geometric normals from depth and from Bevy's normal prepass, whose normals are changed by smooth shading and normal maps.
 //
-// A normal follows from a pixel's place and those of two neighbours, one beside it and one above or below: four choices. Bevy's
-// normal says which of them are on the pixel's own surface. Where none is, on what is a pixel or two wide, Bevy's is taken.
+// A normal follows from the positions of a pixel and two neighbours, one beside it and one above or below: four candidates.
+// Bevy's normal selects those on the pixel's own surface; if there is none, on features 1 or 2 pixels wide, it is used itself.
 //
-// Which neighbours may be: under a perspective with reversed depth, depth is affine over a plane's pixels, so that of three in
-// a row the middle one is the others' mean.
+// A neighbour on the same plane is found by depth: under a perspective with reversed depth, depth is affine over a plane's
+// pixels, so that of three in a row the middle one is the mean of the others.
 
 struct View {
     view_from_clip: mat4x4<f32>,
@@ -15,18 +15,18 @@ struct View {
 
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var depths: texture_depth_2d;
-// World space, times a half and plus a half.
+// Normals of Bevy's prepass: world space, scaled by a half and offset by a half.
 @group(0) @binding(2) var shading_normals: texture_2d<f32>;
 @group(0) @binding(3) var normals: texture_storage_2d<rgba32float, write>;
 
-// Depths of three pixels on one plane differ from the middle one's mean by rounding alone, some units in the last place, and on
-// what bends by a part of what they rise by. Across an edge they differ by all of it.
+// Thresholds of coplanarity. On a plane the middle of three depths differs from the others' mean by rounding alone, some units
+// in the last place; on a curved surface by a part of the depth step; across an edge by all of it.
 const FLAT: f32 = 3e-6;
 const BEND: f32 = 0.2;
-// The cosine of 18 degrees: what a normal may differ by from an interpolated one on a mesh of some hundred triangles.
+// Minimum cosine between a candidate and Bevy's normal: 18 degrees, as on a smoothly shaded mesh of some hundred triangles.
 const LIKE: f32 = 0.9;
 
-// Beyond the view there is nothing.
+// Returns the depth of a pixel; 0, the background, outside the view.
 fn depth_at(pixel: vec2<i32>) -> f32 {
     if any(pixel < vec2<i32>(0)) || any(pixel >= view.size_px) {
         return 0.0;
@@ -40,7 +40,7 @@ fn pos_in_view(pixel: vec2<i32>, depth: f32) -> vec3<f32> {
     return pos.xyz / pos.w;
 }
 
-// How far three depths in a row are from one plane: 0 as far as rounding tells, 1 where they bend, 2 where they are two surfaces'.
+// Classifies three depths in a row: 0 coplanar within rounding, 1 curved, 2 on different surfaces.
 fn bend(before: f32, middle: f32, after: f32) -> u32 {
     if before <= 0.0 || after <= 0.0 {
         return 2u;
@@ -69,7 +69,7 @@ fn derive(@builtin(global_invocation_id) id: vec3<u32>) {
     let to_view = transpose(mat3x3<f32>(
         view.world_from_view[0].xyz, view.world_from_view[1].xyz, view.world_from_view[2].xyz,
     ));
-    // Turned to the camera; nearly, for a shading normal may look away at silhouettes.
+    // Faces the camera, approximately: a shading normal can face away at silhouettes.
     var smooth_normal = normalize(to_view * shading);
     if dot(smooth_normal, here) > 0.0 {
         smooth_normal = -smooth_normal;
@@ -92,7 +92,7 @@ fn derive(@builtin(global_invocation_id) id: vec3<u32>) {
         let along = pos_in_view(pixel + right, beside) - here;
         let across = pos_in_view(pixel + up, above) - here;
         let normal = normalize(cross(along, across) * f32(step.x * step.y));
-        // What is flat comes before what bends, and what bends has to be like Bevy's normal.
+        // Planar candidates precede curved ones, and curved ones have to be similar to Bevy's normal.
         let likeness = abs(dot(normal, smooth_normal)) + select(0.0, 1.0, most == 0u);
         if likeness > best_likeness {
             best_likeness = likeness;

@@ -1,10 +1,9 @@
-//! How masks come into Bevy's picture: four lines of its lighting are multiplied by them.
+//! Patch of Bevy's lighting shader: four of its lines are multiplied by the masks.
 //!
-//! Bevy has no place where visibility could be handed in, so its shader `pbr_functions.wesl` is changed as it is loaded:
-//! where a light's share is added up, it is multiplied by what `patch.wesl` reads from the
-//! masks. Materials, bindings and pipelines stay as they are, forward and deferred shading both come by, and so does each
-//! material that calls Bevy's lighting. The lines that are changed are counted, and where there are others than expected
-//! nothing is changed: the plugin says so in one line, and Bevy's own shadows stay on.
+//! Bevy has no hook for visibility, so its shader `pbr_functions.wesl` is changed after loading: each light's contribution is
+//! multiplied by the visibility that `patch.wesl` reads from the masks. Materials, bindings and pipelines stay unchanged. The
+//! patch covers forward and deferred shading and each material that calls Bevy's lighting. The lines to change are counted. If
+//! the counts differ from those expected, nothing is changed: the plugin logs one line, and Bevy's own shadows stay on.
 
 use std::borrow::Cow;
 
@@ -13,22 +12,22 @@ use bevy::shader::{Shader, Source};
 
 use crate::patched::patched;
 
-/// The shader, as Bevy's asset server knows it.
+/// Path of the shader in Bevy's asset server.
 const PATH: &str = "embedded://bevy_pbr/render/pbr_functions.wesl";
 
-/// Whether masks reach Bevy's picture.
+/// State of the patch: whether masks reach Bevy's image.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Patch {
     /// The shader is not loaded yet.
     #[default]
     Waiting,
-    /// They do.
+    /// Masks reach the image.
     Applied,
-    /// They do not: Bevy's shader is another one. Bevy's own shadows stay on.
+    /// Bevy's shader is not the expected one. Bevy's own shadows stay on.
     Refused,
 }
 
-/// Changes the shader once it is loaded.
+/// Patches the shader once it is loaded.
 pub fn apply(mut patch: ResMut<Patch>, mut shaders: ResMut<Assets<Shader>>) {
     if *patch != Patch::Waiting {
         return;

@@ -1,35 +1,35 @@
-//! The text of Bevy's shader with masks in it. Apart from Bevy, so that it is tested where Bevy is not built.
+//! Text of Bevy's shader with masks in it. Separate from Bevy, so that it is tested where Bevy is not built.
 
-/// Where a light of points, spots and suns is added, in this order.
+/// Line that adds a light's contribution, for points, spots and suns in this order.
 const ADDED: &str = "direct_light += light_contrib * shadow;";
-/// Where a rectangle's is.
+/// Line that adds a rectangle's contribution.
 const ADDED_RECTANGLE: &str = "direct_light += light_contrib;";
-/// What is read of a light, in the same order.
+/// Expression of each light's mask number, in the same order.
 const MASKS: [&str; 3] =
     ["antumbra_mask_of_clustered(light_id)", "antumbra_mask_of_clustered(light_id)", "antumbra_mask_of_directional(i)"];
-/// Names that the added functions use, all of the shader's own.
+/// Names of the shader that the added functions use.
 const NAMES: [&str; 3] = ["mesh_view_bindings as view_bindings", "mesh_view_types", "MESH_FLAGS_SHADOW_RECEIVER_BIT"];
 const FUNCTIONS: &str = include_str!("patch.wesl");
 
-/// Why the shader cannot be changed.
+/// Reason why the shader cannot be patched.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PatchError {
-    /// A line is there more often or more seldom than expected.
+    /// The number of times that a line occurs is not the expected one.
     #[error("`{line}` is there {had} times, and {needed} were expected")]
     Count {
         /// The line.
         line: &'static str,
-        /// How often it is there.
+        /// Number of times that it occurs.
         had: usize,
-        /// How often it was.
+        /// Expected number.
         needed: usize,
     },
 }
 
-/// The shader with masks in it.
+/// Returns the shader with masks in it.
 ///
 /// # Errors
-/// Where the lines to be changed are not as they were in Bevy 0.20.
+/// If the lines to change are not those of Bevy 0.20.
 pub fn patched(shader: &str) -> Result<String, PatchError> {
     let count = |line: &'static str, needed| {
         let had = shader.matches(line).count();

@@ -1,4 +1,4 @@
-//! The plugin: what runs when.
+//! The plugin: schedules of its systems.
 
 use bevy::asset::AssetEventSystems;
 use bevy::core_pipeline::prepass::{DepthPrepass, NormalPrepass};
@@ -29,12 +29,12 @@ use crate::settings::{
 };
 use crate::warnings::Warnings;
 
-/// Soft shadows for all lights of Bevy's that cast any, and for rectangles.
+/// Plugin of soft shadows for all of Bevy's lights that cast shadows, and for rectangles.
 ///
-/// Add it after `DefaultPlugins`. It asks of every [`Camera3d`] a [`DepthPrepass`] and a [`NormalPrepass`].
+/// Add it after `DefaultPlugins`. It requires a [`DepthPrepass`] and a [`NormalPrepass`] on every [`Camera3d`].
 #[derive(Clone, Debug, Default)]
 pub struct AntumbraPlugin {
-    /// What holds for lights and cameras without settings of their own.
+    /// Settings of lights and cameras without settings of their own.
     pub settings: SoftShadows,
 }
 
@@ -57,11 +57,11 @@ impl Plugin for AntumbraPlugin {
             .register_type::<BevyMaps>()
             .add_systems(First, patch::apply)
             .add_systems(PostUpdate, measure_morphs.after(AssetEventSystems));
-        // Fails where cameras require one already, which is what is wanted.
+        // An error means that cameras already require the component.
         let _ = app.try_register_required_components::<Camera3d, DepthPrepass>();
         let _ = app.try_register_required_components::<Camera3d, NormalPrepass>();
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
-        // The library packs meshes from Bevy's slabs, and skins are bent from there.
+        // The library packs meshes from Bevy's slabs, and the deformation pass reads them.
         let mut slabs = render_app.world_mut().get_resource_or_init::<MeshAllocatorSettings>();
         slabs.extra_buffer_usages |= BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         render_app
@@ -98,7 +98,7 @@ impl Plugin for AntumbraPlugin {
     }
 }
 
-/// Takes cameras' settings over.
+/// Extracts the settings of cameras.
 fn extract_camera_settings(
     mut defaults: ResMut<DefaultSettings>,
     cameras: Extract<Query<(RenderEntity, &SoftShadows), With<Camera3d>>>,
@@ -107,7 +107,7 @@ fn extract_camera_settings(
     defaults.of_views.extend(cameras.iter().map(|(entity, settings)| (entity, settings.clone())));
 }
 
-/// Which lights' masks have three channels: where casters tint, and a technique knows colour.
+/// Collects the lights whose masks have three channels: some caster tints, and the technique supports colour.
 fn choose_channels(
     lights: Res<ShadowLights>,
     defaults: Res<DefaultSettings>,

@@ -1,12 +1,12 @@
-//! Points that a view's camera sees, read back some frames late.
+//! Points that a view's camera sees, read back a few frames late.
 //!
-//! Light maps have their small texels where something is seen, and a sun's cascades begin at what is nearest. A hint that is late
-//! costs sharpness for some frames and nothing else: what receives at all is told by bounds of this frame.
+//! Light maps concentrate their texels where the camera sees something, and a sun's cascades begin at the nearest point. A late
+//! hint costs only sharpness for some frames: the bounds of this frame define which surfaces receive.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Points along each side of the view.
+/// Number of points along each side of the view.
 const CELLS: u32 = 24;
 const BYTES: u64 = CELLS as u64 * CELLS as u64 * 4;
 
@@ -20,32 +20,32 @@ struct Grid {
     padding: glam::UVec2,
 }
 
-/// The pass, once a device.
+/// Pass that gathers depths, one per device.
 pub struct SeenGatherer {
     device: wgpu::Device,
     pipeline: wgpu::ComputePipeline,
 }
 
-/// What is known of a view.
+/// Points that a view's camera sees, and their readback.
 pub struct Seen {
-    /// In the world; empty until the first have come.
+    /// Visible points in world space; empty until the first readback completes.
     pub points: Vec<glam::Vec3>,
     grid: wgpu::Buffer,
     depths: wgpu::Buffer,
     readback: wgpu::Buffer,
-    /// Of the depth texture that it was last made for.
+    /// Bind group, with the depth view that it was created for.
     group: Option<(wgpu::TextureView, wgpu::BindGroup)>,
     state: State,
-    /// What a mapping's end leaves here, for it comes from elsewhere.
+    /// Result of mapping the buffer, set by wgpu's callback on another thread.
     outcome: Arc<AtomicU8>,
-    /// Of the frame that is on its way.
+    /// World-from-clip matrix of the frame being read back.
     world_from_clip: glam::Mat4,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum State {
     Idle,
-    /// Recorded, but maybe not submitted.
+    /// Recorded, but possibly not submitted.
     Recorded,
     Mapping,
 }
@@ -71,7 +71,7 @@ impl SeenGatherer {
         Self { device: device.clone(), pipeline }
     }
 
-    /// Nothing known yet.
+    /// Creates the resources of a view, without points.
     pub fn start(&self) -> Seen {
         let buffer = |label, size, usage| {
             self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -94,7 +94,7 @@ impl SeenGatherer {
         }
     }
 
-    /// Records the pass, unless an earlier frame's points are on their way.
+    /// Records the pass, unless a readback is in progress.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -137,7 +137,7 @@ impl SeenGatherer {
 }
 
 impl Seen {
-    /// Goes on where it can without waiting. After a frame's commands are submitted.
+    /// Advances the readback without waiting. Call it after a frame's commands are submitted.
     pub fn advance(&mut self) {
         match self.state {
             State::Idle => {}
@@ -164,7 +164,7 @@ impl Seen {
     }
 }
 
-/// Where in the world depths lie; those of the background nowhere.
+/// Returns the world-space points of depths, without the background.
 fn points(depths: &[f32], world_from_clip: &glam::Mat4) -> Vec<glam::Vec3> {
     let place = |i: usize| {
         let cell = glam::Vec2::new((i as u32 % CELLS) as f32, (i as u32 / CELLS) as f32);

@@ -1,4 +1,4 @@
-// What a camera sees, here and there: depth at points that lie evenly over the view.
+// Samples the depth buffer at points spread evenly over the view.
 
 struct Grid {
     origin_px: vec2<u32>,
@@ -9,7 +9,7 @@ struct Grid {
 
 @group(0) @binding(0) var<uniform> grid: Grid;
 @group(0) @binding(1) var depth: texture_depth_2d;
-// Row by row from the top left.
+// Sampled depths, row by row from the top left.
 @group(0) @binding(2) var<storage, read_write> depths: array<f32>;
 
 @compute @workgroup_size(8, 8)

@@ -1,14 +1,14 @@
-//! What users choose: technique, quality and parameters, for the whole app, a camera or a light.
+//! User settings: technique, quality and parameters, for the whole app, a camera or a light.
 
 use antumbra::contract::Denoise;
 use antumbra::{AnyShadow, Gpu, Quality, TechniqueKind};
 use bevy::prelude::*;
 
-/// By which technique a light's shadows are made, and how much it may spend.
+/// Technique, quality and parameters of a light's shadows.
 ///
-/// On a light it holds for that light, on a camera for all lights that have none of their own; the plugin's
-/// [`settings`](crate::AntumbraPlugin::settings) hold for the rest. How soft a shadow is, is not here: that follows from the
-/// light's size.
+/// On a light they apply to that light, on a camera to all lights without their own; the plugin's
+/// [`settings`](crate::AntumbraPlugin::settings) apply to the rest. The softness of a shadow is not a setting: it follows from
+/// the light's size.
 ///
 /// ```
 /// # use bevy::prelude::*; use bevy_antumbra::*;
@@ -22,43 +22,42 @@ use bevy::prelude::*;
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct SoftShadows {
-    /// The technique.
+    /// Shadow technique.
     pub technique: ShadowTechnique,
-    /// How much it may spend: a set of all its parameters.
+    /// Quality: a preset of all parameters.
     pub quality: ShadowQuality,
-    /// Single parameters that are otherwise than the quality has them. `antumbra techniques NAME` lists a technique's, with
-    /// units and ranges; so does [`ShadowTechnique::parameters`].
+    /// Parameters that override the quality's values. `antumbra techniques NAME` lists a technique's parameters with units and
+    /// ranges; so does [`ShadowTechnique::parameters`].
     pub parameters: Vec<ShadowParameter>,
-    /// Whether masks are made smooth over frames and neighbouring pixels, and how; `None` leaves them as the technique writes
-    /// them.
+    /// Denoising of masks over frames and neighbouring pixels; `None` leaves them as the technique writes them.
     pub denoise: Option<ShadowDenoise>,
-    /// Whether Bevy draws the light's own map too. Read of lights and of the plugin's settings; a map is of no camera.
+    /// When Bevy draws the light's own map, too. Read from lights and the plugin's settings; ignored on cameras.
     pub maps: BevyMaps,
 }
 
-/// Whether Bevy draws a light's own map beside the plugin's mask. A mask is of the one surface that a pixel's depth is of. What is
-/// shaded besides it has Bevy's shadows: transparent surfaces, the far side of what transmits light diffusely, and volumetric fog.
+/// When Bevy draws a light's own map beside the plugin's mask. A mask holds one surface per pixel, that of the depth prepass.
+/// Everything else has Bevy's shadows: transparent surfaces, back sides of diffusely transmitting ones and volumetric fog.
 /// Rectangles have no map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum BevyMaps {
-    /// Where the scene has a transparent or transmitting material that receives shadows, or the light is a `VolumetricLight`.
+    /// If a transparent or transmitting material in the scene receives shadows, or the light is a `VolumetricLight`.
     #[default]
     WhereNeeded,
-    /// Always: for materials of your own that are transparent, of which the plugin is not told.
+    /// Always: for your own transparent materials, which the plugin does not know about.
     Always,
-    /// Never: what has no mask is as bright as without shadows.
+    /// Never: surfaces without a mask are unshadowed.
     Never,
 }
 
-/// How masks are made smooth: for techniques that take few samples a pixel, with random offsets, `Pcss` and `SampleBased` among
-/// them. Where things move by themselves, give the camera a `MotionVectorPrepass` too: without it only the camera's own motion
-/// is known. At four samples a pixel it always is so.
+/// Denoising of masks, for techniques with few random samples per pixel, such as `Pcss` and `SampleBased`. If objects move, give
+/// the camera a `MotionVectorPrepass`, too: without it, and always at four samples per pixel, only the camera's own motion is
+/// known.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct ShadowDenoise {
-    /// Frames that a pixel is the mean of at most: 1 to 64, 16 by default. More: less noise, and shadows that lag by some
-    /// frames where lights or casters move slowly.
+    /// Maximum number of frames averaged per pixel: 1 to 64, 16 by default. More frames give less noise, but shadows lag by some
+    /// frames if lights or casters move slowly.
     pub max_frames: u32,
 }
 
@@ -69,46 +68,46 @@ impl Default for ShadowDenoise {
 }
 
 impl ShadowDenoise {
-    /// For the library, with what a view knows of motion.
+    /// Returns the library's settings, with the view's motion vectors.
     pub(crate) fn of_library(self, motion: Option<wgpu::TextureView>) -> Denoise {
         Denoise { max_frames: self.max_frames, motion }
     }
 }
 
 impl SoftShadows {
-    /// By a technique at its default quality.
+    /// Returns settings for a technique at its default quality.
     pub fn by(technique: ShadowTechnique) -> Self {
         Self { technique, ..Self::default() }
     }
 
-    /// The same at another quality.
+    /// Sets the quality.
     pub fn at(mut self, quality: ShadowQuality) -> Self {
         self.quality = quality;
         self
     }
 
-    /// The same with a parameter set.
+    /// Overrides a parameter.
     pub fn with(mut self, key: impl Into<String>, value: impl Into<ShadowValue>) -> Self {
         self.parameters.push(ShadowParameter { key: key.into(), value: value.into() });
         self
     }
 
-    /// The same made smooth over frames and pixels.
+    /// Enables denoising.
     pub fn denoised(mut self, denoise: ShadowDenoise) -> Self {
         self.denoise = Some(denoise);
         self
     }
 
-    /// The same with Bevy's own map or without it.
+    /// Sets when Bevy draws its own map.
     pub fn beside(mut self, maps: BevyMaps) -> Self {
         self.maps = maps;
         self
     }
 
-    /// A light's state with these settings.
+    /// Creates a light's state with these settings.
     ///
     /// # Errors
-    /// Where the device lacks something, or a parameter is unknown or out of range: one line that says which, and what there is.
+    /// If the device lacks a feature, or a parameter is unknown or out of range: one line with the fault and the valid choices.
     pub(crate) fn create(&self, gpu: &Gpu) -> Result<AnyShadow, antumbra::Error> {
         let mut shadow = self.technique.kind().create(gpu)?;
         self.apply(&mut shadow)?;
@@ -124,33 +123,33 @@ impl SoftShadows {
         Ok(())
     }
 
-    /// Checks the parameters before there is a device.
+    /// Checks the parameters without a device.
     ///
     /// # Errors
-    /// Names the keys there are, or what a key takes.
+    /// Lists the valid keys, or the values that a key takes.
     pub fn check(&self) -> Result<(), antumbra::contract::ParamError> {
         let check = |p: &ShadowParameter| self.technique.kind().check(&p.key, &p.value.to_string());
         self.parameters.iter().try_for_each(check)
     }
 }
 
-/// A light with it is left alone: no shadows of the plugin's.
+/// Marker that excludes a light from the plugin's shadows.
 ///
-/// A [`RectLight`] then casts none, and the others keep Bevy's own, by maps, where `shadow_maps_enabled` is set.
+/// A [`RectLight`] casts no shadows, and other lights keep Bevy's own shadow maps if `shadow_maps_enabled` is set.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoSoftShadows;
 
-/// A technique's parameter.
+/// Parameter of a technique.
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
 pub struct ShadowParameter {
-    /// Its name: `map_size`.
+    /// Name, such as `map_size`.
     pub key: String,
-    /// Its value.
+    /// Value.
     pub value: ShadowValue,
 }
 
-/// A parameter's value.
+/// Value of a parameter.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 pub enum ShadowValue {
     /// A count or size.
@@ -207,26 +206,26 @@ impl From<&str> for ShadowValue {
     }
 }
 
-/// How much a technique may spend; each step is a set of its parameters.
+/// Quality of a technique: a preset of its parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Default, Clone, PartialEq)]
 pub enum ShadowQuality {
-    /// What a game with many lights can spend.
+    /// Affordable for a game with many lights.
     Fast,
-    /// What is left of the error is hard to see.
+    /// Remaining errors are hard to see.
     #[default]
     Balanced,
-    /// Twice to four times the time, for what error that takes away.
+    /// Smaller error for two to four times the time.
     High,
-    /// The least error that the technique reaches, whatever the time.
+    /// Smallest error of the technique, regardless of time.
     Best,
-    /// No step of these: the algorithm as its paper prints it, to compare with. Techniques that are of none of the five papers
-    /// are at their defaults.
+    /// The algorithm as published, for comparison; not a step of this scale. Techniques that are of none of the five papers use
+    /// their defaults.
     Paper,
 }
 
 impl ShadowQuality {
-    /// Every quality, from the cheapest to the dearest, and the paper's last.
+    /// All qualities, from the cheapest to the most expensive; `Paper` is last.
     pub const ALL: &'static [Self] = &[Self::Fast, Self::Balanced, Self::High, Self::Best, Self::Paper];
 
     fn of_library(self) -> Quality {
@@ -240,19 +239,19 @@ impl ShadowQuality {
     }
 }
 
-/// Declares the techniques once: the enum, and which of the library's each is.
+/// Declares the techniques once: the enum and its mapping to the library's.
 macro_rules! techniques {
     ($( $(#[$outer:meta])* $variant:ident, )+) => {
-        /// A technique of the library's; its own page says how it works, whose it is and where it fails.
+        /// Technique of the library. Its own page describes method, authors and failures.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
         #[reflect(Default, Clone, PartialEq)]
         pub enum ShadowTechnique { $( $(#[$outer])* $variant, )+ }
 
         impl ShadowTechnique {
-            /// Every technique.
+            /// All techniques.
             pub const ALL: &'static [Self] = &[$( Self::$variant, )+];
 
-            /// The same in the library.
+            /// Returns the library's technique.
             pub fn kind(self) -> TechniqueKind {
                 match self { $( Self::$variant => TechniqueKind::$variant, )+ }
             }
@@ -261,23 +260,23 @@ macro_rules! techniques {
 }
 
 techniques! {
-    /// One map, edges as sharp as its texels.
+    /// One map, hard edges with the map's resolution.
     Hard,
-    /// One map, edges of one width.
+    /// One map, edges of constant width.
     Pcf,
-    /// Percentage-closer soft shadows, with blockers of three layers.
+    /// Percentage-closer soft shadows, with blockers from three layers.
     Pcss,
-    /// Rays through three layers of the light map: occluders side by side and one behind another, each with its own penumbra. The
+    /// Rays through three layers of the light map: separate penumbrae for occluders side by side and one behind another. The
     /// default, good for most scenes.
     #[default]
     Smrt,
-    /// A bit for each point of the light, set by the texels of three layers.
+    /// One bit per point of the light, set by the texels of three layers.
     Bitmask,
-    /// Outlines of what blocks in one layer of the light map, and their area on the light: penumbrae without noise.
+    /// Outlines of blockers in one layer of the light map, and their area on the light: penumbrae without noise.
     Backprojection,
-    /// Percentage-closer soft shadows over the pixel's footprint too.
+    /// Percentage-closer soft shadows, also filtered over the pixel's footprint.
     PcssAnisotropic,
-    /// A map for each of many points of the light: truth, at the price of as many passes.
+    /// One map for each of many points of the light: exact, for as many passes.
     MultiView,
     /// Variance shadow maps.
     Vsm,
@@ -309,21 +308,21 @@ techniques! {
     Reprojection,
     /// Fragment reprojection from several layers.
     ReprojectionLayered,
-    /// Rays through trees over the casters' triangles: as true as it has rays, coloured shadows too; noise where these are few.
+    /// Rays through bounding volume hierarchies of the casters' triangles, coloured shadows included; noisy with few rays.
     RayTraced,
     /// Exact hard shadows.
     AliasFree,
-    /// Exact soft shadows for the samples it has, coloured ones too; slow where casters have many triangles.
+    /// Exact soft shadows for its light samples, coloured ones included; slow for casters with many triangles.
     SampleBased,
 }
 
 impl ShadowTechnique {
-    /// Its parameters: names, meanings, units, ranges, defaults.
+    /// Returns the parameters: names, meanings, units, ranges, defaults.
     pub fn parameters(self) -> &'static [antumbra::contract::ParamSpec] {
         self.kind().param_specs()
     }
 
-    /// Whether it makes coloured shadows of coloured casters; the others count such as opaque from half on.
+    /// Whether coloured casters cast coloured shadows; otherwise they count as opaque from half coverage on.
     pub(crate) fn knows_color(self) -> bool {
         matches!(self, Self::AliasFree | Self::MultiLayer | Self::MultiView | Self::RayTraced | Self::SampleBased)
     }
@@ -347,7 +346,7 @@ mod tests {
         assert_eq!(ours, Quality::ALL);
     }
 
-    /// What an inspector does: by names, through reflection alone.
+    /// Edits by name through reflection alone, as an inspector does.
     #[test]
     fn reflection_edits_quality_and_denoising() {
         let mut settings = SoftShadows::default();

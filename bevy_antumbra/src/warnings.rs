@@ -1,18 +1,18 @@
-//! What goes wrong, said once.
+//! Warnings that are logged once.
 
 use std::collections::HashSet;
 use std::fmt::Display;
 
 use bevy::prelude::*;
 
-/// The lines that were said.
+/// Lines that were logged.
 #[derive(Resource, Default)]
 pub struct Warnings {
     said: HashSet<String>,
 }
 
 impl Warnings {
-    /// Says a line, unless it was said.
+    /// Logs a line once.
     pub fn say(&mut self, line: impl Display) {
         let line = line.to_string();
         if self.said.contains(&line) {
@@ -22,7 +22,7 @@ impl Warnings {
         self.said.insert(line);
     }
 
-    /// Says why something failed.
+    /// Logs the error of a failed operation.
     pub fn of<E: Display>(&mut self, outcome: Result<(), E>) {
         if let Err(error) = outcome {
             self.say(error);

@@ -1,4 +1,4 @@
-//! What casts and what receives, as Bevy's components say: each with the picture's shadow counted.
+//! Casters and receivers by Bevy's components. Each test measures the shadowed fraction of the image.
 
 mod common;
 
@@ -22,16 +22,16 @@ use bevy_antumbra::{
 use common::{Headless, Picture, difference, set_shadows};
 
 const SIZE_PX: UVec2 = UVec2::splat(128);
-/// The slab's sides, metres; it lies a metre and a half above the ground, above what the camera sees.
+/// Size of the slab, metres. It floats 1.5 m above the ground, outside the camera's view.
 const SLAB_M: Vec3 = Vec3::new(1.2, 0.05, 1.2);
 const SLAB_AT: Vec3 = Vec3::new(0.0, 1.5, 0.0);
 
-/// The ground, seen from above and so near that the slab is off screen, under a sun at the zenith.
+/// Test scene: the ground seen from above, with the slab off screen, under a sun at the zenith.
 struct Stage {
     headless: Headless,
     ground: Entity,
     light: Entity,
-    /// Without shadows.
+    /// Image without shadows.
     lit: Picture,
 }
 
@@ -44,7 +44,7 @@ impl Stage {
         Self::with(settings, |_| {})
     }
 
-    /// With more of the app's, whose assets lie beside the tests.
+    /// Creates the scene with additions to the app, whose assets are in the tests' folder.
     fn with(settings: SoftShadows, more: impl FnOnce(&mut App)) -> Self {
         let mut headless = Headless::reading(SIZE_PX, Path::new("tests/data"));
         headless.app.add_plugins(AntumbraPlugin { settings });
@@ -54,7 +54,7 @@ impl Stage {
             eye: glam::Vec3::new(0.0, 1.3, 0.0),
             target: glam::Vec3::ZERO,
             up: -glam::Vec3::Z,
-            // 2.4 m of the ground: the slab's shadow is half as wide.
+            // The view covers 2.4 m of the ground; the slab's shadow is half as wide.
             fov_y_rad: 2.0 * (1.2f32 / 1.3).atan(),
             near_m: 0.05,
             far_m: 10.0,
@@ -88,7 +88,7 @@ impl Stage {
         self.headless.app.world_mut()
     }
 
-    /// Visibility of the colours, in the mean over the picture.
+    /// Returns the mean visibility of the image, for each colour.
     #[track_caller]
     fn mean(&mut self, name: &str) -> [f32; 3] {
         let picture = self.headless.picture(4);
@@ -102,14 +102,14 @@ impl Stage {
         mean
     }
 
-    /// The share of the picture that is in shadow.
+    /// Returns the fraction of the image in shadow.
     #[track_caller]
     fn shadow(&mut self, name: &str) -> f32 {
         1.0 - self.mean(name)[0]
     }
 }
 
-/// A quarter of the picture.
+/// Fraction of the image that the whole slab shadows.
 const WHOLE: f32 = 0.25;
 
 #[track_caller]
@@ -162,7 +162,7 @@ fn one_mesh_many_times_moved_and_turned() {
         .map(|(x, z)| world.spawn((Mesh3d(mesh.clone()), MeshMaterial3d(material.clone()), at(x, z))).id())
         .into();
     is_near(stage.shadow("four_tiles"), WHOLE);
-    // One on another, one twice as large, one out of the picture.
+    // One tile on another, one twice as large, one outside the image.
     stage.world().entity_mut(tiles[0]).insert(at(1.0, -1.0));
     is_near(stage.shadow("one_on_another"), 0.75 * WHOLE);
     stage.world().entity_mut(tiles[3]).insert(at(0.0, 1.0).with_scale(Vec3::new(2.0, 1.0, 1.0)));
@@ -204,7 +204,7 @@ fn a_mesh_that_changes() {
     is_near(stage.shadow("changed_again"), 0.25 * std::f32::consts::PI * WHOLE);
 }
 
-/// Transparent in every second of 4 × 4 squares.
+/// Returns a texture of 4 × 4 squares, every second of which is transparent.
 fn chequered() -> Image {
     let texel = |i: u32| [255, 255, 255, if (i % 64 / 16 + i / 64 / 16).is_multiple_of(2) { 255 } else { 0 }];
     let bytes = (0..64 * 64).flat_map(texel).collect();
@@ -222,7 +222,7 @@ fn masked_blended_and_coloured_materials() {
     let slab = stage.spawn(card(), masked.clone(), at);
     is_near(stage.shadow("masked"), 0.5 * WHOLE);
     stage.world().despawn(slab);
-    // One opaque square of the picture: compressed coordinates count from a box that is not that of 0 to 1.
+    // One opaque square of the texture: compressed coordinates then have a box other than 0 to 1.
     let mut square = card();
     let Some(VertexAttributeValues::Float32x2(uvs)) = square.attribute_mut(Mesh::ATTRIBUTE_UV_0) else {
         panic!("a plane has texture coordinates");
@@ -234,7 +234,7 @@ fn masked_blended_and_coloured_materials() {
         is_near(stage.shadow(name), WHOLE);
         stage.world().despawn(slab);
     }
-    // Alpha covers, whatever the colour.
+    // Alpha is coverage, whatever the colour.
     let blended = |specular_transmission| StandardMaterial {
         base_color: Color::linear_rgba(1.0, 0.0, 0.0, 0.9),
         alpha_mode: AlphaMode::Blend,
@@ -246,14 +246,14 @@ fn masked_blended_and_coloured_materials() {
         is_near(1.0 - v, 0.9 * WHOLE);
     }
     stage.world().despawn(slab);
-    // Takes nine tenths of the light, and of what it takes none of the red.
+    // The glass covers nine tenths and transmits red.
     let glass = blended(1.0);
     let slab = stage.spawn(card(), glass, at);
     let [red, green, blue] = stage.mean("glass").map(|v| 1.0 - v);
     is_near(red, 0.0);
     is_near(green, 0.9 * WHOLE);
     is_near(blue, 0.9 * WHOLE);
-    // The technique that knows no colour counts it as opaque.
+    // A technique without colour counts it as opaque.
     let light = stage.light;
     stage.world().entity_mut(light).insert(SoftShadows::by(ShadowTechnique::Pcss));
     is_near(stage.shadow("glass_by_pcss"), WHOLE);
@@ -263,7 +263,7 @@ fn masked_blended_and_coloured_materials() {
     is_near(stage.shadow("added"), 0.0);
 }
 
-/// A mask is of the ground below a veil; what is seen of the veil itself has the shadow of Bevy's map.
+/// A mask holds the ground below a veil; the veil itself has the shadow of Bevy's map.
 #[test]
 fn transparent_surfaces_keep_bevys_shadows() {
     let mut stage = Stage::new();
@@ -281,7 +281,7 @@ fn transparent_surfaces_keep_bevys_shadows() {
     is_near(stage.shadow("veil_without_map"), 0.5 * WHOLE);
     stage.world().entity_mut(light).insert(SoftShadows::default().beside(BevyMaps::Always));
     is_near(stage.shadow("veil_with_map"), WHOLE);
-    // What has a mask has no other shadow beside it: where the sun is wide the mask's edges are softer than those of the map.
+    // A surface with a mask must not get Bevy's shadow, too: under a wide sun the mask's edges are softer than the map's.
     stage.world().despawn(veil);
     stage.world().entity_mut(light).insert(bevy::light::SunDisk { angular_size: 0.3, intensity: 1.0 });
     let beside = stage.headless.picture(4);
@@ -294,7 +294,7 @@ fn transparent_surfaces_keep_bevys_shadows() {
 #[test]
 fn a_skeleton_bends() {
     let mut mesh: Mesh = Cuboid::from_size(SLAB_M).into();
-    // What is on the right depends on the second joint.
+    // The right half depends on the second joint.
     let Some(VertexAttributeValues::Float32x3(positions)) = mesh.attribute(Mesh::ATTRIBUTE_POSITION) else {
         panic!("a cuboid has positions");
     };
@@ -310,13 +310,13 @@ fn a_skeleton_bends() {
     let skin = SkinnedMesh { inverse_bindposes, joints: joints.clone() };
     stage.spawn(mesh, white(), (skin, Transform::default()));
     is_near(stage.shadow("straight"), WHOLE);
-    // From 1.2 m to .8 m wide.
+    // From 1.2 m to 0.8 m wide.
     let moved = Transform::from_translation(SLAB_AT - Vec3::new(0.4, 0.0, 0.0));
     stage.world().entity_mut(joints[1]).insert(moved);
     is_near(stage.shadow("bent"), WHOLE * 0.8 / 1.2);
 }
 
-/// One target that moves what is on the right to the left, from 1.2 m to .8 m wide, and one that makes all 2 m wide.
+/// Adds two targets: one moves the right half to the left, from 1.2 m to 0.8 m wide; the other makes the mesh 2 m wide.
 fn with_targets(mut mesh: Mesh) -> Mesh {
     let Some(VertexAttributeValues::Float32x3(positions)) = mesh.attribute(Mesh::ATTRIBUTE_POSITION) else {
         panic!("a cuboid has positions");
@@ -342,7 +342,7 @@ fn morph_targets_move_what_casts() {
         stage.world().entity_mut(slab).insert(weights(of));
         is_near(stage.shadow(name), WHOLE * width_m / 1.2);
     }
-    // Half as large where it stands, and by another entity's weights.
+    // Half as large by its transform, and morphed by another entity's weights.
     let shared = MorphWeights::new(vec![1.0, 0.0], None).expect("few weights");
     let shared = stage.world().spawn(shared).id();
     stage
@@ -351,7 +351,7 @@ fn morph_targets_move_what_casts() {
         .insert((MeshMorphWeights::Reference(shared), at.with_scale(Vec3::new(0.5, 1.0, 1.0))));
     is_near(stage.shadow("shared_weights"), WHOLE * 0.4 / 1.2);
     stage.world().despawn(slab);
-    // What is in the render world alone was measured as it came.
+    // A mesh that stays in the render world alone was measured when it was added.
     let mut far = mesh;
     far.asset_usage = RenderAssetUsages::RENDER_WORLD;
     stage.spawn(far, white(), (at, weights([0.0, 1.0])));
@@ -368,7 +368,7 @@ fn morphed_and_then_bent() {
     let world = stage.world();
     let poses = SkinnedMeshInverseBindposes::from(vec![Mat4::IDENTITY]);
     let inverse_bindposes = world.resource_mut::<Assets<SkinnedMeshInverseBindposes>>().add(poses);
-    // Its joint doubles it across, and the morph has made it narrow before.
+    // The joint scales z by a half; the morph makes the mesh narrow first.
     let double = Transform::from_translation(SLAB_AT).with_scale(Vec3::new(1.0, 1.0, 0.5));
     let joint = world.spawn(double).id();
     let skin = SkinnedMesh { inverse_bindposes, joints: vec![joint] };
@@ -377,7 +377,7 @@ fn morphed_and_then_bent() {
     is_near(stage.shadow("morphed_and_bent"), WHOLE * 0.8 / 1.2 * 0.5);
 }
 
-/// Discards by its texture, as a shader of its own says.
+/// Material of the user's own, whose shader discards by its texture.
 #[derive(Asset, AsBindGroup, Clone, TypePath)]
 struct Holes {
     #[texture(0)]
@@ -398,7 +398,7 @@ impl CasterMaterial for Holes {
     }
 }
 
-/// Adds nothing.
+/// Extension that adds nothing.
 #[derive(Asset, AsBindGroup, Clone, Debug, Default, TypePath)]
 struct Plain {}
 
@@ -425,7 +425,7 @@ fn holes_of_users_own_and_extended_materials() {
     stage.world().despawn(slab);
     let slab = stage.world().spawn((Mesh3d(card), MeshMaterial3d(extended.clone()), at)).id();
     is_near(stage.shadow("extended_holes"), 0.5 * WHOLE);
-    // It casts nothing once it only adds light.
+    // Additive blending casts nothing.
     let mut materials = stage.world().resource_mut::<Assets<Extended>>();
     materials.get_mut(&extended).expect("a material").base.alpha_mode = AlphaMode::Add;
     is_near(stage.shadow("extended_adds"), 0.0);

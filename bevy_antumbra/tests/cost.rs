@@ -1,4 +1,4 @@
-//! What shadows cost, beside Bevy's own. By hand: `cargo test --release --test cost -- --ignored --nocapture`.
+//! Cost of shadows, compared with Bevy's own. Run it with `cargo test --release --test cost -- --ignored --nocapture`.
 
 mod common;
 
@@ -17,7 +17,7 @@ fn median(mut times: Vec<Duration>) -> Duration {
     times[times.len() / 2]
 }
 
-/// 500 casters that move under eight lights that move: what the render world's own work for shadows takes of the processor.
+/// Processor time of the render world's own work for shadows: 500 moving casters under eight moving lights.
 #[test]
 #[ignore = "a measurement"]
 fn processor_time_of_500_casters_under_8_lights() {
@@ -32,7 +32,7 @@ fn processor_time_of_500_casters_under_8_lights() {
     world.spawn((Mesh3d(ground), MeshMaterial3d(material.clone())));
     let mut moving = Vec::new();
     for i in 0..500 {
-        // A mesh of its own each.
+        // Each caster has its own mesh.
         let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::from_length(0.1 + 0.0002 * i as f32));
         let at =
             Transform::from_xyz(0.4 * (i % 25) as f32 - 5.0, 0.5 + 0.1 * (i % 7) as f32, 0.4 * (i / 25) as f32 - 4.0);
@@ -67,7 +67,7 @@ fn processor_time_of_500_casters_under_8_lights() {
     );
 }
 
-/// Bevy's own shadows by the filter and the size of maps that it documents as its best, and the plugin's, of the same scene.
+/// Error and time of Bevy's own shadows, with the filter and map size that it documents as its best, and of the plugin's.
 #[test]
 #[ignore = "a measurement"]
 fn error_and_time_beside_bevys_own() {
@@ -107,7 +107,7 @@ fn error_and_time_beside_bevys_own() {
             }
             println!("{} {name}: rmse {:.4}, {time:.1?} a frame", light.name, (sum / judged as f64).sqrt());
         };
-        // Bevy's own soft shadows are a feature of Bevy's.
+        // Bevy's own soft shadows are an optional feature of Bevy.
         let softness: &[bool] = if cfg!(feature = "bevy_pcss") { &[false, true] } else { &[false] };
         for (method, is_soft) in by_bevy.into_iter().flat_map(|method| softness.iter().map(move |soft| (method, *soft)))
         {
@@ -138,7 +138,7 @@ fn error_and_time_beside_bevys_own() {
     }
 }
 
-/// Turns Bevy's own percentage-closer soft shadows on.
+/// Enables Bevy's own percentage-closer soft shadows.
 #[cfg(feature = "bevy_pcss")]
 fn be_soft(app: &mut App, entity: Entity, light: &antumbra::light::Light) {
     let mut entity = app.world_mut().entity_mut(entity);
@@ -147,7 +147,7 @@ fn be_soft(app: &mut App, entity: Entity, light: &antumbra::light::Light) {
     } else if let Some(mut of) = entity.get_mut::<SpotLight>() {
         of.soft_shadows_enabled = true;
     } else if let Some(mut of) = entity.get_mut::<DirectionalLight>() {
-        // Bevy's own unit; ten is what its example begins with.
+        // In Bevy's own unit; its example starts with ten.
         of.soft_shadow_size = Some(10.0 * light.bounding_radius() / 0.0175);
     }
 }

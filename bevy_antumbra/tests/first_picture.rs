@@ -1,4 +1,4 @@
-//! A shadow in Bevy's picture.
+//! Shadow of a spot light in Bevy's image.
 
 mod common;
 

@@ -1,6 +1,6 @@
-//! glTF files as Bevy loads them, against rays through the same files: an animated skeleton, and leaves with holes.
+//! glTF files as Bevy loads them, compared with traced rays: an animated skeleton, and leaves with holes.
 //!
-//! The files are those of the laboratory's tests: `ANTUMBRA_SCENES`, or `shared/scenes` beside or inside the repository.
+//! The files are those of the laboratory's tests, in `ANTUMBRA_SCENES` or in `shared/scenes` beside or inside the repository.
 
 mod common;
 
@@ -31,17 +31,17 @@ fn folder() -> Option<PathBuf> {
     found
 }
 
-/// A file, seen and lit.
+/// File with camera and light.
 struct Shot<'a> {
     file: &'a str,
     size_px: UVec2,
     camera: Camera,
     light: Light,
-    /// Of the first animation.
+    /// Time in the first animation, seconds; `None` without animation.
     time_s: Option<f32>,
 }
 
-/// By what shadows are made.
+/// Source of the shadows.
 #[derive(Clone, Debug)]
 enum By {
     Bevy,
@@ -53,7 +53,7 @@ impl Shot<'_> {
         self.file.trim_end_matches(".glb")
     }
 
-    /// The file in an app, as it stands at the time, and its light.
+    /// Opens the file in an app, posed at the given time. Returns the app and its light.
     fn open(&self, folder: &Path, by: &By) -> (Headless, Entity) {
         let mut headless = Headless::reading(self.size_px, folder);
         if matches!(by, By::Plugin(_)) {
@@ -63,7 +63,7 @@ impl Shot<'_> {
         headless.finish();
         headless.app.insert_resource(DirectionalLightShadowMap { size: 4096 });
         let assets = headless.app.world().resource::<AssetServer>().clone();
-        // Held from the start: what is asked for later loads the file once more, and the scene with it.
+        // The handles are kept, because a later request would load the file and the scene again.
         let file = self.file.to_owned();
         let clip = self.time_s.map(|_| assets.load(GltfAssetLabel::Animation(0).from_asset(file.clone())));
         let scene = WorldAssetRoot(assets.load(GltfAssetLabel::Scene(0).from_asset(file)));
@@ -101,13 +101,13 @@ impl Shot<'_> {
         tracer.visibility(&receivers, &self.light, &options, &|_| {}, &cancel).expect("a light that can be traced")
     }
 
-    /// The errors against rays, of each way to make shadows; the plugin's one after the other in one app.
+    /// Returns the error against traced rays of each source of shadows. All techniques of the plugin share one app.
     fn errors(&self, folder: &Path, ways: &[By]) -> Vec<f64> {
         let truth = self.truth(folder);
         let mut open: Option<(Headless, Entity, Picture)> = None;
         let mut error_of = |by: &By| {
             if open.is_none() || matches!(by, By::Bevy) {
-                // One app at a time.
+                // Only one app may exist at a time.
                 drop(open.take());
                 let (mut headless, light) = self.open(folder, by);
                 set_shadows(&mut headless.app, light, false);
@@ -137,7 +137,7 @@ impl Shot<'_> {
     }
 }
 
-/// The root of the mean square error over the pixels that the light reaches without shadows.
+/// Returns the root mean square error over the pixels that the light reaches without shadows.
 fn error_against(truth: &VisibilityImage, shadowed: &Picture, lit: &Picture, name: &str) -> f64 {
     let most = lit.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
     shadowed.save(name, 1.0 / most);
@@ -158,7 +158,7 @@ fn error_against(truth: &VisibilityImage, shadowed: &Picture, lit: &Picture, nam
     rmse
 }
 
-/// What scenes are spawned with: features of Bevy's that do this by themselves build for long.
+/// Registers the types that scenes need. Bevy features that do this by themselves take long to build.
 fn register_types(app: &mut App) {
     app.register_type::<Transform>()
         .register_type::<GlobalTransform>()
@@ -196,7 +196,7 @@ fn wait_for(headless: &mut Headless, is_there: impl Fn(&mut World) -> bool) {
         assert!(began.elapsed().as_secs() < 600, "the file is never loaded");
         headless.run(1);
     }
-    // Its pictures may be on their way still.
+    // Textures may still be loading.
     for _ in 0..20 {
         std::thread::sleep(std::time::Duration::from_millis(20));
         headless.run(1);
@@ -220,7 +220,7 @@ fn rectangle(center: [f32; 3], target: [f32; 3]) -> Light {
     Light::new(LightShape::Rectangle { size_m: glam::Vec2::new(0.6, 0.3) }, center.into(), target.into())
 }
 
-/// Twice as wide as ours, so that a small picture has penumbrae.
+/// Returns a sun twice as wide as ours, so that a small image has penumbrae.
 fn sun(towards: [f32; 3]) -> Light {
     let shape = LightShape::Sun { angular_diameter_rad: 0.018 };
     Light::new(shape, glam::Vec3::ZERO, glam::Vec3::from(towards))
@@ -241,7 +241,7 @@ fn an_animated_skeleton_shades_itself_as_rays_say() {
     let light = rectangle([1.2, 2.6, 1.4], [0.0, 0.8, 0.0]);
     let shot = Shot { file: "cesium-man.glb", size_px: UVec2::splat(256), camera, light, time_s };
     let rmse = shot.errors(&folder, &[By::Plugin(ShadowTechnique::SampleBased)])[0];
-    // The laboratory, which has exact normals, is at .001: what is left are silhouettes of small round limbs.
+    // The laboratory, which has exact normals, reaches .001; the rest is due to silhouettes of small round limbs.
     assert!(rmse < 0.06, "rmse {rmse:.4}");
 }
 
@@ -252,19 +252,19 @@ fn leaves_with_holes_shade_each_other_as_rays_say() {
     let light = rectangle([0.3, 2.4, 0.2], [0.4, 0.1, 0.4]);
     let shot = Shot { file: "fern.glb", size_px: UVec2::splat(128), camera, light, time_s };
     let rmse = shot.errors(&folder, &[By::Plugin(ShadowTechnique::SampleBased)])[0];
-    // Leaves are narrower than a pixel, where a normal from depth is seldom the leaf's: the laboratory, which has exact ones, is at
-    // .003.
+    // Leaves are narrower than a pixel, where a normal from depth is seldom the leaf's. The laboratory, which has exact normals,
+    // reaches .003.
     assert!(rmse < 0.2, "rmse {rmse:.4}");
 }
 
-/// Under the sun: Bevy's own shadows, the plugin's, and rays.
+/// Compares Bevy's own shadows, the plugin's and traced rays under the sun.
 fn beside_bevys_own(file: &str, size_px: UVec2, (camera, time_s): (Camera, Option<f32>), towards: [f32; 3]) {
     let Some(folder) = folder() else { return };
     let shot = Shot { file, size_px, camera, light: sun(towards), time_s };
     let ways = [By::Bevy, By::Plugin(ShadowTechnique::Pcss), By::Plugin(ShadowTechnique::SampleBased)];
     let errors = shot.errors(&folder, &ways);
     let [bevy, pcss, sample_based] = errors[..] else { panic!("an error of each way") };
-    // On leaves that are narrower than a pixel a search for blockers is as far off as Bevy's filter.
+    // On leaves narrower than a pixel a blocker search is as inaccurate as Bevy's filter.
     assert!(pcss < 1.05 * bevy, "{file}: Pcss has {pcss:.4}, Bevy {bevy:.4}");
     assert!(sample_based < 0.8 * bevy, "{file}: SampleBased has {sample_based:.4}, Bevy {bevy:.4}");
 }

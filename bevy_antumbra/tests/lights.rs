@@ -1,4 +1,4 @@
-//! Lights, cameras and casters that come, change and go while the app runs.
+//! Lights, cameras and casters that are added, changed and removed while the app runs.
 
 mod common;
 
@@ -23,7 +23,7 @@ fn overlap(headless: &mut Headless) -> (Setup, Vec<Entity>) {
     (setup, meshes)
 }
 
-/// Light adds up: the picture of all lights is the sum of each one's, with shadows as without.
+/// Light is additive: the image of all lights is the sum of the images of each, with and without shadows.
 #[test]
 fn all_lights_together_are_the_sum_of_each() {
     let mut headless = Headless::new(UVec2::splat(128), SoftShadows::default());
@@ -119,7 +119,7 @@ fn two_cameras_have_masks_of_their_own() {
     assert!(difference(&sides(&both, 0), &sides(&both, 1)) > 0.05, "each camera has its own technique");
 }
 
-/// The left camera's shadows are hard, the right one's soft.
+/// Returns hard shadows for the left camera and soft shadows for the right one.
 fn of_technique(x: u32) -> SoftShadows {
     SoftShadows::by(if x == 0 { ShadowTechnique::Hard } else { ShadowTechnique::Pcss })
 }
@@ -153,12 +153,12 @@ fn frames_that_only_move_make_no_object() {
     assert_eq!(after.memory_bytes, before.memory_bytes);
 }
 
-/// A spot and a sun that are left to Bevy, beside a rectangle and a point of the plugin's.
+/// Test scene: a spot and a sun with Bevy's own shadows, beside a rectangle and a point with the plugin's.
 struct Beside {
     headless: Headless,
-    /// Bevy's: a spot and a sun.
+    /// Bevy's lights: a spot and a sun.
     left_alone: [Entity; 2],
-    /// The plugin's.
+    /// The plugin's lights: a rectangle and a point.
     ours: [Entity; 2],
 }
 
@@ -195,8 +195,7 @@ impl Beside {
         }
     }
 
-    /// Light adds up: the picture of all is that of Bevy's lights alone, in which the plugin has no part, and that of the
-    /// plugin's alone.
+    /// Checks that light is additive: the image of all lights is the sum of Bevy's lights alone and the plugin's alone.
     fn judge(&mut self, name: &str) -> [Picture; 3] {
         let both = self.headless.picture(8);
         let most = both.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
@@ -221,14 +220,14 @@ impl Beside {
 
 #[test]
 fn lights_that_are_left_alone_keep_bevys_own_shadows() {
-    // Maps larger than the view, and smaller: then masks are cut into tiles.
+    // Maps larger than the view, and smaller ones, with which masks are cut into tiles.
     for (name, samples, map_size) in [
         ("beside_large_maps", Msaa::Off, 512),
         ("beside_small_maps", Msaa::Off, 64),
         ("beside_maps_at_four_samples", Msaa::Sample4, 64),
     ] {
         let mut beside = Beside::new(samples, map_size);
-        // First all are the plugin's, so that Bevy's maps come while the app runs.
+        // At first all lights are the plugin's, so that Bevy's maps appear while the app runs.
         let all_ours = beside.headless.picture(6);
         beside.leave_alone();
         let [both, of_ours, of_bevy] = beside.judge(name);
@@ -245,7 +244,7 @@ fn lights_that_are_left_alone_keep_bevys_own_shadows() {
     }
 }
 
-/// What has a mask is the same where Bevy draws its maps too: of spots, points and suns.
+/// Surfaces with a mask are unaffected by Bevy's maps of spots, points and suns.
 #[test]
 fn maps_beside_masks_change_no_opaque_surface() {
     let mut headless = Headless::new(UVec2::splat(128), SoftShadows::default());
@@ -261,7 +260,7 @@ fn maps_beside_masks_change_no_opaque_surface() {
         let (alone, beside) = (by(BevyMaps::Never), by(BevyMaps::Always));
         let apart = difference(&alone, &beside);
         assert!(apart < 1e-3, "{}: they differ by {apart}", of.name);
-        // And there are shadows, which Bevy's are not.
+        // The mask's shadows exist and differ from Bevy's.
         headless.app.world_mut().entity_mut(light).insert(NoSoftShadows);
         let of_bevy = headless.picture(6);
         assert!(difference(&alone, &of_bevy) > 0.05, "{}: Bevy's shadows are the same", of.name);
@@ -295,7 +294,7 @@ fn denoised_masks_have_less_noise_and_the_papers_quality_is_another() {
     assert!(rmse(&paper, &smooth) > 1e-3, "the paper's algorithm is another one than the best");
 }
 
-/// The root of the mean square difference of two pictures, over the brightest of the first.
+/// Returns the root mean square difference of two images, relative to the brightest value of the first.
 fn rmse(a: &Picture, b: &Picture) -> f32 {
     let most = a.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
     let values = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
@@ -303,7 +302,7 @@ fn rmse(a: &Picture, b: &Picture) -> f32 {
     (sum / (3 * a.pixels.len()) as f32).sqrt()
 }
 
-/// A small generator, so that a failure comes again.
+/// Deterministic random number generator, so that failures are reproducible.
 struct Random(u64);
 
 impl Random {
@@ -316,8 +315,8 @@ impl Random {
     }
 }
 
-/// Lights, cameras and meshes come and go at random: no panic, no message of the validation (which ends the app), and in the
-/// end, when all is gone, no memory held but the maps' first pages. Without the plugin the same happens to Bevy alone.
+/// Adds and removes lights, cameras and meshes at random: no panic and no validation error (which ends the app). When all are
+/// removed, little memory is held: the maps' first pages. Without the plugin the same sequence runs on Bevy alone.
 fn come_and_go(frames: u32, has_plugin: bool) {
     let mut headless = Headless::bare(UVec2::splat(48));
     if has_plugin {
@@ -337,7 +336,7 @@ fn come_and_go(frames: u32, has_plugin: bool) {
     let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::default());
     let mut there: Vec<Entity> = Vec::new();
     let mut most = 0;
-    // Forty times in all.
+    // Forty reports in all.
     let mut held = Vec::new();
     for frame in 0..frames {
         let place = Vec3::new(4.0 * random.unit() - 2.0, 0.5 + 3.0 * random.unit(), 4.0 * random.unit() - 2.0);
@@ -356,7 +355,7 @@ fn come_and_go(frames: u32, has_plugin: bool) {
                     world.spawn((sun, SunDisk::MARS, transform)).id()
                 }
                 4 => {
-                    // As many samples as the others: Bevy gives cameras of one target one depth texture.
+                    // Same sample count as the other cameras: Bevy shares one depth texture among cameras of one target.
                     let viewport = Viewport { physical_size: UVec2::new(32, 24), ..default() };
                     let order = 1 + there.len() as isize;
                     let camera = world.spawn((camera, Msaa::Off)).id();
@@ -401,7 +400,7 @@ fn come_and_go(frames: u32, has_plugin: bool) {
     for entity in there {
         headless.app.world_mut().despawn(entity);
     }
-    // One light more, so that what is no longer used is dropped.
+    // One more light triggers the removal of unused resources.
     let light = spawn_light(&mut headless.app, &setup.lights[0]);
     headless.run(12);
     set_shadows(&mut headless.app, light, false);
@@ -411,8 +410,7 @@ fn come_and_go(frames: u32, has_plugin: bool) {
     println!("at most {} KiB, at the end {} KiB", most / 1024, rest.memory_bytes / 1024);
     assert!(most > 1 << 20, "there were lights with maps");
     assert!(rest.memory_bytes < most / 8, "{} KiB are held when all is gone", rest.memory_bytes / 1024);
-    // All techniques have come in the first half; from then on the most that lights and casters hold of the GPU's memory is
-    // not to grow any more.
+    // All techniques occur in the first half. From then on the peak GPU memory of lights and casters must not grow.
     let max_mib = |held: &[Held]| held.iter().filter_map(|held| held.gpu_mib).reduce(f64::max);
     let (first, second) = held.split_at(held.len() / 2);
     if frames >= 1000
@@ -422,13 +420,13 @@ fn come_and_go(frames: u32, has_plugin: bool) {
     }
 }
 
-/// Memory that is held, MiB, where it can be told.
+/// Memory in use, MiB, where it can be determined.
 #[derive(Clone, Copy, Debug)]
 #[allow(dead_code, reason = "printed")]
 struct Held {
-    /// Of the device, by everybody.
+    /// Memory of the device, of all users.
     gpu_mib: Option<f64>,
-    /// Of the process: on a software adapter all programs that it has compiled as well, which it keeps.
+    /// Memory of the process. On a software adapter this includes all compiled programs, which it keeps.
     process_mib: Option<f64>,
 }
 
@@ -457,14 +455,14 @@ fn what_comes_and_goes_for_long() {
     come_and_go(2000, true);
 }
 
-/// What of the process's growth is Bevy's and the driver's.
+/// Measures how much of the process's growth is due to Bevy and the driver.
 #[test]
 #[ignore = "takes many minutes; to compare with"]
 fn what_comes_and_goes_for_long_without_the_plugin() {
     come_and_go(2000, false);
 }
 
-/// Cameras that render to nothing that the plugin knows are no failure.
+/// Cameras with a target that the plugin does not know must not fail.
 #[test]
 fn a_camera_of_no_size() {
     let mut headless = Headless::new(UVec2::splat(32), SoftShadows::default());

@@ -1,4 +1,4 @@
-//! Bevy's ways to render: each with a picture that has the shadow.
+//! Render paths of Bevy: each test renders an image with the shadow.
 
 mod common;
 
@@ -19,7 +19,7 @@ use common::{Headless, Picture, set_shadows};
 
 const SIZE_PX: UVec2 = UVec2::splat(128);
 
-/// A slab over the ground, under a rectangle, seen from above and aside. Gives the light.
+/// Spawns a slab above the ground, under a rectangle light, seen from above and the side. Returns the light.
 fn slab_over_ground(headless: &mut Headless) -> Entity {
     let world = headless.app.world_mut();
     let mut meshes = world.resource_mut::<Assets<Mesh>>();
@@ -48,7 +48,7 @@ fn camera() -> antumbra_scene::Camera {
     }
 }
 
-/// With and without shadows, by a camera with something more; then whether the one is darker where the shadow is.
+/// Renders with and without shadows, by a camera with additional components, and checks that the shadow is dark.
 fn has_shadow(name: &str, more: impl Bundle) {
     let mut headless = Headless::new(SIZE_PX, SoftShadows::default());
     let light = slab_over_ground(&mut headless);
@@ -70,7 +70,7 @@ fn judge(name: &str, headless: &mut Headless, light: Entity) {
     assert!(light > 0.5, "{name}: {light:.3} of the picture is in the light");
 }
 
-/// The shares of the pixels that the shadow takes more than half from, and next to nothing.
+/// Returns the fractions of pixels that lose more than half of their light to the shadow, and almost nothing.
 fn shares(shadowed: &Picture, lit: &Picture) -> [f32; 2] {
     let ratios: Vec<f32> = shadowed.over(lit).into_iter().flatten().map(|v| v[1]).collect();
     let share = |is: fn(f32) -> bool| ratios.iter().filter(|v| is(**v)).count() as f32 / ratios.len() as f32;
@@ -148,13 +148,13 @@ fn an_orthographic_camera() {
     has_shadow("orthographic", (Projection::Orthographic(projection), Msaa::Off));
 }
 
-/// Adds nothing; what counts is that it is another material than the standard one.
+/// Extension that adds nothing, so that the material differs from the standard one.
 #[derive(Asset, AsBindGroup, Clone, Debug, Default, TypePath)]
 struct Plain {}
 
 impl MaterialExtension for Plain {}
 
-/// A material with a shader of its own, which calls Bevy's lighting.
+/// Material with its own shader, which calls Bevy's lighting.
 #[derive(Asset, AsBindGroup, Clone, TypePath)]
 struct Own {
     #[texture(0)]
@@ -168,7 +168,7 @@ impl Material for Own {
     }
 }
 
-/// Gives everything another material.
+/// Checks shadows with another material on all meshes.
 fn has_shadow_on<M: Material>(name: &str, material: impl FnOnce(&mut World) -> M)
 where
     M::Data: PartialEq + Eq + std::hash::Hash + Clone,
@@ -188,7 +188,7 @@ where
     }
     let bundle = headless.camera(&camera());
     headless.app.world_mut().spawn((bundle, Msaa::Off));
-    // A shader from a file is there some frames later.
+    // Shaders from files are loaded some frames later.
     for _ in 0..20 {
         headless.run(1);
         std::thread::sleep(std::time::Duration::from_millis(10));
@@ -209,12 +209,12 @@ fn a_material_with_a_shader_of_its_own() {
     has_shadow_on("own_material", |world| Own { texture: world.resource_mut::<Assets<Image>>().add(Image::default()) });
 }
 
-/// Where Bevy's shader is another one, nothing is changed, and Bevy's own shadows are there.
+/// If Bevy's shader differs from the expected one, nothing is patched, and Bevy's own shadows stay on.
 #[test]
 fn another_bevy_keeps_its_own_shadows() {
     let mut headless = Headless::bare(SIZE_PX);
     headless.app.add_plugins(bevy_antumbra::AntumbraPlugin::default());
-    // After the shader is loaded, and before the plugin sees it in the next frame.
+    // Runs after the shader is loaded, and before the plugin sees it in the next frame.
     headless.app.add_systems(Update, |mut shaders: ResMut<Assets<Shader>>, mut is_done: Local<bool>| {
         let is_lighting = |shader: &Shader| shader.path.ends_with("pbr_functions.wesl");
         let Some(id) = shaders.iter().find(|(_, shader)| is_lighting(shader)).map(|(id, _)| id) else { return };

@@ -1,4 +1,4 @@
-//! The showcase without its window: the README's picture.
+//! The showcase without a window: renders the README's image.
 
 mod common;
 #[path = "../examples/showcase/scene.rs"]

@@ -1,4 +1,4 @@
-//! Shadows in Bevy's picture against rays: how much of each light is left at each pixel, for each of Bevy's lights.
+//! Shadows in Bevy's image, compared with traced rays: visibility of each of Bevy's lights at each pixel.
 
 mod common;
 
@@ -12,11 +12,11 @@ use common::{Headless, Picture, set_shadows, spawn_light, spawn_scene};
 
 const LIGHTS: &str = include_str!("data/lights.toml");
 const SIZE_PX: UVec2 = UVec2::splat(256);
-/// How far from the laboratory's error of the same technique, scene, light and size Bevy's may be.
+/// Maximum difference from the laboratory's error for the same technique, scene, light and size.
 const NEAR: f64 = 0.005;
 
-/// Renders a light without shadows, and with them by each technique, changed while it runs; holds the quotients against rays,
-/// and the errors against those that the laboratory has: `lights.toml` says how it was asked.
+/// Renders a light without shadows and with each technique, switched at run time. Compares the ratios with traced rays, and the
+/// errors with those of the laboratory; `lights.toml` contains its command.
 fn holds(light: &str, of_laboratory: &[(ShadowTechnique, f64)]) {
     let scene = antumbra_scene::builtin::build("overlap").expect("a built-in scene");
     let setup = Setup::from_toml(LIGHTS, std::path::Path::new("lights.toml")).expect("a setup");
@@ -46,8 +46,7 @@ fn holds(light: &str, of_laboratory: &[(ShadowTechnique, f64)]) {
     }
 }
 
-/// The root of the mean square of the differences over the pixels that are judged: those that face the light and that it
-/// lights at all. And how many these are.
+/// Returns the root mean square error over the judged pixels, those that face the light and that it reaches, and their number.
 fn error_of(shadowed: &Picture, lit: &Picture, truth: &VisibilityImage, name: &str) -> (f64, usize) {
     let most = lit.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
     shadowed.save(name, 1.0 / most);

@@ -1,17 +1,17 @@
-//! The host's buffers: what lies in them, and what is brought in each frame.
+//! Buffers of the host, and their updates in each frame.
 
 use glam::{Mat4, Vec4};
 
 use super::meshes::{JOINTS, VertexBuffer};
 use super::scene::{Object, Scene};
 
-/// An object once in the world, as the instance buffer has it.
+/// Element of the instance buffer: one placement of an object.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Instance {
-    /// World-from-object, 3 × 4.
+    /// World-from-object matrix, 3 × 4.
     rows: [Vec4; 3],
-    /// Linear RGB and the alpha below which there is nothing.
+    /// Linear RGB, and the alpha below which fragments are discarded.
     color: Vec4,
 }
 
@@ -23,21 +23,21 @@ struct LightUniform {
     color: Vec4,
 }
 
-/// The host's buffers. Those that casters are packed from have one of the usages `COPY_SRC` and `STORAGE`.
+/// Buffers of the host. Those that casters are packed from need the usage `COPY_SRC` or `STORAGE`.
 pub struct Buffers {
     plain: wgpu::Buffer,
     packed: wgpu::Buffer,
-    /// Vertices with a skin as they were modelled.
+    /// Undeformed vertices of meshes with a skin.
     pub modelled: wgpu::Buffer,
-    /// The same as they stand.
+    /// Deformed vertices of these meshes.
     pub skinned: wgpu::Buffer,
-    /// 16 bits each.
+    /// Indices, 16 bits each.
     pub indices: wgpu::Buffer,
-    /// [`Instance`]s.
+    /// Array of [`Instance`]s.
     pub instances: wgpu::Buffer,
-    /// Matrices of the skin.
+    /// Joint matrices of the skin.
     pub joints: wgpu::Buffer,
-    /// [`LightUniform`]s.
+    /// Array of [`LightUniform`]s.
     pub lights: wgpu::Buffer,
 }
 
@@ -57,7 +57,7 @@ impl Buffers {
             device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
         };
         let filled = |label, bytes: &[u8], usage| {
-            // Copies are of multiples of four bytes.
+            // Copies need a multiple of four bytes.
             let mut bytes = bytes.to_vec();
             bytes.resize(bytes.len().next_multiple_of(4), 0);
             let buffer = empty(label, bytes.len() as u64, usage);
@@ -79,7 +79,7 @@ impl Buffers {
         }
     }
 
-    /// Brings what has moved. Skinned vertices are the skinning pass's.
+    /// Uploads everything that moves, except skinned vertices, which the skinning pass writes.
     pub fn write(&self, queue: &wgpu::Queue, scene: &Scene) {
         let instances = scene.objects.iter().flat_map(|object| {
             let Object { color, alpha_cutoff, world_from_object, .. } = object;

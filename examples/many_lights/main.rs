@@ -1,10 +1,10 @@
-//! Someone else's renderer with eight lights: soft shadows of all of them over casters that move and bend.
+//! An independent renderer with eight lights: all cast soft shadows of casters that move and deform.
 //!
-//! All but `shadows.rs` is an ordinary small engine: interleaved and packed vertices, 16-bit indices,
-//! skinning in compute, cut-out leaves, two cameras in one window, depth from 0 near to 1 far. `shadows.rs` is all that it
-//! adds for shadows: one set of casters that lights share, a state for each light and view, three techniques, and masks in
-//! the layers of arrays of its own. Of this project it uses crate `antumbra` alone. It draws some frames, one submission
-//! each, and writes the last as `many_lights.png`:
+//! All but `shadows.rs` is an ordinary small engine: interleaved and packed vertices, 16-bit indices, skinning in compute,
+//! alpha-tested leaves, two cameras in one window, depth from 0 near to 1 far. `shadows.rs` contains everything for shadows: one
+//! caster set shared by the lights, a state for each light and view, three techniques, and masks in the layers of the host's own
+//! arrays. The only crate of this project is `antumbra`. It draws some frames, one submission each, and writes the last one as
+//! `many_lights.png`:
 //!
 //! ```text
 //! cargo run --example many_lights
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A texture's bytes, row by row.
+/// Returns a texture's bytes, row by row.
 fn read_rgba8(
     device: &wgpu::Device,
     queue: &wgpu::Queue,

@@ -1,4 +1,4 @@
-//! The host's meshes, as its vertex and index buffers hold them.
+//! Meshes of the host, in its vertex and index buffers.
 
 use std::f32::consts::TAU;
 use std::ops::Range;
@@ -6,20 +6,20 @@ use std::ops::Range;
 use antumbra::light::Aabb;
 use glam::{Vec2, Vec3};
 
-/// A vertex of most meshes, interleaved: 40 bytes.
+/// Vertex of most meshes, interleaved: 40 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Vertex {
     pub position: Vec3,
     pub normal: Vec3,
     pub uv: Vec2,
-    /// Of the skin, where the mesh has one.
+    /// Joints of the skin, if the mesh has one.
     pub joints: [u8; 4],
-    /// In 255ths, together 255.
+    /// Joint weights in 255ths; they sum to 255.
     pub weights: [u8; 4],
 }
 
-/// A vertex of a mesh in few bytes: 12. Its position is a part of [`PACKED_SCALE`] beside [`PACKED_OFFSET`].
+/// Packed vertex: 12 bytes. Its position is [`PACKED_OFFSET`] plus a fraction of [`PACKED_SCALE`].
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct PackedVertex {
@@ -27,59 +27,59 @@ pub struct PackedVertex {
     pub normal: [i8; 4],
 }
 
-/// Which of the host's vertex buffers a mesh lies in.
+/// Vertex buffer of a mesh.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum VertexBuffer {
     Plain,
     Packed,
-    /// What the skinning pass makes of vertices as they were modelled.
+    /// Output of the skinning pass.
     Skinned,
 }
 
-/// A part of a model, drawn with one surface. Parts of one model share its vertices.
+/// Part of a model, drawn with one surface. Parts of one model share its vertices.
 #[derive(Clone)]
 pub struct Part {
     pub buffer: VertexBuffer,
-    /// Those of the model.
+    /// Vertices of the whole model.
     pub vertices: Range<u32>,
-    /// From the model's first vertex; the part's indices count from here.
+    /// Base of the part's indices, relative to the model's first vertex.
     pub base_vertex: u32,
-    /// In the one index buffer.
+    /// Range in the shared index buffer.
     pub indices: Range<u32>,
     pub is_closed: bool,
-    /// In the model's own space, whatever its pose.
+    /// Bounds in object space, for every pose.
     pub bounds: Aabb,
 }
 
-/// All of the host's vertices and indices.
+/// Vertices and indices of the host.
 #[derive(Default)]
 pub struct Meshes {
     pub vertices: Vec<Vertex>,
-    /// Of meshes with a skin, as they were modelled.
+    /// Undeformed vertices of meshes with a skin.
     pub skin_vertices: Vec<Vertex>,
     pub packed_vertices: Vec<PackedVertex>,
     pub indices: Vec<u16>,
 }
 
-/// The ring's half sides and its middle.
+/// Half extents and centre of the ring.
 pub const PACKED_SCALE: Vec3 = Vec3::new(RING_RADIUS_M + RING_TUBE_M, RING_TUBE_M, RING_RADIUS_M + RING_TUBE_M);
 pub const PACKED_OFFSET: Vec3 = Vec3::new(0.0, RING_TUBE_M, 0.0);
 const RING_RADIUS_M: f32 = 0.5;
 const RING_TUBE_M: f32 = 0.12;
 
-/// Joints of the skin, one above the other.
+/// Number of joints of the skin, one above the other.
 pub const JOINTS: usize = 4;
 pub const JOINT_LENGTH_M: f32 = 0.4;
 
 impl Meshes {
-    /// A box of 24 vertices.
+    /// Adds a box of 24 vertices.
     pub fn add_box(&mut self, min: Vec3, max: Vec3) -> Part {
         let first = (self.vertices.len() as u32, self.indices.len() as u32);
         self.push_box(min, max);
         self.part_of(first, VertexBuffer::Plain, Aabb { min, max })
     }
 
-    /// A tree: its trunk, and leaves as single triangles with a picture of a leaf on each.
+    /// Adds a tree: its trunk, and leaves as single triangles with an alpha-tested texture.
     pub fn add_tree(&mut self) -> [Part; 2] {
         let first = (self.vertices.len() as u32, self.indices.len() as u32);
         let trunk_box = Aabb { min: Vec3::new(-0.06, -0.1, -0.06), max: Vec3::new(0.06, 1.3, 0.06) };
@@ -92,7 +92,7 @@ impl Meshes {
             let along = (outward + Vec3::Y * (0.5 - 0.12 * i as f32)).normalize();
             let across = outward.cross(Vec3::Y);
             let middle = Vec3::new(0.0, 1.0 + 0.05 * i as f32, 0.0) + 0.34 * along;
-            // The triangle about the leaf.
+            // The triangle circumscribes the leaf.
             for (corner, angle) in [0.0, TAU / 3.0, 2.0 * TAU / 3.0].into_iter().enumerate() {
                 let (v, u) = f32::sin_cos(angle);
                 self.vertices.push(Vertex {
@@ -112,14 +112,14 @@ impl Meshes {
         [trunk, Part { base_vertex: leaf_vertices as u32 - first.0, is_closed: false, ..model }]
     }
 
-    /// A reed with a skin of [`JOINTS`] joints.
+    /// Adds a reed with a skin of [`JOINTS`] joints.
     pub fn add_reed(&mut self) -> Part {
         const SIDES: u16 = 9;
         const RINGS: u16 = 13;
         let first = (self.skin_vertices.len() as u32, self.indices.len() as u32);
         for ring in 0..RINGS {
             let along = f32::from(ring) / f32::from(RINGS - 1);
-            // Joint j moves what is above it; half a joint before it and after it, two share.
+            // Joint j moves everything above it; within half a joint of it, two joints blend.
             let above = (along * JOINTS as f32 - 0.5).clamp(0.0, (JOINTS - 1) as f32);
             let (joint, share) = (above as u8, (255.0 * above.fract()).round() as u8);
             let y = along * JOINTS as f32 * JOINT_LENGTH_M;
@@ -150,7 +150,7 @@ impl Meshes {
         self.part_of(first, VertexBuffer::Skinned, bounds)
     }
 
-    /// A ring that lies on the ground, of packed vertices.
+    /// Adds a ring that lies on the ground, of packed vertices.
     pub fn add_ring(&mut self) -> Part {
         const AROUND: u16 = 40;
         const SIDES: u16 = 16;
@@ -200,7 +200,7 @@ impl Meshes {
         }
     }
 
-    /// What was pushed since there were so many vertices and indices: a closed mesh.
+    /// Returns everything added since the given numbers of vertices and indices, as a closed mesh.
     fn part_of(&self, first: (u32, u32), buffer: VertexBuffer, bounds: Aabb) -> Part {
         let count = match buffer {
             VertexBuffer::Plain => self.vertices.len(),
@@ -212,13 +212,13 @@ impl Meshes {
     }
 }
 
-/// Texels along a side of the leaf's picture.
+/// Side of the leaf texture, texels.
 pub const LEAF_SIZE: u32 = 128;
-/// Middle and radius of the circle about the triangle that is in the picture, whose sides are one.
+/// Centre and radius of the circumcircle of the triangle in the texture, whose sides are one.
 const LEAF_MIDDLE: Vec2 = Vec2::new(0.5 * LEAF_RADIUS, 0.5);
 const LEAF_RADIUS: f32 = 0.577_35;
 
-/// The leaf's picture: a disc with five holes, linear RGBA.
+/// Returns the leaf texture: a disc with five holes, linear RGBA.
 pub fn leaf_texels() -> Vec<[u8; 4]> {
     let alpha = |i: u32| {
         let uv = (Vec2::new((i % LEAF_SIZE) as f32, (i / LEAF_SIZE) as f32) + 0.5) / LEAF_SIZE as f32;
@@ -227,7 +227,7 @@ pub fn leaf_texels() -> Vec<[u8; 4]> {
             let (sin, cos) = (k as f32 / 5.0 * TAU).sin_cos();
             p.distance(0.26 * LEAF_RADIUS * Vec2::new(cos, sin)) - 0.1 * LEAF_RADIUS
         };
-        // How far inside the leaf, and a ramp two texels wide about its edge.
+        // Signed distance inside the leaf, then a ramp two texels wide around its edge.
         let inside = (0..5).map(hole).fold(0.46 * LEAF_RADIUS - p.length(), f32::min);
         (inside * LEAF_SIZE as f32 / 2.0 + 0.5).clamp(0.0, 1.0)
     };

@@ -1,4 +1,4 @@
-//! The host's pipelines, and the layouts of what they read.
+//! Pipelines of the host, and their bind group layouts.
 
 use super::buffers::Instance;
 use super::meshes::{PackedVertex, Vertex};
@@ -8,9 +8,9 @@ pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrg
 pub const NORMAL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 pub struct Pipelines {
-    /// Depth and normals, of plain and of packed vertices.
+    /// Depth and normal passes, for plain and packed vertices.
     pub depth: [wgpu::RenderPipeline; 2],
-    /// Colour at equal depth, of the same.
+    /// Colour passes at equal depth, for plain and packed vertices.
     pub color: [wgpu::RenderPipeline; 2],
     pub skinning: wgpu::ComputePipeline,
 }
@@ -46,7 +46,7 @@ impl Layouts {
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         Self {
             globals: layout(&[uniform, texture(true, wgpu::TextureViewDimension::D2), sampler]),
-            // Masks are 32-bit floats, which are loaded and not sampled.
+            // Masks are 32-bit floats, which are not filterable.
             lights: layout(&[uniform, texture(false, wgpu::TextureViewDimension::D2Array)]),
         }
     }
@@ -121,7 +121,7 @@ impl Pipelines {
     }
 }
 
-/// Of resources in the order of their bindings.
+/// Creates a bind group of resources in the order of their bindings.
 pub fn bind_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,

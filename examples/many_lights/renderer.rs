@@ -1,4 +1,4 @@
-//! The host's renderer: two cameras side by side in one window, depth first, then colour under eight lights.
+//! Renderer of the host: two cameras side by side in one window, depth first, then colour under eight lights.
 //!
 //! Its shadows are in `shadows.rs`; the lines that call them are marked with `// shadows`.
 
@@ -12,7 +12,7 @@ use super::pipelines::{COLOR_FORMAT, DEPTH_FORMAT, Layouts, NORMAL_FORMAT, Pipel
 use super::scene::{Camera, Object, Scene};
 use super::shadows::{Shadows, ViewDepth};
 
-/// Uniform `Globals` of the shader, one a view.
+/// Uniform `Globals` of the shader, one per view.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Globals {
@@ -35,14 +35,14 @@ pub struct Renderer {
     views: Vec<View>,
 }
 
-/// What is drawn to, of the whole window. Views are made once: what shadows make for a depth buffer is kept for its view.
+/// Render targets of the whole window. The views are created once, because shadows cache resources per depth view.
 pub struct Targets {
     pub depth: wgpu::TextureView,
     pub normal: wgpu::TextureView,
     pub color: wgpu::TextureView,
 }
 
-/// One camera's part of the window.
+/// Part of the window of one camera.
 struct View {
     origin_px: UVec2,
     size_px: UVec2,
@@ -122,7 +122,7 @@ impl View {
 }
 
 impl Renderer {
-    /// Of a window that is twice as wide as one view.
+    /// Creates the renderer of a window that is twice as wide as one view.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, view_size_px: UVec2) -> Result<Self, Error> {
         let scene = Scene::new();
         let buffers = Buffers::new(device, queue, &scene);
@@ -142,7 +142,7 @@ impl Renderer {
         Ok(Self { device, queue, scene, targets, shadows, buffers, pipelines, skin_group, views })
     }
 
-    /// Draws the scene as it is at a time, in one submission.
+    /// Draws the scene at a time, in one submission.
     pub fn draw(&mut self, time_s: f32) -> Result<(), Error> {
         self.scene.move_to(time_s);
         self.buffers.write(&self.queue, &self.scene);
@@ -177,7 +177,7 @@ impl Renderer {
         pass.dispatch_workgroups(vertices.div_ceil(64), 1, 1);
     }
 
-    /// All views' depth, or all views' colour at that depth.
+    /// Draws all views' depth, or all views' colour at that depth.
     fn draw_views(&self, encoder: &mut wgpu::CommandEncoder, with_color: bool) {
         let sky = wgpu::Color { r: 0.02, g: 0.025, b: 0.04, a: 1.0 };
         let color = Some(wgpu::RenderPassColorAttachment {

@@ -1,4 +1,4 @@
-//! The host's scene: what is where at what time, what lights it, and who looks.
+//! Scene of the host: objects and their motion, lights and cameras.
 
 use std::f32::consts::TAU;
 
@@ -8,29 +8,29 @@ use glam::{Mat4, Quat, Vec2, Vec3};
 
 use super::meshes::{JOINT_LENGTH_M, JOINTS, Meshes, Part};
 
-/// A part of a model, once or many times in the world.
+/// Part of a model, placed once or several times.
 pub struct Object {
     pub part: Part,
     pub color: Vec3,
-    /// Below this alpha of the leaf's picture there is nothing; 0 for what has no holes.
+    /// Alpha of the leaf texture below which fragments are discarded; 0 without holes.
     pub alpha_cutoff: f32,
     pub motion: Motion,
     pub world_from_object: Vec<Mat4>,
 }
 
-/// How an object moves.
+/// Motion of an object.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
     Still,
     Sways,
     Tumbles,
-    /// Around the middle, one behind the other.
+    /// Moves around the centre, one after the other.
     Circles,
-    /// Stays where it is; its skin moves.
+    /// Stays in place; its skin moves.
     Bends,
 }
 
-/// A camera with a finite far plane.
+/// Camera with a finite far plane.
 #[derive(Clone, Copy)]
 pub struct Camera {
     pub eye: Vec3,
@@ -45,7 +45,7 @@ impl Camera {
         look_at_mat4(self.eye, self.target, Vec3::Y)
     }
 
-    /// Depth is 0 near and 1 far.
+    /// Returns the projection; depth is 0 near and 1 far.
     pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
         perspective(self.fov_y_rad, aspect, self.near_m, self.far_m)
     }
@@ -54,7 +54,7 @@ impl Camera {
 pub struct Scene {
     pub meshes: Meshes,
     pub objects: Vec<Object>,
-    /// Of the skin: what they do to the model as it was modelled.
+    /// Skinning matrices: from the undeformed model to its pose.
     pub joints: [Mat4; JOINTS],
     pub lights: [Light; 8],
     pub cameras: [Camera; 2],
@@ -92,12 +92,12 @@ impl Scene {
         scene
     }
 
-    /// Where an object's matrices begin in the instance buffer.
+    /// Returns the first index of an object's matrices in the instance buffer.
     pub fn first_instance(&self, object: usize) -> u32 {
         self.objects[..object].iter().map(|object| object.world_from_object.len() as u32).sum()
     }
 
-    /// Everything that moves, to where it is at a time in seconds.
+    /// Moves everything to its place at a time in seconds.
     pub fn move_to(&mut self, time_s: f32) {
         for Object { motion, world_from_object, .. } in &mut self.objects {
             let count = world_from_object.len();
@@ -122,7 +122,7 @@ impl Scene {
                 };
             }
         }
-        // Each joint bends a little more than the one below; all turn about their own foot.
+        // Each joint rotates relative to the one below, about its own base.
         let mut pose = Mat4::IDENTITY;
         for (j, joint) in self.joints.iter_mut().enumerate() {
             let foot = Mat4::from_translation(JOINT_LENGTH_M * j as f32 * Vec3::Y);
@@ -136,7 +136,7 @@ impl Scene {
     }
 }
 
-/// Lights of every shape: each with its own size in metres, all that the softness of its shadows comes from.
+/// Returns lights of every shape. Each has its own size in metres, which alone determines the softness of its shadows.
 fn lights() -> [Light; 8] {
     let light = |name: &str, shape, center, color| {
         let light = Light::new(shape, Vec3::from(center), Vec3::new(0.0, 0.2, 0.0));

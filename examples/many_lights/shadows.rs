@@ -1,4 +1,4 @@
-//! What the host adds for shadows: one set of casters for all lights, and for each light and view a state and a mask.
+//! Shadows in the host: one caster set for all lights, and a state and a mask for each light and view.
 
 use std::collections::HashSet;
 
@@ -21,19 +21,19 @@ use super::scene::{Motion, Object, Scene};
 pub struct Shadows {
     gpu: Gpu,
     casters: CasterSet,
-    /// Of each object of the scene.
+    /// Mesh and caster of each object of the scene.
     ids: Vec<(MeshId, CasterId)>,
     views: Vec<ViewShadows>,
 }
 
-/// Those that one camera sees.
+/// Shadows that one camera sees.
 struct ViewShadows {
-    /// `R32Float`, of the view's size, a layer for each light.
+    /// Masks: `R32Float`, of the view's size, one layer per light.
     masks: wgpu::Texture,
     of_lights: Vec<(AnyShadow, Mask)>,
 }
 
-/// What a camera sees: its part of the window, and the matrices that its depth was drawn with.
+/// Depth buffer of a camera: its part of the window, and the matrices that its depth was drawn with.
 #[derive(Clone, Copy)]
 pub struct ViewDepth<'a> {
     pub depth: &'a wgpu::TextureView,
@@ -44,7 +44,7 @@ pub struct ViewDepth<'a> {
 }
 
 impl Shadows {
-    /// Hands over all casters, and compiles what frames will need.
+    /// Adds all casters, and compiles the pipelines that frames need.
     pub fn new(
         gpu: &Gpu,
         scene: &Scene,
@@ -69,7 +69,7 @@ impl Shadows {
             .iter()
             .map(|_| ViewShadows::new(gpu, &scene.lights, view_size_px))
             .collect::<Result<Vec<_>, _>>()?;
-        // What is compiled stays with the device: one state of each technique is enough.
+        // Pipelines are shared by the device, so one state of each technique is enough.
         let mut warm = HashSet::new();
         for (shadow, _) in &views[0].of_lights {
             if warm.insert(shadow.kind()) {
@@ -79,22 +79,22 @@ impl Shadows {
         Ok(Self { gpu: gpu.clone(), casters, ids, views })
     }
 
-    /// The masks of a view: an array with a layer for each light.
+    /// Returns the masks of a view: an array with one layer per light.
     pub fn masks(&self, view: usize) -> &wgpu::Texture {
         &self.views[view].masks
     }
 
-    /// A light's state in a view.
+    /// Returns a light's state in a view.
     pub fn of_light(&self, view: usize, light: usize) -> &AnyShadow {
         &self.views[view].of_lights[light].0
     }
 
-    /// The library's handle on the device.
+    /// Returns the library's handle of the device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// Tells what has moved, and records its way to the casters. After skinning, before [`record`](Self::record).
+    /// Updates the moving casters and records their upload. Call it after skinning and before [`record`](Self::record).
     pub fn update_casters(
         &mut self,
         scene: &Scene,
@@ -113,7 +113,7 @@ impl Shadows {
         self.casters.update(recorder)
     }
 
-    /// Records the masks of a view. After its depth, before its colour.
+    /// Records the masks of a view. Call it after the view's depth and before its colour.
     pub fn record(
         &mut self,
         view: usize,
@@ -127,7 +127,7 @@ impl Shadows {
                 clip_from_view: seen.clip_from_view,
                 depth_convention: DepthConvention::Standard,
             };
-            // Without a version: something moves in every frame.
+            // No version is set, because something moves in every frame.
             let receivers = Receivers::new(seen.depth, mask.size_px(), camera)
                 .with_origin_px(seen.origin_px)
                 .with_normals(seen.normals);
@@ -161,16 +161,16 @@ impl ViewShadows {
     }
 }
 
-/// A state for a light, by the technique that suits it.
+/// Creates a state for a light, with a technique that suits it.
 fn shadow_of(gpu: &Gpu, light: &Light) -> Result<AnyShadow, Error> {
     let (kind, settings): (_, &[_]) = match (&light.shape, &light.emission) {
-        // Emission that is not even: by its own points, each of which is followed exactly.
+        // Uneven emission needs its own light samples, each of which this technique evaluates exactly.
         (_, Some(_)) | (LightShape::Points { .. }, _) => (TechniqueKind::SampleBased, &[]),
         // Large lights see one caster behind another.
         (LightShape::Rectangle { .. } | LightShape::Ellipsoid { .. }, _) => {
             (TechniqueKind::MultiLayer, &[("map_size", "512")])
         }
-        // Small ones: the cheapest of the three.
+        // Small lights get the cheapest of the three.
         (LightShape::Disk { .. } | LightShape::Sphere { .. } | LightShape::Sun { .. }, _) => {
             (TechniqueKind::Pcss, &[("map_size", "1024")])
         }
@@ -182,8 +182,8 @@ fn shadow_of(gpu: &Gpu, light: &Light) -> Result<AnyShadow, Error> {
     Ok(shadow)
 }
 
-/// A part of a model as it lies in the host's buffers. Offsets lead to the model's own vertices, so that no others are
-/// packed with them; the base vertex counts from there.
+/// Describes a part of a model in the host's buffers. Offsets point to the model's own vertices, so that no others are packed
+/// with them; the base vertex is relative to these offsets.
 fn mesh_of<'a>(part: &Part, buffers: &'a Buffers) -> Mesh<'a> {
     let is_packed = part.buffer == VertexBuffer::Packed;
     let stride = if is_packed { size_of::<PackedVertex>() } else { size_of::<Vertex>() } as u64;
@@ -194,7 +194,7 @@ fn mesh_of<'a>(part: &Part, buffers: &'a Buffers) -> Mesh<'a> {
     } else {
         PositionFormat::Float32x3
     };
-    // Packed vertices have none, and nothing on them has holes.
+    // Packed vertices have no texture coordinates, and none of their objects has holes.
     let texture_coordinates = (!is_packed).then_some(TextureCoordinates {
         buffer,
         offset: first + std::mem::offset_of!(Vertex, uv) as u64,
@@ -219,8 +219,8 @@ fn mesh_of<'a>(part: &Part, buffers: &'a Buffers) -> Mesh<'a> {
     }
 }
 
-/// Where an object is. The processor knows all matrices here; those of the many blocks are read from the host's instance
-/// buffer all the same, as where a compute pass writes them.
+/// Returns the instances of an object. The matrices of the many blocks are read from the host's instance buffer, as if a
+/// compute pass had written them.
 fn instances_of<'a>(scene: &'a Scene, object: usize, buffers: &'a Buffers) -> Instances<'a> {
     let Object { motion, world_from_object, part, .. } = &scene.objects[object];
     if *motion != Motion::Circles {

@@ -1,6 +1,6 @@
-// The host's own skinning: vertices of one buffer, moved by joints, to the same places of another.
+// Skinning by the host: joints transform the vertices of one buffer into another.
 
-// As in the vertex buffer, 40 bytes.
+// Same layout as the vertex buffer, 40 bytes.
 struct Vertex {
     x: f32, y: f32, z: f32,
     normal_x: f32, normal_y: f32, normal_z: f32,

@@ -1,4 +1,4 @@
-//! Any bytes as a glTF file: an error or a scene, never a panic, a hang or a huge allocation.
+//! Fuzz target of arbitrary bytes as a glTF file: an error or a scene, never a panic, a hang or a huge allocation.
 //!
 //! Seeds: small `.glb` and `.gltf` files in `fuzz/corpus/gltf/`.
 #![no_main]
@@ -9,7 +9,7 @@ use libfuzzer_sys::fuzz_target;
 fuzz_target!(|bytes: &[u8]| {
     if let Ok(scene) = load_bytes(bytes, "fuzz", &LoadOptions { time_s: 0.4 }) {
         assert!(scene.world_triangles().all(|t| t.positions.iter().all(|p| p.is_finite())));
-        // What the loader lets through must be good enough to frame and to write down.
+        // A loaded scene must be valid for framing and for writing.
         let setup = Setup::for_scene(&scene);
         Setup::from_toml(&setup.to_toml(), "fuzz.toml".as_ref()).expect("a setup reads what it wrote");
     }

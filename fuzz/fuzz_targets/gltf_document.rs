@@ -1,5 +1,5 @@
-//! Any document in a sound container, with the rest of the bytes as its binary chunk: gets past the container's
-//! lengths, which mutation seldom keeps right. The two are divided by the first zero byte.
+//! Fuzz target of an arbitrary document in a valid container, with the remaining bytes as its binary chunk. The target computes
+//! the container's lengths, which mutation seldom keeps valid. The first zero byte separates document and chunk.
 #![no_main]
 
 use antumbra_scene::{LoadOptions, load_bytes};

@@ -1,4 +1,4 @@
-//! Any text as a setup file: an error of one line, or a setup that reads back from what it writes.
+//! Fuzz target of arbitrary text as a setup file: an error of one line, or a setup that survives writing and reading.
 #![no_main]
 
 use antumbra_scene::Setup;

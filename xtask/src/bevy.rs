@@ -1,15 +1,15 @@
-//! `cargo xtask bevy`: the plugin for Bevy, which is a workspace of its own and asks for a newer compiler than we do.
+//! `cargo xtask bevy`: checks the Bevy plugin, which is a separate workspace and needs a newer compiler.
 
 use std::process::Command;
 use std::time::Instant;
 
 use crate::shell::{self, find};
 
-/// The compiler that Bevy 0.20 builds with: 1.97, a nightly of it too, though Bevy declares a patch release of it.
+/// Minimum compiler for Bevy 0.20: 1.97, nightly included, although Bevy declares a patch release of it.
 const NEEDED: (u32, u32) = (1, 97);
 
-/// Checks format and lints of the plugin, and runs its tests; arguments go to `cargo test`. Where no compiler is new enough it
-/// says that it was skipped.
+/// Checks format and lints of the plugin, and runs its tests; arguments go to `cargo test`. If no compiler is new enough, reports that
+/// it was skipped.
 ///
 /// # Errors
 /// The first check that failed.
@@ -28,14 +28,14 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     let cargo = |words: &[&str]| {
         let mut command = Command::new("rustup");
         command.current_dir(crate::root().join("bevy_antumbra")).args(["run", &toolchain, "cargo"]).args(words);
-        // Those of the cargo that runs us.
+        // Variables of the cargo that runs xtask.
         for variable in ["CARGO", "RUSTC", "RUSTDOC", "RUSTUP_TOOLCHAIN", "CARGO_MANIFEST_DIR"] {
             command.env_remove(variable);
         }
         command
     };
     const LOCKED: [&str; 2] = ["--locked", "--ignore-rust-version"];
-    /// The examples too.
+    /// Option that includes the examples.
     const WINDOW: [&str; 2] = ["--features", "window"];
     if arguments.is_empty() {
         if shell::succeeds(&mut cargo(&["fmt", "--version"])) {
@@ -46,14 +46,14 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
             shell::run(cargo(&["clippy"]).args(LOCKED).args(WINDOW).args(lint))?;
         }
     }
-    // As users get it: the tests' own features of Bevy's are more.
+    // Checks the plugin as users build it: the tests enable more features of Bevy.
     shell::run(cargo(&["check"]).args(LOCKED))?;
     shell::run(cargo(&["test"]).args(LOCKED).args(WINDOW).args(arguments))?;
     eprintln!("xtask: the plugin for Bevy checked in {} s", began.elapsed().as_secs());
     Ok(())
 }
 
-/// An installed toolchain that is new enough: the one that runs us, else any.
+/// Returns an installed toolchain that is new enough: preferably the one that runs xtask.
 fn toolchain() -> Option<String> {
     find("rustup")?;
     let listed = Command::new("rustup").args(["toolchain", "list"]).output().ok()?;
@@ -63,7 +63,7 @@ fn toolchain() -> Option<String> {
     ours.into_iter().chain(installed).find(|name| version_of(name).is_some_and(|version| version >= NEEDED))
 }
 
-/// The compiler's version, of `rustc 1.97.0-nightly (…)`.
+/// Returns the compiler's version, from `rustc 1.97.0-nightly (…)`.
 fn version_of(toolchain: &str) -> Option<(u32, u32)> {
     let printed = Command::new("rustup").args(["run", toolchain, "rustc", "--version"]).output().ok()?;
     let printed = String::from_utf8_lossy(&printed.stdout).into_owned();

@@ -1,4 +1,4 @@
-//! `cargo xtask book` and `cargo xtask docs`: the pages of docs/ as a book, and what of them is made of declarations.
+//! `cargo xtask book` and `cargo xtask docs`: builds the pages of docs/ as a book, and renews their generated parts.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,16 +6,16 @@ use std::process::Command;
 use crate::shell::{self, cargo, find};
 use crate::web::serve;
 
-/// The release of mdbook that the pages are written for.
+/// Version of mdbook that the pages are written for.
 const MDBOOK: &str = "0.5.4";
 
-/// Where the book is served if nothing else has the port.
+/// Port of the book's server, if it is free.
 const PORT: u16 = 3000;
 
-/// Writes the generated parts and builds the book in `target/book`; serves it where that is asked for.
+/// Writes the generated parts and builds the book in `target/book`; serves it with `--serve`.
 ///
 /// # Errors
-/// What cannot be installed, does not build, or is not taken.
+/// What cannot be installed, does not build, or is an unknown argument.
 pub fn run(arguments: &[String]) -> Result<(), String> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let is_served = match words[..] {
@@ -29,14 +29,14 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     if is_served { serve(&folder, PORT, "a browser") } else { Ok(()) }
 }
 
-/// Writes the generated parts and builds the book in a folder, in place of what it holds. Files of the folder `theme` replace those of
+/// Writes the generated parts and builds the book in a folder, which is emptied first. Files of the folder `theme` replace those of
 /// mdbook's own theme.
 ///
 /// # Errors
 /// What cannot be installed or does not build.
 pub fn build(folder: &Path, theme: Option<&Path>) -> Result<(), String> {
     write_generated_parts()?;
-    // Nothing of an older book may remain.
+    // No file of an older book may remain.
     if folder.exists() {
         std::fs::remove_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
@@ -46,24 +46,24 @@ pub fn build(folder: &Path, theme: Option<&Path>) -> Result<(), String> {
     shell::run(&mut build)
 }
 
-/// Makes the generated parts of pages what the declarations say. The program that does is one of its own, since it is built with the
-/// library.
+/// Renews the generated parts of pages. A separate program does it, because it is built with the library.
 ///
 /// # Errors
-/// What of a page cannot be made.
+/// The part of a page that cannot be generated.
 pub fn write_generated_parts() -> Result<(), String> {
     shell::run(&mut generator()?)
 }
 
-/// The program that writes the generated parts and the site's own pages, built with what tests and the command `antumbra` are built of.
+/// Returns the program that writes the generated parts and the site's own pages, built with the dependencies of the tests and of the
+/// command `antumbra`.
 ///
 /// # Errors
-/// What does not build.
+/// If it does not build.
 pub fn generator() -> Result<Command, String> {
     shell::built_of_workspace("antumbra-book").map(Command::new)
 }
 
-/// The program that makes a book of pages.
+/// Returns mdbook, installed if necessary.
 fn mdbook() -> Result<PathBuf, String> {
     let tools = crate::root().join("target/tools");
     let own = tools.join(format!("bin/mdbook{}", std::env::consts::EXE_SUFFIX));
@@ -75,7 +75,7 @@ fn mdbook() -> Result<PathBuf, String> {
         return Ok(right);
     }
     eprintln!("xtask: installing mdbook {MDBOOK} in {}, by cargo: a few minutes", tools.display());
-    // Without its server, since we have one: it would bring an asynchronous runtime.
+    // Without its server, which would need an asynchronous runtime; xtask has its own.
     let features = ["--no-default-features", "--features", "search"];
     let install = ["install", "--quiet", "--locked", "--force", "mdbook", "--version", MDBOOK, "--root"];
     shell::run(cargo().args(install).arg(&tools).args(features))?;

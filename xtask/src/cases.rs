@@ -1,4 +1,4 @@
-//! `cargo xtask cases`: the error of every technique on each small input that a report led to, measured, into `bench/cases.md`.
+//! `cargo xtask cases`: measures the error of every technique on each small input that a report led to, into `bench/cases.md`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -7,16 +7,16 @@ use std::process::Command;
 use crate::machine;
 use crate::shell;
 
-/// The variable that names the folder of test scenes, beside which the cases are.
+/// Environment variable with the folder of test scenes, next to which the cases are.
 const SCENES: &str = "ANTUMBRA_SCENES";
 
-/// Setup of cases that have none of their own.
+/// Setup of cases without their own.
 const SHARED_SETUP: &str = "card.toml";
 
-/// Cases side by side in one table.
+/// Number of cases per table.
 const ACROSS: usize = 8;
 
-/// Errors above both are set in bold: so much, and so many times that of `hard`.
+/// Errors above both limits are set in bold: an absolute one, and a multiple of the error of `hard`.
 const MUCH: f64 = 0.02;
 const TIMES_HARD: f64 = 1.2;
 
@@ -30,13 +30,13 @@ default settings. In **bold**: more than .02, and more than 1.2 times the error 
 
 ";
 
-/// A case and the techniques' errors.
+/// Case with the techniques' errors.
 #[derive(Clone, Debug, PartialEq)]
 struct Case {
     name: String,
-    /// Adapter that drew it.
+    /// Adapter that rendered it.
     adapter: String,
-    /// By technique; none where it was skipped or no pixel is judged.
+    /// Error by technique; `None` if it was skipped or no pixel is judged.
     errors: Vec<(String, Option<f64>)>,
 }
 
@@ -46,7 +46,7 @@ impl Case {
     }
 }
 
-/// Compares all techniques on every case, or on those whose names begin with one of `names`; only the whole is written.
+/// Compares all techniques on every case, or on those whose names begin with one of `names`. Only a complete run is written.
 ///
 /// # Errors
 /// The first step that failed.
@@ -67,7 +67,7 @@ pub fn run(names: &[String]) -> Result<(), String> {
     std::fs::write(&page, format!("{HEAD}{origin}\n\n{tables}")).map_err(|error| format!("{}: {error}", page.display()))
 }
 
-/// The folder of cases: beside that of scenes.
+/// Returns the folder of cases, next to that of scenes.
 fn folder() -> Result<PathBuf, String> {
     let root = crate::root();
     let candidates = [
@@ -82,7 +82,7 @@ fn folder() -> Result<PathBuf, String> {
         .ok_or_else(|| format!("set {SCENES} to the folder of test scenes, beside which there is one named cases"))
 }
 
-/// The scenes in a folder, by name.
+/// Returns the scenes in a folder, sorted by name.
 fn scenes_in(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
@@ -95,7 +95,7 @@ fn stem(scene: &Path) -> String {
     scene.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The errors of all techniques on a scene.
+/// Returns the errors of all techniques on a scene.
 fn measure(binary: &Path, scene: &Path) -> Result<Case, String> {
     let name = stem(scene);
     let own = scene.with_extension("toml");
@@ -109,13 +109,13 @@ fn measure(binary: &Path, scene: &Path) -> Result<Case, String> {
     Ok(Case { errors: errors_in(&printed), adapter, name })
 }
 
-/// The adapter that `antumbra compare` names behind the last semicolon of the line about the ground truth.
+/// Returns the adapter that `antumbra compare` prints after the last semicolon of the line about the ground truth.
 fn adapter_in(printed: &str) -> Option<String> {
     let line = printed.lines().find(|line| line.contains("; ground truth: "))?;
     line.rsplit("; ").next().map(str::to_owned)
 }
 
-/// What the figures are of: the adapter, and the commit in what `antumbra --version` prints. Cases that another adapter drew are named.
+/// Returns the origin of the figures: adapter and commit, from `antumbra --version`. Cases rendered by another adapter are named.
 fn origin(cases: &[Case], version: &str) -> Result<String, String> {
     let commit = version.trim().strip_suffix(')').and_then(|text| text.rsplit_once("(commit "));
     let (_, commit) = commit.ok_or_else(|| format!("`antumbra --version` names no commit: {version}"))?;
@@ -125,7 +125,7 @@ fn origin(cases: &[Case], version: &str) -> Result<String, String> {
     Ok(format!("{}, commit {commit}{others}.", first.adapter))
 }
 
-/// The first two columns of the table that `antumbra compare` prints.
+/// Returns the first two columns of the table that `antumbra compare` prints.
 fn errors_in(printed: &str) -> Vec<(String, Option<f64>)> {
     let after_heading = printed.lines().skip_while(|line| !line.starts_with("TECHNIQUE ")).skip(1);
     let rows = after_heading.take_while(|line| !line.ends_with("index.html"));
@@ -136,7 +136,7 @@ fn errors_in(printed: &str) -> Vec<(String, Option<f64>)> {
     .collect()
 }
 
-/// Techniques by cases, a few cases at a time.
+/// Returns tables of techniques by cases, a few cases per table.
 fn tables(cases: &[Case]) -> Result<String, String> {
     let techniques: Vec<&String> =
         cases.first().map(|case| case.errors.iter().map(|(name, _)| name).collect()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `cargo xtask demo`: from nothing to a report.
+//! `cargo xtask demo`: builds everything and creates a report.
 
 use std::process::Command;
 use std::time::Instant;
@@ -7,16 +7,15 @@ use crate::driver::{self, Driver};
 use crate::machine;
 use crate::shell::{self, find};
 
-/// The built-in scenes of the demo: what leaks through where one averaged blocker stands for many; one occluder from
-/// contact to far; a close and a distant occluder over one wall; leaves far above, boards close by.
+/// Built-in scenes of the demo: light bleeding where one averaged blocker represents several; one occluder from contact to far; a
+/// close and a distant occluder over one wall; leaves far above, boards close by.
 const SCENES: [&str; 4] =
     ["builtin:overlap", "builtin:leaning-plank", "builtin:lantern-wall", "builtin:bench-under-tree"];
 
-/// The techniques of the demo: of every family those that one would choose, and the baselines beside them. All of them
-/// would take a software renderer half an hour.
+/// Techniques of the demo: recommended ones of every family, and baselines. All techniques would take a software renderer half an hour.
 const TECHNIQUES: &str = "hard,pcf,pcss,smrt,lvsm,moment,multi_layer,reprojection_layered,sample_based,multi_view";
 
-/// Sets up, builds, compares, and opens the report where there is a display.
+/// Sets up, builds, compares, and opens the report if there is a display.
 ///
 /// # Errors
 /// The first step that failed.
@@ -33,7 +32,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
     let binary = shell::built_of_workspace("antumbra")?;
     eprintln!("xtask: ready after {} s", began.elapsed().as_secs());
 
-    // The user's own scenes first: that is what they came for. Their paths are relative to where they are.
+    // The user's own scenes come first. Their paths are relative to the current directory.
     let out = crate::root().join("out/demo");
     let mut compare = Command::new(binary);
     compare
@@ -51,7 +50,7 @@ pub fn run(args: &[String]) -> Result<(), String> {
     println!("Viewer: cargo run --bin antumbra -- view   (or `view path/to/scene.glb`)");
     let has_display = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
     if flags.is_empty() && has_display && find("xdg-open").is_some() {
-        // The path is already printed, so a failure to open it is not a failure of the demo.
+        // The path is already printed, so failing to open the report is not an error.
         let _ = shell::run(Command::new("xdg-open").arg(&index));
     }
     Ok(())

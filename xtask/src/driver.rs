@@ -1,8 +1,8 @@
-//! Which Vulkan driver draws for what we run: the installed one; or, on Debian 12 without a graphics card, a newer software driver
-//! that is brought into `target/` and leaves the system as it is.
+//! Choice of the Vulkan driver: the installed one; or, on Debian 12 without a graphics card, a newer software driver that is
+//! installed in `target/` and leaves the system unchanged.
 //!
-//! Debian 12 installs Mesa 22.3, whose software driver the library meets with shaders of its own (`gpu/uniforms.rs`), and which compiles
-//! for every process again. Debian's backports have Mesa 25, which draws what graphics cards draw, by the same shaders.
+//! Debian 12 installs Mesa 22.3. The library has special shaders for its software driver (`gpu/uniforms.rs`), which compiles again in
+//! every process. Debian's backports have Mesa 25, which uses the same shaders as graphics cards.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -11,34 +11,34 @@ use std::process::Command;
 use crate::machine::{self, DRIVER_VARIABLES};
 use crate::shell::{self, find};
 
-/// The option and the variable that choose.
+/// Command-line option and environment variable of the choice.
 const OPTION: &str = "--driver";
 const VARIABLE: &str = "ANTUMBRA_DRIVER";
 
-/// What is unpacked, and the one of them that has the driver.
+/// Packages to unpack, and the one of them with the driver.
 const PACKAGES: [&str; 3] = [DRIVER_PACKAGE, "libdrm2", "libdrm-amdgpu1"];
 const DRIVER_PACKAGE: &str = "mesa-vulkan-drivers";
 
-/// The release of Debian that installs an old one, and where it has the newer.
+/// Release of Debian with the old driver, and its suite with the newer one.
 const RELEASE: &str = "bookworm";
 const BACKPORTS: &str = "bookworm-backports";
 
-/// Which driver is asked for.
+/// Requested driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wanted {
-    /// A graphics card's, or one that a person chose by the loader's own variables; else the newer one where it can be had; else what is
-    /// installed.
+    /// The driver of a graphics card, or one chosen by the loader's own variables; else the newer one if available; else the installed
+    /// one.
     Default,
-    /// What is installed, or what a person chose.
+    /// The installed driver, or the one chosen by the loader's own variables.
     Installed,
-    /// The newer one, or a failure.
+    /// The newer driver, or an error.
     Newer,
 }
 
-/// Takes the option out of a command's arguments; where it is not there, the variable decides.
+/// Removes the option from a command's arguments; without it, the variable decides.
 ///
 /// # Errors
-/// Where there is no such driver.
+/// If there is no such driver.
 pub fn option(args: &[String]) -> Result<(Wanted, Vec<String>), String> {
     let (mut value, mut rest) = (std::env::var(VARIABLE).ok().filter(|value| !value.is_empty()), Vec::new());
     let mut args = args.iter();
@@ -58,16 +58,16 @@ pub fn option(args: &[String]) -> Result<(Wanted, Vec<String>), String> {
     Ok((wanted, rest))
 }
 
-/// A driver, by what has to stand in the environment of a program that is to use it.
+/// Driver, as environment variables of the programs that use it.
 pub struct Driver {
     variables: Vec<(&'static str, OsString)>,
 }
 
 impl Driver {
-    /// Chooses one, brings it where it is not there yet, and says which it is.
+    /// Chooses a driver, installs it if necessary, and reports it.
     ///
     /// # Errors
-    /// Where the newer one is asked for and cannot be had, with the reason.
+    /// If the newer driver is requested and unavailable, with the reason.
     pub fn choose(wanted: Wanted) -> Result<Self, String> {
         let chosen = DRIVER_VARIABLES.iter().find(|name| std::env::var_os(name).is_some());
         let why = match (wanted, chosen) {
@@ -85,14 +85,14 @@ impl Driver {
         Ok(Self { variables: Vec::new() })
     }
 
-    /// The newer one, from the folder where it lies, brought there first where it does not.
+    /// Returns the newer driver, installed first if necessary.
     fn newer() -> Result<Self, String> {
         let folder = newer_folder();
         let Library { file: library, searched } = newer_library("libvulkan_lvp")?;
         let manifest = the_file(&folder.join("unpacked/usr/share/vulkan/icd.d"), "lvp_icd", ".json")
             .and_then(|manifest| with_library(&std::fs::read_to_string(manifest).ok()?, &library))
             .ok_or_else(|| lacking("its manifest"))?;
-        // Anew each time: it holds the whole path, and folders move.
+        // Written every time, because it contains the absolute path, and folders move.
         let file = folder.join("lvp_icd.json");
         std::fs::write(&file, manifest).map_err(|error| format!("{}: {error}", file.display()))?;
         let version = version_in(&folder).unwrap_or_else(|| "of a version not known".to_owned());
@@ -100,24 +100,24 @@ impl Driver {
         Ok(Self { variables: vec![("VK_DRIVER_FILES", file.into()), ("LD_LIBRARY_PATH", searched)] })
     }
 
-    /// What has to stand in the environment.
+    /// Returns the environment variables.
     pub fn variables(&self) -> impl Iterator<Item = (&str, &OsString)> {
         self.variables.iter().map(|(name, value)| (*name, value))
     }
 }
 
-/// A driver's library.
+/// Library of a driver.
 pub struct Library {
-    /// Where it is.
+    /// Path of the library.
     pub file: PathBuf,
-    /// `LD_LIBRARY_PATH`, by which those that it needs are found.
+    /// Value of `LD_LIBRARY_PATH` with which its dependencies are found.
     pub searched: OsString,
 }
 
-/// Mesa's driver for AMD: the newer one where it can be had, else the installed one.
+/// Returns Mesa's AMD driver: the newer one if available, else the installed one.
 ///
 /// # Errors
-/// Where there is neither.
+/// If there is neither.
 pub fn for_amd() -> Result<Library, String> {
     const NAME: &str = "libvulkan_radeon";
     let problem = match newer_library(NAME) {
@@ -142,7 +142,7 @@ fn lacking(what: &str) -> String {
     format!("{} lacks {what}; remove it to have it anew", newer_folder().display())
 }
 
-/// A library of the newer Mesa, brought where it is not there yet.
+/// Returns a library of the newer Mesa, installed first if necessary.
 fn newer_library(name: &str) -> Result<Library, String> {
     let folder = newer_folder();
     let unpacked = folder.join("unpacked");
@@ -160,7 +160,7 @@ fn newer_library(name: &str) -> Result<Library, String> {
     }
 }
 
-/// Downloads and unpacks the packages by an apt that knows Debian's backports alone, with lists of its own.
+/// Downloads and unpacks the packages with an apt that only knows Debian's backports and has its own lists.
 fn bring(folder: &Path) -> Result<(), String> {
     let system = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
     if !is_the_release(&system) {
@@ -180,7 +180,7 @@ fn bring(folder: &Path) -> Result<(), String> {
     let unfinished = folder.join(format!("unfinished-{}", std::process::id()));
     for mirror in mirrors {
         let outcome = bring_from(mirror, folder, &unfinished);
-        // Of a try that failed, or of one that another was faster than.
+        // Left over from a failed attempt, or from one that another process overtook.
         let _ = std::fs::remove_dir_all(&unfinished);
         match outcome {
             Ok(()) => return Ok(()),
@@ -213,7 +213,7 @@ fn bring_from(mirror: &str, folder: &Path, unfinished: &Path) -> Result<(), Stri
             the_file(folder, &format!("{package}_"), ".deb").ok_or_else(|| format!("apt-get brought no {package}"))?;
         shell::run(Command::new("dpkg").arg("-x").arg(archive).arg(unfinished))?;
     }
-    // Whole or not at all. Where another was faster, its is as good.
+    // The rename is atomic. If another process was faster, its result is equivalent.
     let unpacked = folder.join("unpacked");
     match std::fs::rename(unfinished, &unpacked) {
         Err(error) if !unpacked.exists() => Err(format!("{}: cannot be made: {error}", unpacked.display())),
@@ -221,10 +221,10 @@ fn bring_from(mirror: &str, folder: &Path, unfinished: &Path) -> Result<(), Stri
     }
 }
 
-/// The one place that packages come from.
+/// Returns the only package source.
 fn source(mirror: &str) -> String {
     let mut source = format!("Types: deb\nURIs: {mirror}\nSuites: {BACKPORTS}\nComponents: main\nTargets: Packages\n");
-    // Where it is not there, apt takes the keys that it trusts for everything.
+    // Without this file, apt uses all keys that it trusts.
     const KEYS: &str = "/usr/share/keyrings/debian-archive-keyring.gpg";
     if Path::new(KEYS).is_file() {
         source += &format!("Signed-By: {KEYS}\n");
@@ -232,8 +232,8 @@ fn source(mirror: &str) -> String {
     source
 }
 
-/// What apt has to know beside the system's own settings, proxies among them: its files lie here, nothing counts as installed, nobody has to be
-/// root, and who has no network shall not wait long.
+/// Returns apt settings in addition to the system's own, such as proxies: its files are in this folder, nothing counts as installed, root
+/// is not required, and timeouts are short.
 fn settings(apt: &Path) -> String {
     let apt = apt.display();
     format!(
@@ -255,14 +255,14 @@ APT::Sandbox::User "root";
     )
 }
 
-/// Whether a system is the release that has the old driver, by its `os-release`.
+/// Whether a system is the release with the old driver, by its `os-release`.
 fn is_the_release(system: &str) -> bool {
     let says = |line: &str| system.lines().any(|own| own.replace('"', "") == line);
     says("ID=debian") && says(&format!("VERSION_CODENAME={RELEASE}"))
 }
 
-/// Where the system's own packages come from, of lines with a release, a component and a place. Others may have a release of that name,
-/// so that there may be several.
+/// Returns the mirrors of the system's packages, from lines with a release, a component and a URI. There may be several, because other
+/// archives may have a release of the same name.
 fn mirrors(targets: &str) -> Vec<&str> {
     let mut mirrors = Vec::new();
     for line in targets.lines() {
@@ -275,7 +275,7 @@ fn mirrors(targets: &str) -> Vec<&str> {
     mirrors
 }
 
-/// The first file in a folder, or in one of its folders, whose name begins and ends so.
+/// Returns the first file in a folder, or below it, whose name has this prefix and suffix.
 fn the_file(folder: &Path, begin: &str, end: &str) -> Option<PathBuf> {
     let mut inside: Vec<PathBuf> = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path()).collect();
     inside.sort();
@@ -287,7 +287,7 @@ fn the_file(folder: &Path, begin: &str, end: &str) -> Option<PathBuf> {
     found.or_else(|| inside.iter().filter(|path| path.is_dir()).find_map(|folder| the_file(folder, begin, end)))
 }
 
-/// A driver's manifest with the whole path of its library in place of the name.
+/// Returns a driver's manifest with the absolute path of its library in place of the name.
 fn with_library(manifest: &str, library: &Path) -> Option<String> {
     const KEY: &str = "\"library_path\"";
     let after_key = manifest.find(KEY)? + KEY.len();
@@ -297,7 +297,7 @@ fn with_library(manifest: &str, library: &Path) -> Option<String> {
     Some(format!("{}{path}{}", &manifest[..begin], &manifest[end..]))
 }
 
-/// What the system's loader does not find for a library; nothing where it cannot be asked.
+/// Returns the dependencies of a library that the loader does not find; `None` if there are none or `ldd` cannot run.
 fn missing_libraries(library: &Path, searched: &OsString) -> Option<String> {
     let listed = Command::new("ldd").arg(library).env("LD_LIBRARY_PATH", searched).output().ok()?;
     let listed = String::from_utf8_lossy(&listed.stdout).into_owned();
@@ -305,7 +305,7 @@ fn missing_libraries(library: &Path, searched: &OsString) -> Option<String> {
     (!missing.is_empty()).then(|| missing.join(", "))
 }
 
-/// The version in the name of the package that was brought.
+/// Returns the version in the name of the downloaded package.
 fn version_in(folder: &Path) -> Option<String> {
     let archive = the_file(folder, &format!("{DRIVER_PACKAGE}_"), ".deb")?;
     archive.file_name()?.to_str()?.split('_').nth(1).map(str::to_owned)

@@ -1,11 +1,11 @@
-//! Whether each family of techniques compiles without the others, and scenes load without C++.
+//! Check that each family of techniques compiles without the others, and that scenes load without C++.
 
 use std::time::Instant;
 
 use crate::shell::{self, cargo};
 
-/// Checks the library with one of its features at a time: those that its `default` names; then tries the loader without its
-/// decoder in C++, as browsers have it.
+/// Checks the library with one feature at a time, for all features in its `default`; then tests the loader without its C++ decoder, as in
+/// browsers.
 ///
 /// # Errors
 /// A family that does not compile alone, or a manifest in which no families are found.
@@ -22,7 +22,7 @@ pub fn check() -> Result<(), String> {
             ["check", "--quiet", "--locked", "--package", "antumbra", "--no-default-features", "--features", family];
         shell::run(cargo().args(alone)).map_err(|problem| format!("antumbra with `{family}` alone: {problem}"))?;
     }
-    // All that it depends on is built anew for it, to run for an instant: nothing is optimised.
+    // Its dependencies are rebuilt for a short run, so nothing is optimised.
     let without_decoder =
         ["test", "--quiet", "--locked", "--package", "antumbra-scene", "--no-default-features", "--lib", "decoder"];
     shell::run(cargo().args(without_decoder).env("CARGO_PROFILE_DEV_OPT_LEVEL", "0"))?;
@@ -30,7 +30,7 @@ pub fn check() -> Result<(), String> {
     Ok(())
 }
 
-/// What stands between quotes in the line of `default`.
+/// Returns the quoted words in the line of `default`.
 fn default_features(manifest: &str) -> Vec<&str> {
     let default = manifest.lines().find_map(|line| line.strip_prefix("default = "));
     default.unwrap_or_default().split('"').skip(1).step_by(2).collect()

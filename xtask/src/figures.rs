@@ -1,4 +1,4 @@
-//! `cargo xtask figures`: the pictures of the book and the README, made by the code that they explain.
+//! `cargo xtask figures`: renders the images of the book and the README with the code that they explain.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -9,24 +9,24 @@ use crate::shell;
 /// Page whose generated headings name each technique and the scene on which it fails worst.
 const WORST_CASES: &str = "docs/limits.md";
 
-/// What `docs/choose.md` shows side by side.
+/// Techniques that `docs/choose.md` shows side by side.
 const CHOICES: [&str; 6] = ["hard", "moment", "pcss", "smrt", "multi_layer", "sample_based"];
 const CHOICES_SCENE: &str = "builtin:bench-under-tree";
 
-/// The pictures of `docs/lights.md`, by name.
+/// Images of `docs/lights.md`, by name.
 const LIGHTS: [(&str, &str); 3] = [("lamp", "builtin:lamp-room"), ("hall", "builtin:hall"), ("sun", "builtin:town")];
 
-/// The README's images, side by side with the truth.
+/// Images of the README, side by side with the truth.
 const HERO_SCENE: &str = "builtin:shanty";
 const HERO: [&str; 2] = ["hard", "smrt"];
 
-/// The README's animation: the light circles above the scene.
+/// Animation of the README: the light circles above the scene.
 const MOVING_SCENE: &str = "builtin:bench-under-tree";
 const MOVING_FRAMES: u32 = 12;
 const MOVING_MILLISECONDS: &str = "150";
 
-/// Compares each technique with the truth on its worst case and keeps three pictures of it under `docs/figures`; then
-/// draws the other pictures of the book. Where techniques are named, their pictures alone.
+/// Compares each technique with the truth on its worst case and copies three images to `docs/figures`; then renders the other images
+/// of the book. With names, renders only the images of these techniques.
 ///
 /// # Errors
 /// The first step that failed, or a name that no technique has.
@@ -97,7 +97,7 @@ fn animate(binary: &Path, to: &Path) -> Result<(), String> {
     shell::run(join.arg(to).arg(MOVING_MILLISECONDS).args(frames))
 }
 
-/// Camera and light of a frame; the light's path is closed, so that the animation repeats without a jump.
+/// Returns camera and light of a frame. The light's path is closed, so that the animation repeats without a jump.
 fn moving_setup(frame: u32) -> String {
     let (sin, cos) = (std::f32::consts::TAU * frame as f32 / MOVING_FRAMES as f32).sin_cos();
     let (x, z) = (2.2 * cos - 1.2, 1.6 * sin - 1.6);
@@ -108,12 +108,12 @@ fn moving_setup(frame: u32) -> String {
     )
 }
 
-/// Techniques and scenes of the headings `` ### `NAME` on `SCENE` ``, which are generated from the techniques' declarations.
+/// Returns techniques and scenes of the headings `` ### `NAME` on `SCENE` ``, which are generated from the techniques' declarations.
 fn worst_cases(page: &str) -> Vec<(&str, &str)> {
     page.lines().filter_map(|line| line.strip_prefix("### `")?.strip_suffix('`')?.split_once("` on `")).collect()
 }
 
-/// Compares with the truth, and says in which folder the pictures are.
+/// Compares with the truth, and returns the folder of the images.
 fn compare(binary: &Path, scene: &str, techniques: &str, size: &str, name: &str) -> Result<PathBuf, String> {
     let out = crate::root().join("out/figures").join(name);
     let mut compare = Command::new(binary);

@@ -1,4 +1,4 @@
-//! `cargo xtask gpu-cost`: registers and instructions of every pipeline by Mesa's compiler for AMD, into `bench/gpu-cost.md`.
+//! `cargo xtask gpu-cost`: counts registers and instructions of every pipeline with Mesa's AMD compiler, into `bench/gpu-cost.md`.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -10,16 +10,16 @@ use crate::shell::{self, cargo};
 
 /// Use of the counts.
 enum Purpose {
-    /// The page is written, and a table compared with an earlier one where there is one.
+    /// Writes the page, and compares a table with an earlier one if given.
     Page { earlier: Option<String> },
-    /// Limits are checked.
+    /// Checks limits.
     Check,
 }
 
 /// Writes the page, or with `--check` checks limits.
 ///
 /// # Errors
-/// The step that failed, or a limit that is passed.
+/// The step that failed, or a limit that is exceeded.
 pub fn run(arguments: &[String]) -> Result<(), String> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words[..] {
@@ -30,7 +30,7 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     }
 }
 
-/// Checks limits where Mesa's driver for AMD can be had.
+/// Checks limits if Mesa's AMD driver is available.
 ///
 /// # Errors
 /// As [`run`].

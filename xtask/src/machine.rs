@@ -1,28 +1,28 @@
-//! What the machine needs before anything is built: a C++ compiler and a Vulkan driver.
+//! Requirements of the machine before anything is built: a C++ compiler and a Vulkan driver.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::shell::{find, run, succeeds};
 
-/// What to do where what a check needs is not installed and cannot be.
+/// Action if a check's requirement is not installed and cannot be.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Missing {
-    /// Say that the check was skipped.
+    /// Reports that the check was skipped.
     Skip,
-    /// Fail.
+    /// Fails.
     Fail,
 }
 
-/// Something that a machine may lack.
+/// Requirement that a machine may lack.
 pub struct Need {
-    /// What it is, and what needs it.
+    /// Name of the requirement, and what needs it.
     pub why: &'static str,
-    /// Whether it is here.
+    /// Whether it is met.
     pub met: fn() -> bool,
-    /// Debian's packages that bring it.
+    /// Debian packages that meet it.
     pub packages: &'static [&'static str],
-    /// What to do where those packages cannot be installed.
+    /// Instructions if those packages cannot be installed.
     pub otherwise: &'static str,
 }
 
@@ -42,18 +42,18 @@ const NEEDS: [Need; 2] = [
     },
 ];
 
-/// Installs what building and testing need, and says so.
+/// Installs what building and testing need, and reports it.
 ///
 /// # Errors
-/// Says what is missing and what would bring it, where it cannot be installed from here.
+/// Says what is missing and how to get it, if it cannot be installed from here.
 pub fn set_up() -> Result<(), String> {
     install(&NEEDS)
 }
 
-/// Installs what is missing, and says so.
+/// Installs missing requirements, and reports them.
 ///
 /// # Errors
-/// Says what is missing and what would bring it, where it cannot be installed from here.
+/// Says what is missing and how to get it, if it cannot be installed from here.
 pub fn install(needs: &[Need]) -> Result<(), String> {
     let missing: Vec<&Need> = needs.iter().filter(|need| !(need.met)()).collect();
     if missing.is_empty() {
@@ -66,7 +66,7 @@ pub fn install(needs: &[Need]) -> Result<(), String> {
         && !has_graphics()
         && driver_manifests().is_empty()
     {
-        // Whatever is installed, the Vulkan loader looks nowhere else.
+        // With this variable the Vulkan loader looks nowhere else, whatever is installed.
         return Err(format!(
             "{name} hides every Vulkan driver: it names no file that is there; unset it, or correct it"
         ));
@@ -81,7 +81,7 @@ pub fn install(needs: &[Need]) -> Result<(), String> {
         return Err(by_hand());
     }
     let is_root = std::fs::metadata("/proc/self").is_ok_and(|own| owner(&own) == 0);
-    // Without a password: a demo that stops to ask for one would look hung in a script.
+    // Only without a password, because a demo that asks for one would appear to hang in a script.
     let sudo = !is_root;
     if sudo && !succeeds(Command::new("sudo").args(["-n", "true"])) {
         return Err(format!(
@@ -100,7 +100,7 @@ pub fn install(needs: &[Need]) -> Result<(), String> {
         command.args(["-q", "-y"]);
         command
     };
-    // Containers come without package lists. A list that cannot be refreshed may still be good enough.
+    // Containers come without package lists. Outdated lists may still suffice.
     if let Err(problem) = run(apt_get().arg("update")) {
         eprintln!("xtask: {problem}; trying with the lists there are");
     }
@@ -121,9 +121,8 @@ fn owner(_: &std::fs::Metadata) -> u32 {
     u32::MAX
 }
 
-/// Whether there is something for wgpu to draw with. Metal and Direct3D come with their systems; on Linux it takes the
-/// Vulkan loader and either a software driver, or a card's driver together with a card: manifests alone prove nothing,
-/// since Mesa's package brings those of every vendor.
+/// Whether wgpu has a driver. Metal and Direct3D are part of their systems. Linux needs the Vulkan loader and either a software driver,
+/// or a card's driver together with a card: manifests alone prove nothing, because Mesa's package contains those of every vendor.
 fn has_graphics() -> bool {
     if !cfg!(target_os = "linux") {
         return true;
@@ -132,21 +131,21 @@ fn has_graphics() -> bool {
     let is_chosen = DRIVER_VARIABLES.iter().any(|name| std::env::var_os(name).is_some());
     let software = drivers.iter().any(|file| {
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        // A person who names a file knows what it is.
+        // A user who names a file is assumed to know it.
         is_chosen || name.starts_with("lvp_") || name.contains("swiftshader")
     });
     has_vulkan_loader() && (software || (has_card() && !drivers.is_empty()))
 }
 
-/// Whether a graphics card answers on Linux.
+/// Whether there is a graphics card on Linux.
 pub fn has_card() -> bool {
     Path::new("/dev/nvidia0").exists() || Path::new("/dev/dri/renderD128").exists()
 }
 
-/// Where one of these is set, the Vulkan loader takes drivers from the files that it names, and from nowhere else.
+/// Environment variables that replace the Vulkan loader's search for drivers by a list of files.
 pub const DRIVER_VARIABLES: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
 
-/// Files that tell the Vulkan loader where drivers lie, from the places that the loader's own documentation names.
+/// Returns the manifests of Vulkan drivers, from the folders in the loader's documentation.
 fn driver_manifests() -> Vec<PathBuf> {
     for name in DRIVER_VARIABLES {
         if let Some(files) = std::env::var_os(name) {

@@ -1,7 +1,6 @@
 //! Development commands: `cargo xtask demo`, `cargo xtask test`, `cargo xtask shaders`, `cargo xtask ci`.
 //!
-//! Standard library only: this is the first thing that a bare machine has to build, before anything else could be set
-//! up for it.
+//! Standard library only: on a bare machine this is built first, before other dependencies can be installed.
 
 mod bevy;
 mod book;
@@ -152,17 +151,17 @@ fn main() -> ExitCode {
     }
 }
 
-/// The names of the commands, as the usage has them.
+/// Returns the names of the commands, from the usage text.
 fn commands() -> Vec<&'static str> {
     USAGE.lines().filter_map(|line| line.strip_prefix("    cargo xtask ")?.split(' ').next()).collect()
 }
 
-/// The linker is a program of its own: nothing else in the workspace has to build it.
+/// Runs the linker, a separate program, so that nothing else in the workspace has to build it.
 fn link_shaders() -> Result<(), String> {
     shell::run(shell::cargo().args(["run", "--quiet", "--locked", "--package", "antumbra-linker"]))
 }
 
-/// As the linker.
+/// Runs the mutation tests, a separate program for the same reason.
 fn find_mutants<'a>(
     args: &[String],
     variables: impl IntoIterator<Item = (&'a str, &'a std::ffi::OsString)>,
@@ -173,7 +172,7 @@ fn find_mutants<'a>(
     )
 }
 
-/// The root of the workspace.
+/// Returns the root of the workspace.
 fn root() -> PathBuf {
     let manifest_dir =
         std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
@@ -184,7 +183,7 @@ fn root() -> PathBuf {
 mod tests {
     use antumbra_testing::book::{book_pages, commands, page, spans, words};
 
-    /// What the book and the README tell their readers to run of us.
+    /// Commands that the book and the README mention must exist.
     #[test]
     fn every_command_of_the_book_is_one_of_ours() {
         let known = super::commands();

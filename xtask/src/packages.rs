@@ -1,4 +1,4 @@
-//! What others get: the packages that would be published, and a program of theirs.
+//! Check of the packages for publication, with a program that uses them.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::shell::{self, cargo, find, succeeds};
 
-/// The published crates, each after those that it depends on.
+/// Published crates, in order of dependency.
 const PUBLISHED: [&str; 8] = [
     "antumbra-light",
     "antumbra-scene",
@@ -18,11 +18,10 @@ const PUBLISHED: [&str; 8] = [
     "antumbra-cli",
 ];
 
-/// What each package has to hold beside its code.
+/// Files that each package must contain beside its code.
 const IN_EACH: [&str; 3] = ["README.md", "LICENSE-MIT", "LICENSE-APACHE"];
 
-/// The program of someone who uses the library. It runs on machines without graphics, and so makes no device; what makes
-/// a technique is linked all the same.
+/// Program of a library user. It runs on machines without graphics and therefore creates no device, but links technique creation.
 const PROGRAM: &str = r#"
 use antumbra::{AnyShadow, Error, Gpu, TechniqueKind};
 
@@ -38,7 +37,7 @@ fn main() {
 }
 "#;
 
-/// Its manifest. The patch stands for the registry that would have the light; nothing is optimised, since it hardly runs.
+/// Manifest of the program. The patch replaces the registry's `antumbra-light`; nothing is optimised, because it hardly runs.
 const MANIFEST: &str = r#"[package]
 name = "outside"
 version = "0.0.0"
@@ -55,20 +54,20 @@ antumbra-light = { path = "antumbra-light" }
 debug = false
 "#;
 
-/// Packages every published crate, then checks that a program outside the repository compiles with the packaged library: with the newest
-/// versions that this toolchain can take of everything that the library depends on, since a user has no lock file of ours.
+/// Packages every published crate, then checks that a program outside the repository compiles with the packaged library. It uses the
+/// newest versions of all dependencies that this toolchain supports, because users do not have this repository's lock file.
 ///
 /// # Errors
-/// Says which package lacks what, or what of the program does not compile.
+/// The package that lacks something, or the program's compile error.
 pub fn check() -> Result<(), String> {
     check_program(cargo(), "ours", &unpacked_program()?.0)
 }
 
-/// Builds and runs the same program, then checks that it compiles with nightly, where that is installed: with versions that need a newer
-/// compiler than ours.
+/// Builds and runs the same program. If nightly is installed, also checks that the program compiles with it, and so with dependency
+/// versions that need a newer compiler.
 ///
 /// # Errors
-/// As [`check`], or what of the program fails when it runs.
+/// As [`check`], or the program's failure at run time.
 pub fn run() -> Result<(), String> {
     let folder = unpacked_program()?;
     run_program(&folder.0)?;
@@ -87,19 +86,19 @@ pub fn run() -> Result<(), String> {
     }
 }
 
-/// The program beside the packages of every published crate, unpacked.
+/// Returns the folder of the program with the unpacked packages of every published crate.
 fn unpacked_program() -> Result<Folder, String> {
     let began = Instant::now();
     let mut package = cargo();
-    // Building each as packaged would build everything again; what packaging can break for the library, the program
-    // finds. What is checked is the tree as it is, committed or not.
+    // Verifying each package would build everything again; the program detects what packaging can break for the library. The
+    // working tree is packaged as it is, committed or not.
     package.args(["package", "--quiet", "--locked", "--no-verify", "--allow-dirty"]);
     for name in PUBLISHED {
         package.args(["--package", name]);
     }
     shell::run(&mut package)?;
 
-    // Outside, or cargo would find our workspace and our settings in the folders above.
+    // Outside the repository, because cargo would find its workspace and settings in parent folders.
     let folder = Folder::new()?;
     for name in PUBLISHED {
         let unpacked = unpack(name, &folder.0)?;
@@ -116,15 +115,15 @@ fn unpacked_program() -> Result<Folder, String> {
     Ok(folder)
 }
 
-/// The command of cargo for the program, with one toolchain, which keeps what it builds from run to run.
+/// Returns the cargo command for the program with one toolchain. Builds are reused between runs.
 fn of_program(mut cargo: Command, toolchain: &str, folder: &Path) -> Command {
-    // A toolchain chooses its own versions.
+    // Each toolchain resolves its own versions.
     let _ = std::fs::remove_file(folder.join("Cargo.lock"));
     cargo.current_dir(folder).env("CARGO_TARGET_DIR", crate::root().join("target/outside").join(toolchain));
     cargo
 }
 
-/// Whether the program compiles with a toolchain; links and runs nothing.
+/// Checks that the program compiles with a toolchain; links and runs nothing.
 fn check_program(cargo: Command, toolchain: &str, folder: &Path) -> Result<(), String> {
     let began = Instant::now();
     shell::run(of_program(cargo, toolchain, folder).args(["check", "--quiet"]))?;
@@ -132,7 +131,7 @@ fn check_program(cargo: Command, toolchain: &str, folder: &Path) -> Result<(), S
     Ok(())
 }
 
-/// Builds and runs the program with the toolchain that runs us.
+/// Builds and runs the program with the toolchain that runs xtask.
 fn run_program(folder: &Path) -> Result<(), String> {
     let began = Instant::now();
     let mut cargo = of_program(cargo(), "ours", folder);
@@ -147,7 +146,7 @@ fn run_program(folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Unpacks a packaged crate to a folder of its name.
+/// Unpacks a packaged crate into a folder of its name.
 fn unpack(name: &str, to: &Path) -> Result<PathBuf, String> {
     let versioned = format!("{name}-{}", env!("CARGO_PKG_VERSION"));
     let archive = crate::root().join("target/package").join(format!("{versioned}.crate"));
@@ -165,7 +164,7 @@ fn write(file: &Path, text: &str) -> Result<(), String> {
         .map_err(|error| format!("{}: cannot write it: {error}", file.display()))
 }
 
-/// A new folder, gone when dropped.
+/// New folder, removed when dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -178,7 +177,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // Left in the system's folder for such things, it harms nobody.
+        // A remaining folder is harmless: it is in the system's temporary folder.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }

@@ -1,7 +1,7 @@
-//! `cargo xtask portability`: whether the compilers of Direct3D 12, Metal and Vulkan take the programs of every pipeline.
+//! `cargo xtask portability`: checks the programs of every pipeline with the compilers of Direct3D 12, Metal and Vulkan.
 //!
-//! `xtask/programs` translates and judges. This module installs the compilers: spirv-val from Debian's spirv-tools, and DXC's library
-//! from a package of Python, since Debian has none.
+//! `xtask/programs` translates and validates. This module installs the compilers: spirv-val from Debian's spirv-tools, and DXC's library
+//! from a Python package, because Debian has none.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -24,17 +24,17 @@ const PIP: [Need; 1] = [Need {
     otherwise: "install pip for Python 3",
 }];
 
-/// A variable with the path of a library of DXC that is to be used.
+/// Environment variable with the path of a DXC library to use.
 const VARIABLE: &str = "ANTUMBRA_DXC";
 
-/// DXC's library, and the package of Python that has it: a binding of DXC for Linux on x86-64.
+/// DXC's library, and the Python package that contains it: a binding of DXC for Linux on x86-64.
 const LIBRARY: &str = "libdxcompiler.so";
 const PACKAGE: &str = "coalpy==0.55";
 
 /// Checks every program; with `--only TEXT`, those whose label, module or entry point contains it.
 ///
 /// # Errors
-/// How many programs fail, or another argument.
+/// The number of programs that fail, or an unknown argument.
 pub fn run(arguments: &[String]) -> Result<(), String> {
     match arguments {
         [] => {}
@@ -58,7 +58,7 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     Ok(())
 }
 
-/// DXC's library: the one that the variable names, else our own, brought where it is not there yet.
+/// Returns DXC's library: the one named by the variable, else a copy in `target/tools`, downloaded if necessary.
 fn dxc() -> Result<PathBuf, String> {
     if let Some(named) = std::env::var_os(VARIABLE).map(PathBuf::from) {
         return if named.is_file() { Ok(named) } else { Err(format!("{VARIABLE} names no file: {}", named.display())) };
@@ -74,12 +74,12 @@ fn dxc() -> Result<PathBuf, String> {
     }
     let unfinished = folder.join(format!("unfinished-{}", std::process::id()));
     let outcome = bring(&unfinished, &library);
-    // Nothing of a try that failed may stay.
+    // Removes the files of a failed attempt, too.
     let _ = std::fs::remove_dir_all(&unfinished);
     outcome.map(|()| library).map_err(|problem| format!("{problem}; {by_hand}"))
 }
 
-/// Downloads the package and takes the library out of it.
+/// Downloads the package and extracts the library.
 fn bring(unfinished: &Path, library: &Path) -> Result<(), String> {
     machine::install(&PIP)?;
     let mut pip = pip().ok_or("there is no pip")?;
@@ -90,10 +90,10 @@ fn bring(unfinished: &Path, library: &Path) -> Result<(), String> {
         pip.args(["download", "--quiet", "--no-deps", "--only-binary=:all:", PACKAGE, "--dest"]).arg(unfinished),
     )?;
     let package = file_in(unfinished, |name| name.ends_with(".whl")).ok_or("pip brought no wheel")?;
-    // A wheel is a zip archive, which Python takes apart itself.
+    // A wheel is a zip archive, which Python can extract.
     shell::run(python().args(["-m", "zipfile", "-e"]).args([&package, &unpacked]))?;
     let found = file_in(&unpacked, |name| name == LIBRARY).ok_or_else(|| format!("{PACKAGE} has no {LIBRARY}"))?;
-    // Whole or not at all. Where another was faster, its is as good.
+    // The rename is atomic. If another process was faster, its result is equivalent.
     std::fs::rename(found, library).map_err(|error| format!("{}: cannot be made: {error}", library.display()))
 }
 
@@ -101,7 +101,7 @@ fn python() -> Command {
     Command::new("python3")
 }
 
-/// The command pip, where Python has it.
+/// Returns the command pip, if Python has it.
 fn pip() -> Option<Command> {
     let pip = || {
         let mut command = python();
@@ -111,7 +111,7 @@ fn pip() -> Option<Command> {
     shell::succeeds(pip().arg("--version")).then(pip)
 }
 
-/// The first file in a folder or in those below whose name is wanted.
+/// Returns the first file in a folder or below it whose name is wanted.
 fn file_in(folder: &Path, is_wanted: impl Fn(&str) -> bool + Copy) -> Option<PathBuf> {
     let mut inside: Vec<PathBuf> = std::fs::read_dir(folder).ok()?.flatten().map(|entry| entry.path()).collect();
     inside.sort();

@@ -1,14 +1,14 @@
-//! `cargo xtask qualities`: what each technique costs and errs at each quality, measured, into `bench/qualities.md`.
+//! `cargo xtask qualities`: measures time and error of each technique at each quality, into `bench/qualities.md`.
 
 use std::process::Command;
 
 use crate::machine;
 use crate::shell;
 
-/// Near and far occluders, thin ones and foliage: small enough for a software adapter to be through in a quarter of an hour.
+/// Scenes with near and far occluders, thin ones and foliage. A software adapter renders them in a quarter of an hour.
 const SCENES: &[&str] = &["builtin:overlap", "builtin:lantern-wall", "builtin:columns", "builtin:tree"];
 
-/// Every technique at every quality but `best`, whose maps of 4096 texels a side take a software adapter seconds a frame, and
+/// All techniques at all qualities except `best`, whose maps of 4096 texels per side take a software adapter seconds per frame, and with
 /// `reprojection_layered` minutes.
 const TECHNIQUES: &str = "all:fast,all,all:high";
 
@@ -21,7 +21,7 @@ with one another; `antumbra compare SCENE... --techniques pcss:fast,pcss,pcss:hi
 
 ";
 
-/// Compares every quality on a few built-in scenes, and keeps the summary.
+/// Compares every quality on a few built-in scenes, and writes the summary.
 ///
 /// # Errors
 /// The first step that failed.

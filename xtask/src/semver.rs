@@ -1,21 +1,21 @@
-//! `cargo xtask semver`: the public API against that of the last release, by cargo-semver-checks.
+//! `cargo xtask semver`: compares the public API with that of the last release, by cargo-semver-checks.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::shell::{self, cargo, find};
 
-/// The release of cargo-semver-checks that is installed where none is found: one that reads what rustdoc 1.95 writes.
+/// Version of cargo-semver-checks to install if there is none: it reads the output of rustdoc 1.95.
 const TOOL: &str = "0.51.0";
 
-/// The crates whose API a program sees: the library, and the lights in its interface.
+/// Crates with a public API: the library, and the lights in its interface.
 const CRATES: [&str; 2] = ["antumbra", "antumbra-light"];
 
-/// Compares the public API with the newest tag `v*` before this commit, or with a revision that is named. Before the first release there
-/// is nothing to compare with, and it says so.
+/// Compares the public API with the newest tag `v*` before this commit, or with a named revision. Before the first release it reports
+/// that there is nothing to compare.
 ///
 /// # Errors
-/// A change that the version does not announce, a revision that is unknown, or a tool that cannot be installed.
+/// A change that the version does not announce, an unknown revision, or a tool that cannot be installed.
 pub fn run(arguments: &[String]) -> Result<(), String> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let baseline = match words[..] {
@@ -32,7 +32,7 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     shell::run(Command::new(tool).arg("semver-checks").args(packages).args(["--baseline-rev", &baseline]))
 }
 
-/// The newest tag of a release that this commit descends from.
+/// Returns the newest release tag among this commit's ancestors.
 fn last_release() -> Option<String> {
     let mut git = Command::new("git");
     git.current_dir(crate::root()).args(["describe", "--tags", "--abbrev=0", "--match", "v[0-9]*"]);
@@ -40,7 +40,7 @@ fn last_release() -> Option<String> {
     Some(String::from_utf8_lossy(&printed.stdout).trim().to_owned()).filter(|tag| !tag.is_empty())
 }
 
-/// The program that compares: the installed one, or our own in target/tools.
+/// Returns cargo-semver-checks: the installed one, or a copy in target/tools.
 fn tool() -> Result<PathBuf, String> {
     if let Some(installed) = find("cargo-semver-checks") {
         return Ok(installed);

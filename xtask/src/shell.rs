@@ -1,20 +1,20 @@
-//! Running other programs.
+//! Execution of other programs.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// The cargo that runs us, so that a toolchain chosen by `cargo +name` stays chosen.
+/// Returns the cargo that runs xtask, so that a toolchain chosen by `cargo +name` stays chosen.
 pub fn cargo() -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.current_dir(crate::root());
     command
 }
 
-/// Runs a command with our input and output.
+/// Runs a command with xtask's input and output.
 ///
 /// # Errors
-/// Says which command failed and how.
+/// The command that failed, and its status.
 pub fn run(command: &mut Command) -> Result<(), String> {
     let shown = show(command);
     eprintln!("$ {shown}");
@@ -25,10 +25,10 @@ pub fn run(command: &mut Command) -> Result<(), String> {
     }
 }
 
-/// What a command prints. Its messages go where ours go.
+/// Returns the output of a command. Its messages go to xtask's standard error.
 ///
 /// # Errors
-/// Says which command failed and how.
+/// The command that failed, and its status.
 pub fn output(command: &mut Command) -> Result<String, String> {
     let shown = show(command);
     eprintln!("$ {shown}");
@@ -44,7 +44,7 @@ pub fn succeeds(command: &mut Command) -> bool {
     command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
-/// Where a program lies on the search path.
+/// Returns the path of a program on the search path.
 pub fn find(program: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     std::env::split_paths(&path)
@@ -54,24 +54,24 @@ pub fn find(program: &str) -> Option<PathBuf> {
 
 fn show(command: &Command) -> String {
     let name = |word: &OsStr| word.to_string_lossy().into_owned();
-    // Cargo's full path says nothing to a reader.
+    // Cargo's full path is irrelevant to a reader.
     let program = PathBuf::from(command.get_program()).file_stem().map_or_else(String::new, name);
     std::iter::once(program).chain(command.get_args().map(name)).collect::<Vec<_>>().join(" ")
 }
 
-/// The command `antumbra`. Cargo puts every binary of the profile that runs us beside us.
+/// Returns the command `antumbra`. Cargo puts every binary of xtask's profile in one folder.
 ///
 /// # Errors
-/// Where it is not there.
+/// If it is not there.
 pub fn built_binary() -> Result<PathBuf, String> {
     beside_us("antumbra")
 }
 
-/// A program of the workspace, built with the features of everything else: built alone, many of its dependencies have fewer, and the tests
-/// would build them once more.
+/// Builds a program of the workspace with the features of everything else. Built alone, many of its dependencies would have fewer
+/// features, and the tests would build them again.
 ///
 /// # Errors
-/// Where it does not build.
+/// If it does not build.
 pub fn built_of_workspace(name: &str) -> Result<PathBuf, String> {
     run(cargo().args(["build", "--locked", "--workspace", "--bin", name]))?;
     beside_us(name)

@@ -1,47 +1,47 @@
-//! What tests skipped: a test runner counts a skipped test as passed, so it is said after the runner's own summary.
+//! Report of skipped tests. A test runner counts a skipped test as passed, so the report follows the runner's own summary.
 
 use std::path::{Path, PathBuf};
 
-/// Names the file to which skipped tests add a line; `antumbra-testing` has the same name.
+/// Environment variable with the file to which skipped tests add a line; `antumbra-testing` uses the same name.
 pub const LIST: &str = "ANTUMBRA_SKIPPED_LIST";
 
-/// Makes tests that find no graphics adapter fail; `antumbra-testing` has the same name.
+/// Environment variable that makes tests without a graphics adapter fail; `antumbra-testing` uses the same name.
 pub const REQUIRE_ADAPTER: &str = "ANTUMBRA_REQUIRE_ADAPTER";
 
-/// The list of what the tests of one run skip.
+/// List of the tests that a run skips.
 pub struct Skips {
     path: PathBuf,
 }
 
 impl Skips {
-    /// An empty list.
+    /// Creates an empty list.
     ///
     /// # Errors
-    /// Where there can be none.
+    /// If the file cannot be created.
     pub fn new() -> Result<Self, String> {
-        // In the build folder, wherever that is: beside us.
+        // In the build folder, which contains this program.
         let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
         let path = own.with_file_name(format!("skipped-{}.txt", std::process::id()));
         std::fs::write(&path, "").map_err(|error| format!("{}: {error}", path.display()))?;
         Ok(Self { path })
     }
 
-    /// Where tests write.
+    /// Returns the path of the file that tests write to.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Says how much was skipped, and for want of what.
+    /// Prints the number of skipped tests for each reason.
     pub fn report(self) {
         for (reason, count) in counted(&std::fs::read_to_string(&self.path).unwrap_or_default()) {
             eprintln!("xtask: SKIPPED {count} tests or parts of them: {reason}");
         }
-        // A file left behind in the build folder harms nobody.
+        // A remaining file in the build folder is harmless.
         let _ = std::fs::remove_file(&self.path);
     }
 }
 
-/// How often each reason stands in a list, most often first.
+/// Returns the number of lines for each reason, the most frequent first.
 fn counted(list: &str) -> Vec<(&str, usize)> {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for reason in list.lines() {

@@ -1,4 +1,4 @@
-//! `cargo xtask test` in its three tiers and `cargo xtask ci`: format, lints, tests; packages and browsers.
+//! `cargo xtask test` in its three tiers and `cargo xtask ci`: format, lints and tests; packages and browsers.
 
 use std::ffi::OsStr;
 use std::time::Instant;
@@ -9,29 +9,29 @@ use crate::shell::{self, cargo, find, succeeds};
 use crate::skips::{self, Skips};
 use crate::{bevy, families, find_mutants, gpu_cost, packages, portability, semver, wasm, web};
 
-/// How much is tested.
+/// Tier of tests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Tier {
-    /// What needs no adapter, and a mask of each technique.
+    /// Tests without an adapter, and one mask per technique.
     Quick,
-    /// All but what is marked `#[ignore]`; what continuous integration requires.
+    /// All tests except those marked `#[ignore]`; required by continuous integration.
     Required,
-    /// What is marked `#[ignore]`, too, then a program outside that runs, the plugin for Bevy and a sample of mutants.
+    /// Also tests marked `#[ignore]`, then a run of the program outside, the Bevy plugin and a sample of mutants.
     Long,
 }
 
-/// What [`Tier::Quick`] runs, as nextest's filter: crates and modules whose tests are done in an instant.
+/// Filter of [`Tier::Quick`] for nextest: crates and modules whose tests finish in an instant.
 const QUICK: &str = "package(antumbra-light) | package(antumbra-scene) | package(antumbra-linker) | package(antumbra-book) | package(xtask) \
                      | (package(antumbra-reference) & not test(robustness) & not test(surfaces)) \
                      | (package(antumbra) & (test(in_shaders::) | test(contract::) | test(/^tests::/) | test(primitives::prefix_scan))) \
                      | (binary(bad_input) & package(antumbra-cli)) \
                      | test(one_mask_of_each_technique)";
 
-/// Mutants that [`Tier::Long`] judges: always the same, anew.
+/// Mutants that [`Tier::Long`] judges: always the same ones, without earlier verdicts.
 const MUTANTS: [&str; 6] = ["--count", "100", "--seed", "1", "--anew", "--check"];
 
 impl Tier {
-    /// The tier that the first word names, and the other words.
+    /// Returns the tier that the first word names, and the remaining words.
     fn of(words: &[String]) -> (Self, &[String]) {
         match words.split_first() {
             Some((word, rest)) if word == "quick" => (Self::Quick, rest),
@@ -41,9 +41,9 @@ impl Tier {
     }
 }
 
-/// Sets up, checks, tests; with [`Missing::Fail`] what others get, too: families alone, packages, browsers. The test runner's own summary
-/// comes last, and where tests may be skipped how many were. Of the arguments what chooses the driver is ours, and the rest a filter that
-/// goes to the test runner.
+/// Sets up, checks and tests. With [`Missing::Fail`] it also checks single families, packages and browsers. The test runner's summary
+/// comes last, followed by the number of skipped tests if tests may be skipped. The driver option is removed from the arguments; the rest
+/// is a filter for the test runner.
 ///
 /// # Errors
 /// The first check that failed.
@@ -58,8 +58,8 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             shell::run(cargo().args(["fmt", "--all", "--check"]))?;
         }
         if missing == Missing::Fail {
-            // Before all that takes long: without an adapter, most tests would fail one by one. Of the whole workspace, so
-            // that the tests find its dependencies built.
+            // Before all slow steps, because without an adapter most tests would fail one by one. The whole workspace is built, so that
+            // the tests find its dependencies.
             timed("built", || run_locked(&["build", "--workspace", "--exclude", "xtask"], &[]))?;
             shell::run(std::process::Command::new(shell::built_binary()?).arg("doctor").envs(driver.variables()))
                 .map_err(|problem| format!("no graphics adapter works here, and most tests need one: {problem}"))?;
@@ -72,7 +72,7 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             Ok(())
         };
         if missing == Missing::Fail {
-            // What builds in folders of its own, beside what builds in ours: one crate often waits for another.
+            // Checks with separate build folders run in parallel, because compiling often waits for a single crate.
             let (inside, outside) = std::thread::scope(|scope| {
                 let outside = scope
                     .spawn(|| packages::check().and_then(|()| wasm::check(missing)).and_then(|()| semver::run(&[])));
@@ -88,7 +88,7 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
         }
         eprintln!("xtask: checks done after {} s", began.elapsed().as_secs());
     } else {
-        // Whatever the filter names would test the shaders of before an edit.
+        // Otherwise the filtered tests would use the shaders from before an edit.
         run_locked(&["test", "--quiet", "--package", "antumbra-linker"], &[])?;
     }
     match missing {
@@ -108,7 +108,7 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
     }
 }
 
-/// Runs a tier's tests on a driver and with a variable, by nextest where it is installed.
+/// Runs a tier's tests with a driver and a variable, by nextest if it is installed.
 fn run_tests(tier: Tier, filter: &[String], driver: &Driver, variable: (&str, &OsStr)) -> Result<(), String> {
     let words: Vec<&str> = filter.iter().map(String::as_str).collect();
     let run = |command: &[&str], rest: &[&str]| {
@@ -121,7 +121,7 @@ fn run_tests(tier: Tier, filter: &[String], driver: &Driver, variable: (&str, &O
             Tier::Long => run(&["test", "--workspace"], &[&words, &["--", "--include-ignored"][..]].concat()),
         };
     }
-    // Which runs everything but the examples in the documentation.
+    // nextest does not run the examples in the documentation.
     if filter.is_empty() && tier != Tier::Quick {
         run(&["test", "--workspace", "--doc", "--quiet"], &[])?;
     }
@@ -133,7 +133,7 @@ fn run_tests(tier: Tier, filter: &[String], driver: &Driver, variable: (&str, &O
     run(&["nextest", "run", "--workspace", "--no-tests", "pass"], &[of_tier, &words].concat())
 }
 
-/// Says how long a step took, of those that do not say so themselves.
+/// Runs a step and prints its time.
 fn timed(what: &str, step: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
     let began = Instant::now();
     step()?;
@@ -146,7 +146,7 @@ fn run_locked(command: &[&str], rest: &[&str]) -> Result<(), String> {
     shell::run(cargo().args(command).arg("--locked").args(rest))
 }
 
-/// Whether a part of the toolchain is here, after asking rustup for it where it is not.
+/// Whether a component of the toolchain is installed, after asking rustup for it if necessary.
 fn component(subcommand: &str, name: &str, missing: Missing) -> Result<bool, String> {
     let here = || succeeds(cargo().args([subcommand, "--version"]));
     if here() {

@@ -1,4 +1,4 @@
-//! A compiler for browsers, and whether the library and the viewer's page compile by it.
+//! Compiler for browsers, and the check that the library and the viewer's page compile with it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,10 +7,10 @@ use std::time::Instant;
 use crate::machine::{self, Missing, Need};
 use crate::shell::{self, cargo, find, succeeds};
 
-/// What browsers run.
+/// Target of browsers.
 pub const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Debian's Rust for browsers has the standard library as source alone.
+/// Requirement of Debian's Rust for browsers, whose standard library is source only.
 const DEBIAN: [Need; 1] = [Need {
     why: "a Rust compiler for wasm32",
     met: || {
@@ -22,10 +22,10 @@ const DEBIAN: [Need; 1] = [Need {
     otherwise: "`rustup target add wasm32-unknown-unknown`",
 }];
 
-/// Compiles the viewer's page, and with it the library over wgpu's own backend for browsers, but links nothing.
+/// Compiles the viewer's page, and with it the library on wgpu's browser backend, without linking.
 ///
 /// # Errors
-/// What does not compile; or, where a missing check is to fail, what would bring a compiler.
+/// A compile error; or, with [`Missing::Fail`], how to get a compiler.
 pub fn check(missing: Missing) -> Result<(), String> {
     let began = Instant::now();
     let arguments = ["check", "--package", "antumbra-web"];
@@ -42,11 +42,11 @@ pub fn check(missing: Missing) -> Result<(), String> {
     Ok(())
 }
 
-/// The command of cargo that has these arguments, for browsers: by our own toolchain, else by Debian's. What it builds lies in
+/// Returns the cargo command with these arguments for browsers, with xtask's own toolchain or else Debian's. Its output is in
 /// [`target_folder`] of the command.
 ///
 /// # Errors
-/// What would bring a compiler, where there is none and none can be installed.
+/// How to get a compiler, if there is none and none can be installed.
 pub fn compiler(arguments: &[&str]) -> Result<Command, String> {
     let ours_is_here = || {
         let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
@@ -55,7 +55,7 @@ pub fn compiler(arguments: &[&str]) -> Result<Command, String> {
     };
     if !ours_is_here() && find("rustup").is_some() {
         eprintln!("xtask: this toolchain lacks {TARGET}; asking rustup for it");
-        // Where it cannot be reached, Debian may be.
+        // If rustup's server is unreachable, Debian's may not be.
         let _ = succeeds(Command::new("rustup").args(["target", "add", TARGET]));
     }
     if ours_is_here() {
@@ -66,7 +66,7 @@ pub fn compiler(arguments: &[&str]) -> Result<Command, String> {
     machine::install(&DEBIAN)?;
     let mut command = Command::new("/usr/bin/cargo");
     command.current_dir(crate::root()).args(arguments).args(FOR_BROWSERS);
-    // Building the standard library is unstable still, though this compiler is a stable one.
+    // Building the standard library is still unstable, although this compiler is stable.
     command.args(["-Zbuild-std=std,panic_abort", "--target-dir"]).arg(crate::root().join("target/wasm-debian"));
     command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-C linker=wasm-ld");
     Ok(command)
@@ -74,7 +74,7 @@ pub fn compiler(arguments: &[&str]) -> Result<Command, String> {
 
 const FOR_BROWSERS: [&str; 3] = ["--locked", "--target", TARGET];
 
-/// The folder that a command of [`compiler`] builds into.
+/// Returns the folder that a command of [`compiler`] builds into.
 pub fn target_folder(command: &Command) -> PathBuf {
     let after = command.get_args().skip_while(|word| *word != "--target-dir").nth(1);
     after.map_or_else(|| crate::root().join("target"), PathBuf::from)

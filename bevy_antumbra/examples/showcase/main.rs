@@ -1,10 +1,10 @@
-//! Lights of all kinds over things that move. The window's title says by what, and what it costs.
+//! Lights of every kind above moving objects. The window's title shows the technique and its cost.
 //!
 //! ```text
 //! cargo run --release --features window --example showcase
 //! ```
 //!
-//! `T` takes the next technique, `Q` the next quality, `N` leaves the lights to Bevy and takes them back.
+//! `T` selects the next technique and `Q` the next quality. `N` switches between Bevy's own shadows and soft shadows.
 
 mod scene;
 
@@ -12,7 +12,7 @@ use bevy::diagnostic::{DiagnosticsStore, FrameTimeDiagnosticsPlugin};
 use bevy::prelude::*;
 use bevy_antumbra::{AntumbraPlugin, NoSoftShadows, ShadowCounts, ShadowQuality, ShadowTechnique, SoftShadows};
 
-/// Those that one would choose from.
+/// Techniques that `T` cycles through.
 const TECHNIQUES: [ShadowTechnique; 8] = [
     ShadowTechnique::Pcss,
     ShadowTechnique::Essm,
@@ -34,7 +34,7 @@ fn main() {
         .run();
 }
 
-/// What is chosen for a camera holds for all lights without settings of their own.
+/// Settings of a camera apply to all lights without settings of their own.
 fn spawn_camera(mut commands: Commands) {
     commands.spawn((Camera3d::default(), scene::camera(), SoftShadows::default()));
 }

@@ -1,18 +1,18 @@
-//! What the showcase shows, apart from its window: things of several shapes, and a light of each kind that Bevy has.
+//! Scene of the showcase: objects of several shapes, and a light of each kind that Bevy has.
 
 use std::f32::consts::TAU;
 
 use bevy::light::SunDisk;
 use bevy::prelude::*;
 
-/// Turns about the middle.
+/// Rotation about the entity's y axis.
 #[derive(Component)]
 pub struct Turns {
-    /// Turns a minute.
+    /// Revolutions per minute.
     pub per_minute: f32,
 }
 
-/// Glides to and fro along x.
+/// Oscillation along x.
 #[derive(Component)]
 pub struct Glides {
     pub from: Vec3,
@@ -34,7 +34,7 @@ pub fn spawn(
     );
     commands.spawn((Mesh3d(meshes.add(Plane3d::default().mesh().size(30.0, 30.0))), MeshMaterial3d(stone.clone())));
 
-    // A colonnade about the middle.
+    // A colonnade around the origin.
     let column = meshes.add(Cylinder::new(0.16, 2.0));
     for i in 0..9 {
         let (sin, cos) = (i as f32 / 9.0 * TAU).sin_cos();
@@ -44,7 +44,7 @@ pub fn spawn(
             Transform::from_xyz(3.2 * cos, 1.0, 3.2 * sin),
         ));
     }
-    // A ring that tumbles, and beads that circle it.
+    // A tumbling ring, and beads that circle it.
     commands.spawn((
         Mesh3d(meshes.add(Torus::new(0.55, 0.75))),
         MeshMaterial3d(brass),
@@ -103,7 +103,7 @@ fn spawn_lights(commands: &mut Commands) {
         },
         Transform::from_xyz(0.0, 2.6, 0.0),
     ));
-    // A moon, four times as wide in the sky as ours.
+    // A moon with four times the angular diameter of ours.
     commands.spawn((
         DirectionalLight {
             color: Color::srgb(0.6, 0.7, 1.0),
@@ -116,7 +116,7 @@ fn spawn_lights(commands: &mut Commands) {
     ));
 }
 
-/// Where the camera begins.
+/// Initial transform of the camera.
 pub fn camera() -> Transform {
     Transform::from_xyz(0.0, 4.2, 7.4).looking_at(Vec3::new(0.0, 0.6, 0.0), Vec3::Y)
 }

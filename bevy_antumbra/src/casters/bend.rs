@@ -1,7 +1,7 @@
-//! Meshes with a skeleton or morph targets: a compute pass bends each into a buffer of its own, from which the library's set
-//! packs it. With a skeleton that is in world space, else in the mesh's own.
+//! Compute pass that deforms meshes with a skeleton or morph targets. It writes each mesh to its own buffer, from which the
+//! library's caster set packs it: in world space with a skeleton, else in object space.
 //!
-//! Bevy bends in its vertex shaders, for each view again and into nothing that could be read.
+//! Bevy deforms meshes in its vertex shaders, once per view, and does not store the result.
 
 use antumbra::casters::{Mesh as CasterMesh, PositionFormat, Positions};
 use antumbra::light::Aabb;
@@ -33,31 +33,30 @@ struct Layout {
     center: glam::Vec4,
 }
 
-/// The pass, once a device.
+/// Deformation pass, one per device.
 pub struct Bender {
     device: wgpu::Device,
     pipeline: wgpu::ComputePipeline,
 }
 
-/// A bent mesh: what the pass reads and writes.
+/// Deformed mesh: inputs and outputs of the pass.
 pub struct Bent {
-    /// Three 32-bit floats a vertex.
+    /// Deformed positions: three 32-bit floats per vertex.
     positions: wgpu::Buffer,
     layout: Layout,
     layout_buffer: wgpu::Buffer,
     joints: wgpu::Buffer,
     target_weights: wgpu::Buffer,
-    /// What it is bent from: vertices, and targets where there are some.
+    /// Source buffers: vertices, and morph targets if there are any.
     sources: (wgpu::Buffer, Option<wgpu::Buffer>),
     group: wgpu::BindGroup,
-    /// What it is bent by; `None` before the first time.
+    /// Last uploaded pose; `None` before the first upload.
     pose: Option<ExtractedBend>,
-    /// The pass is to be recorded.
+    /// Whether the pass has to be recorded.
     is_stale: bool,
 }
 
-/// A part of a slab as it is bound: bindings begin at multiples of an alignment, and the rest of the way is counted in the
-/// shader.
+/// Bound range of a slab. Binding offsets are multiples of the device's alignment; the shader adds the remainder.
 struct Bound<'a> {
     binding: wgpu::BufferBinding<'a>,
     first_word: u32,
@@ -89,10 +88,11 @@ impl Bender {
         Self { device: device.clone(), pipeline }
     }
 
-    /// Makes ready for a mesh where it lies now. `box_of_mesh` is what compressed positions count from.
+    /// Returns the resources for a mesh at its current place in the slabs, reusing `kept` if it still fits. `box_of_mesh`
+    /// decodes compressed positions.
     ///
     /// # Errors
-    /// Where its vertices are not written as the pass reads them.
+    /// If the pass cannot read the mesh's vertex format.
     pub fn prepare(
         &self,
         kept: Option<Bent>,
@@ -145,7 +145,7 @@ impl Bender {
         use wgpu::BufferUsages as Usage;
         let layout_buffer =
             buffer("bevy_antumbra bend layout", size_of::<Layout>() as u64, Usage::UNIFORM | Usage::COPY_DST);
-        // One of each at least: what is not there is bound as well.
+        // At least one element each, because unused buffers are bound, too.
         let joint_bytes = 64 * u64::from(layout.joint_count.max(1));
         let joints = buffer("bevy_antumbra joints", joint_bytes, Usage::STORAGE | Usage::COPY_DST);
         let weight_bytes = 4 * u64::from(layout.target_count.max(1));
@@ -168,7 +168,7 @@ impl Bender {
         Bent { positions, layout, layout_buffer, joints, target_weights, sources, group, pose: None, is_stale: false }
     }
 
-    /// Records the pass for all meshes whose pose is another one than before.
+    /// Records the pass for all meshes whose pose has changed.
     pub fn record<'a>(&self, encoder: &mut wgpu::CommandEncoder, bent: impl Iterator<Item = &'a mut Bent>) {
         let mut stale = bent.filter_map(|bent| std::mem::take(&mut bent.is_stale).then_some(&*bent)).peekable();
         if stale.peek().is_none() {
@@ -181,14 +181,14 @@ impl Bender {
         pass.set_pipeline(&self.pipeline);
         for bent in stale {
             pass.set_bind_group(0, &bent.group, &[]);
-            // A dispatch has at most 65 535 workgroups a side.
+            // A dispatch has at most 65 535 workgroups per dimension.
             let groups = bent.layout.vertex_count.div_ceil(64);
             pass.dispatch_workgroups(groups.min(65_535), groups.div_ceil(65_535), 1);
         }
     }
 }
 
-/// How a mesh's vertices are written, apart from where they begin.
+/// Returns the vertex layout of a mesh, without the offsets of the first vertex and the first target.
 fn layout_of(place: &MeshPlace<'_>, joint_count: u32, box_of_mesh: Aabb) -> Result<Layout, MeshError> {
     let words = |bytes: u64| u32::try_from(bytes / 4).map_err(|_| MeshError::TooFar);
     let of = |attribute| match place.attribute(attribute) {
@@ -228,7 +228,7 @@ fn layout_of(place: &MeshPlace<'_>, joint_count: u32, box_of_mesh: Aabb) -> Resu
 }
 
 impl Bent {
-    /// Brings the pose; whether it is another one than before.
+    /// Uploads the pose. Returns whether it differs from the last one.
     pub fn bring(&mut self, queue: &wgpu::Queue, bend: &ExtractedBend) -> bool {
         let is_same = |pose: &ExtractedBend| pose.joints == bend.joints && pose.weights == bend.weights;
         if self.pose.as_ref().is_some_and(is_same) {
@@ -246,10 +246,10 @@ impl Bent {
         true
     }
 
-    /// The mesh as it stands bent.
+    /// Returns the deformed mesh as the library describes meshes.
     ///
     /// # Errors
-    /// Where its indices are not on the GPU.
+    /// If its indices are not on the GPU.
     pub fn of_library<'a>(
         &'a self,
         id: AssetId<Mesh>,

@@ -1,26 +1,26 @@
-// Bends a mesh with morph targets, a skeleton or both: each vertex is moved by the targets, weighted, and then goes where its
-// joints take it, weighted, and so into the world. Without a skeleton it stays in the mesh's own space.
+// Deforms a mesh with morph targets, a skeleton or both: adds the weighted targets to each vertex, then applies the weighted
+// joint matrices, which transform it to world space. Without a skeleton the vertex stays in object space.
 
 struct Layout {
-    // Of the first vertex, in words of four bytes from where the binding begins.
+    // Offset of the first vertex from the start of the binding, in words of four bytes.
     first: u32,
     stride: u32,
     position: u32,
-    // Positions are four 16-bit integers that stand for −1 to 1 of a box, and not floats.
+    // Whether positions are four 16-bit integers that encode −1 to 1 within a box, instead of floats.
     positions_are_packed: u32,
     joints: u32,
     weights: u32,
-    // Weights are four 16-bit integers that stand for 0 to 1, and not floats.
+    // Whether weights are four 16-bit integers that encode 0 to 1, instead of floats.
     weights_are_packed: u32,
     vertex_count: u32,
-    // 0 where there is no skeleton.
+    // Number of joints; 0 without a skeleton.
     joint_count: u32,
-    // Of the first target's first vertex, in words as above.
+    // Offset of the first target's first vertex, in words as above.
     first_target: u32,
-    // 0 where nothing is morphed.
+    // Number of morph targets; 0 without morphing.
     target_count: u32,
     padding: u32,
-    // The box of packed positions.
+    // Half extents and centre of the box that decodes packed positions.
     half_extents: vec4<f32>,
     center: vec4<f32>,
 }
@@ -28,9 +28,9 @@ struct Layout {
 @group(0) @binding(0) var<uniform> mesh: Layout;
 @group(0) @binding(1) var<storage, read> vertices: array<u32>;
 @group(0) @binding(2) var<storage, read> world_from_object: array<mat4x4<f32>>;
-// Three floats a vertex.
+// Deformed positions: three floats per vertex.
 @group(0) @binding(3) var<storage, read_write> positions: array<f32>;
-// Differences: of each target all vertices, of each vertex position, normal and tangent, four words each.
+// Morph targets, one after the other: for each vertex the differences of position, normal and tangent, four words each.
 @group(0) @binding(4) var<storage, read> targets: array<f32>;
 @group(0) @binding(5) var<storage, read> target_weights: array<f32>;
 

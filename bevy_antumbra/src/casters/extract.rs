@@ -1,4 +1,4 @@
-//! What casts and what receives in this frame, as the main world has it.
+//! Extraction of this frame's casters and receivers from the main world.
 
 use antumbra::light::Aabb;
 use bevy::asset::AssetId;
@@ -17,40 +17,40 @@ use crate::convert::{affine, mat4, moved, vec3};
 use crate::layers::layer_bits;
 use crate::patch::Patch;
 
-/// A mesh that casts.
+/// Caster of this frame.
 #[derive(Clone, Debug)]
 pub struct ExtractedCaster {
-    /// In the main world.
+    /// Entity in the main world.
     pub entity: Entity,
     pub mesh: AssetId<Mesh>,
     pub world_from_object: glam::Mat4,
-    /// Of the mesh as it was modelled.
+    /// Boxes of the undeformed mesh.
     pub boxes: MeshBoxes,
     pub layers: u32,
     pub surface: CasterSurface,
-    /// A material other than the standard one; whether there is one at all, the render world knows.
+    /// Whether the material is not the standard one. Only the render world knows whether there is a material at all.
     pub has_other_material: bool,
     pub bend: Option<ExtractedBend>,
 }
 
-/// How a mesh with a skeleton, morph targets or both stands.
+/// Pose of a mesh with a skeleton, morph targets or both.
 #[derive(Clone, Debug)]
 pub struct ExtractedBend {
-    /// World-from-object of each joint; none without a skeleton.
+    /// World-from-object matrix of each joint; empty without a skeleton.
     pub joints: Vec<glam::Mat4>,
-    /// Of each morph target; none without such.
+    /// Weight of each morph target; empty without targets.
     pub weights: Vec<f32>,
-    /// The box of the mesh as it stands, or a larger one: in the world with a skeleton, else in the mesh's own space.
+    /// Conservative bounds of the deformed mesh: in world space with a skeleton, else in object space.
     pub bounds: Aabb,
 }
 
-/// All of a frame.
+/// Casters and receivers of a frame.
 #[derive(Resource)]
 pub struct ExtractedCasters {
     pub casters: Vec<ExtractedCaster>,
     /// World-space box of every mesh, casting or not.
     pub receivers: Aabb,
-    /// There are surfaces that receive and that no mask is of.
+    /// Whether some receiving surfaces have no mask.
     pub some_have_no_mask: bool,
 }
 
@@ -60,7 +60,7 @@ impl Default for ExtractedCasters {
     }
 }
 
-/// The main world's assets that casters are described by.
+/// Assets of the main world that describe casters.
 #[derive(bevy::ecs::system::SystemParam)]
 pub struct CasterAssets<'w, 's> {
     meshes: Extract<'w, 's, Res<'static, Assets<Mesh>>>,
@@ -69,14 +69,14 @@ pub struct CasterAssets<'w, 's> {
     morph_boxes: Extract<'w, 's, Res<'static, MorphBoxes>>,
 }
 
-/// The main world's other entities that meshes are bent by.
+/// Other entities of the main world that deform meshes.
 #[derive(bevy::ecs::system::SystemParam)]
 pub struct Poses<'w, 's> {
     transforms: Extract<'w, 's, Query<'static, 'static, &'static GlobalTransform>>,
     weights: Extract<'w, 's, Query<'static, 'static, &'static MorphWeights>>,
 }
 
-/// Everything that Bevy would have cast: visible or off screen, but not hidden and not marked.
+/// Extracts all casters that Bevy would draw: visible or off screen, but neither hidden nor `NotShadowCaster`.
 pub fn extract_casters(
     patch: Extract<Res<Patch>>,
     mut extracted: ResMut<ExtractedCasters>,
@@ -119,7 +119,7 @@ pub fn extract_casters(
             Some(bend) => moved(bend.bounds, &world_from_object),
             None => moved(boxes.positions, &world_from_object),
         };
-        // Bevy's own is larger where a material's shader moves vertices.
+        // Bevy's box is larger if a material's shader moves vertices.
         let culled = aabb.map_or(Aabb::EMPTY, |aabb| moved(box_of(aabb), &world_from_object));
         extracted.receivers = extracted.receivers.union(in_world).union(culled);
         let standard = material.and_then(|material| assets.materials.get(material));
@@ -132,7 +132,7 @@ pub fn extract_casters(
             continue;
         }
         let surface = match (material, own) {
-            // One that is on its way casts nothing yet.
+            // A material that is still loading casts nothing yet.
             (Some(_), _) => standard.and_then(CasterSurface::of_standard),
             (None, Some(own)) => own.casts.clone(),
             (None, None) => Some(CasterSurface::Opaque),
@@ -157,7 +157,7 @@ fn box_of(aabb: &EntityAabb) -> Aabb {
     Aabb { min: center - half, max: center + half }
 }
 
-/// The mesh's own boxes. The one that Bevy culls by stands in until the mesh's is there; of skeletons Bevy's follows the pose.
+/// Returns the mesh's boxes. Until the mesh is loaded, Bevy's culling box replaces its own; for skeletons that follows the pose.
 fn boxes_of(aabb: Option<&EntityAabb>, mesh: &Mesh3d, meshes: &Assets<Mesh>) -> Option<MeshBoxes> {
     let mesh = meshes.get(&mesh.0);
     let of_mesh = mesh.and_then(|mesh| mesh.final_aabb);
@@ -169,8 +169,8 @@ fn boxes_of(aabb: Option<&EntityAabb>, mesh: &Mesh3d, meshes: &Assets<Mesh>) -> 
     Some(MeshBoxes { positions: of_mesh.or_else(|| aabb.map(box_of))?, uvs })
 }
 
-/// How a mesh stands; `None` where it stands as it was modelled. A bent vertex lies between its places by each joint alone, so
-/// that their boxes hold it.
+/// Returns the pose of a mesh; `None` if it is undeformed. A skinned vertex is a weighted mean of its positions by each joint
+/// alone, so the union of the joints' boxes contains it.
 fn bend_of(
     (skin, morph): (Option<&SkinnedMesh>, Option<&MeshMorphWeights>),
     mesh: &Mesh3d,
@@ -195,7 +195,7 @@ fn bend_of(
     Some(ExtractedBend { joints, weights, bounds })
 }
 
-/// World-from-object of each joint of a skeleton.
+/// Returns the world-from-object matrix of each joint of a skeleton.
 fn joints_of(skin: &SkinnedMesh, assets: &CasterAssets, poses: &Poses) -> Vec<glam::Mat4> {
     let Some(bindposes) = assets.bindposes.get(&skin.inverse_bindposes) else { return Vec::new() };
     let world_from_object = |(joint, bindpose): (&Entity, &Mat4)| {

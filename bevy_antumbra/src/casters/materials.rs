@@ -1,4 +1,4 @@
-//! Materials other than the standard one: what they say of themselves.
+//! Caster surfaces of materials other than the standard one.
 
 use std::marker::PhantomData;
 
@@ -9,10 +9,9 @@ use bevy::render::{Extract, ExtractSchedule, RenderApp};
 use super::extract::extract_casters;
 use super::surface::{CasterSurface, OwnSurface, OwnSurfaces, is_transparent};
 
-/// A material that says what it does to light that meets it. Those that do not, cast as opaque, whatever they discard.
+/// Material that describes how it blocks light. Other materials cast as opaque, whatever they discard.
 ///
-/// Which lights reach a fragment is another matter: every material has shadows on it whose shader calls Bevy's
-/// `apply_pbr_lighting`.
+/// Receiving is independent of this trait: every material whose shader calls Bevy's `apply_pbr_lighting` receives shadows.
 ///
 /// ```
 /// # use bevy::prelude::*; use bevy::render::render_resource::AsBindGroup; use bevy_antumbra::*;
@@ -37,19 +36,19 @@ use super::surface::{CasterSurface, OwnSurface, OwnSurfaces, is_transparent};
 /// # }
 /// ```
 pub trait CasterMaterial: Material {
-    /// What it does to light; `None` where it casts nothing at all. Called for each entity in every frame.
+    /// Returns the surface as a caster; `None` if it casts nothing. Called for each entity in every frame.
     fn caster_surface(&self) -> Option<CasterSurface>;
 }
 
-/// As its standard material: an extension may discard fragments or move vertices, which is not known here.
+/// Uses the base material. What an extension discards or moves in its shader is unknown here.
 impl<E: MaterialExtension> CasterMaterial for ExtendedMaterial<StandardMaterial, E> {
     fn caster_surface(&self) -> Option<CasterSurface> {
         CasterSurface::of_standard(&self.base)
     }
 }
 
-/// Lets entities with a material of the user's cast as the material says. Add it after
-/// [`AntumbraPlugin`](crate::AntumbraPlugin), once for each material.
+/// Plugin that makes entities with the material `M` cast as its [`CasterMaterial`] describes. Add it after
+/// [`AntumbraPlugin`](crate::AntumbraPlugin), once per material.
 pub struct CasterMaterialPlugin<M>(PhantomData<fn() -> M>);
 
 impl<M> Default for CasterMaterialPlugin<M> {

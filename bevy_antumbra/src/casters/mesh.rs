@@ -1,4 +1,4 @@
-//! A mesh as it lies in Bevy's slabs, described for the library's set of casters.
+//! A mesh in Bevy's slabs, described for the library's caster set.
 
 use antumbra::casters::{
     Indices, Mesh as CasterMesh, PositionFormat, Positions, TextureCoordinateFormat, TextureCoordinates,
@@ -13,41 +13,41 @@ use bevy::render::render_resource::PrimitiveTopology;
 
 use super::surface::SurfaceTexture;
 
-/// Why a mesh cannot cast.
+/// Reason why a mesh cannot cast.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
-    /// It is not on the GPU yet.
+    /// The mesh is not on the GPU yet.
     #[error("a mesh is not on the GPU yet")]
     NotThere,
-    /// It is of lines, points or strips.
+    /// The mesh is not a triangle list.
     #[error("a mesh of {0:?} casts no shadow: only lists of triangles do")]
     Topology(PrimitiveTopology),
-    /// Its positions are of an unknown format, or there are none.
+    /// The mesh has no positions, or in an unknown format.
     #[error("a mesh with positions of {0:?} casts no shadow: only Float32x3 and Snorm16x4 are known")]
     Positions(Option<VertexFormat>),
-    /// It has a skeleton whose joints or weights are of an unknown format, or has none of them.
+    /// The mesh has a skeleton, and its joints or weights are missing or of an unknown format.
     #[error(
         "a mesh with joints of {0:?} and weights of {1:?} casts no shadow: Uint16x4, and Float32x4 or Unorm16x4 are known"
     )]
     Joints(Option<VertexFormat>, Option<VertexFormat>),
-    /// It is more than a shader's 32-bit counts reach.
+    /// The mesh exceeds the range of a shader's 32-bit offsets.
     #[error("a mesh of more than 16 GiB casts no shadow")]
     TooFar,
 }
 
-/// What compressed attributes of a mesh count from.
+/// Boxes that decode compressed attributes of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshBoxes {
-    /// The mesh as it was modelled.
+    /// Box of the undeformed mesh.
     pub positions: Aabb,
-    /// Least and extent of both sets of texture coordinates, where they are compressed.
+    /// Minimum and extent of both sets of texture coordinates, if compressed.
     pub uvs: [Option<[glam::Vec2; 2]>; 2],
 }
 
-/// Where a mesh lies: the same for casters and for skins.
+/// Location and layout of a mesh in Bevy's slabs.
 pub struct MeshPlace<'a> {
     pub vertices: &'a wgpu::Buffer,
-    /// Of the first vertex, bytes.
+    /// Offset of the first vertex, bytes.
     pub first: u64,
     pub stride: u64,
     pub vertex_count: u32,
@@ -56,7 +56,7 @@ pub struct MeshPlace<'a> {
 }
 
 impl<'a> MeshPlace<'a> {
-    /// Of a vertex in a morph target.
+    /// Size of a vertex in a morph target, bytes.
     pub const TARGET_BYTES: u64 = size_of::<MorphAttributes>() as u64;
 
     pub fn new(
@@ -75,7 +75,7 @@ impl<'a> MeshPlace<'a> {
         Ok(Self { vertices: slice.buffer, first, stride, vertex_count: mesh.vertex_count, boxes, render_mesh: mesh })
     }
 
-    /// Where in a vertex an attribute lies, and how it is written.
+    /// Returns the offset of an attribute in a vertex, bytes, and its format.
     pub fn attribute(&self, attribute: MeshVertexAttribute) -> Option<(u64, VertexFormat)> {
         let layout = &self.render_mesh.layout.0;
         let i = layout.attribute_ids().iter().position(|id| *id == attribute.id)?;
@@ -83,7 +83,7 @@ impl<'a> MeshPlace<'a> {
         Some((attribute.offset, attribute.format))
     }
 
-    /// Its indices; `None` where it has none.
+    /// Returns the indices; `None` if the mesh has none.
     pub fn indices(&self, id: AssetId<Mesh>, allocator: &'a MeshAllocator) -> Result<Option<Indices<'a>>, MeshError> {
         let RenderMeshBufferInfo::Indexed { count, index_format } = self.render_mesh.buffer_info else {
             return Ok(None);
@@ -98,7 +98,7 @@ impl<'a> MeshPlace<'a> {
         }))
     }
 
-    /// Its morph targets, and where in the buffer the first one begins, bytes.
+    /// Returns the buffer of morph targets and the offset of the first one, bytes.
     pub fn morph_targets(
         &self,
         id: AssetId<Mesh>,
@@ -108,7 +108,7 @@ impl<'a> MeshPlace<'a> {
         Ok((slice.buffer, u64::from(slice.range.start) * Self::TARGET_BYTES))
     }
 
-    /// Its texture coordinates, where it has those that the texture wants.
+    /// Returns the texture coordinates that a texture needs; `None` if the mesh lacks them.
     pub fn uvs(&self, texture: &SurfaceTexture) -> Option<TextureCoordinates<'a>> {
         let attribute = if texture.second_uvs { Mesh::ATTRIBUTE_UV_1 } else { Mesh::ATTRIBUTE_UV_0 };
         let (offset, format) = self.attribute(attribute)?;
@@ -131,7 +131,7 @@ impl<'a> MeshPlace<'a> {
         })
     }
 
-    /// The whole, as it was modelled. Compressed positions count from its box.
+    /// Returns the undeformed mesh as the library describes meshes. Its box decodes compressed positions.
     pub fn of_library(
         &self,
         id: AssetId<Mesh>,
@@ -153,7 +153,7 @@ impl<'a> MeshPlace<'a> {
             positions: Positions { buffer: self.vertices, offset, stride: self.stride, format },
             texture_coordinates: texture.and_then(|texture| self.uvs(texture)),
             indices: self.indices(id, allocator)?,
-            // Bevy does not say; what is taken for open is right either way.
+            // Bevy does not know whether a mesh is closed; open is always correct.
             topology: PrimitiveTopology::TriangleList,
             closed: false,
             bounds,

@@ -1,9 +1,9 @@
-//! What casts: Bevy's meshes, kept in the library's set of casters.
+//! Casters: Bevy's meshes, synchronised with the library's caster set.
 //!
-//! `extract` says in every frame what there is; `store` compares that with what the set holds and tells it what has come,
-//! moved, changed and gone; `mesh` describes a mesh as it lies in Bevy's slabs, from which the set packs it once; `bend` bends
-//! meshes with a skeleton or morph targets into buffers of the plugin's own, from which the set packs them whenever they stand
-//! otherwise than before. `surface` says what a material does to light, and `materials` asks users' own materials.
+//! `extract` collects the casters of every frame. `store` compares them with the set's contents and applies the differences.
+//! `mesh` describes a mesh in Bevy's slabs, from which the set packs it once. `bend` deforms meshes with a skeleton or morph
+//! targets into the plugin's own buffers, from which the set packs them whenever their pose changes. `surface` describes how a
+//! material blocks light, and `materials` queries users' own materials.
 
 pub mod bend;
 pub mod extract;

@@ -1,6 +1,6 @@
-//! How far morph targets reach: the boxes of what they move vertices by.
+//! Bounds of morph targets.
 //!
-//! A light's map is fitted to casters' bounds, and a morphed mesh leaves those that it was modelled in. Bevy keeps no others.
+//! A light's map is fitted to casters' bounds. A morphed mesh can leave its undeformed bounds, and Bevy stores no others.
 
 use std::collections::HashMap;
 
@@ -10,12 +10,12 @@ use bevy::prelude::*;
 
 use crate::convert::vec3;
 
-/// For each mesh with morph targets a box of each target's differences. A resource of the main world.
+/// For each mesh, the bounds of each morph target's position differences. A resource of the main world.
 #[derive(Resource, Default)]
 pub struct MorphBoxes(HashMap<AssetId<Mesh>, Vec<Aabb>>);
 
 impl MorphBoxes {
-    /// The box of a mesh that is morphed; `bounds` are those that it was modelled in.
+    /// Returns the bounds of a morphed mesh; `bounds` are its undeformed ones.
     pub fn morphed(&self, mesh: AssetId<Mesh>, bounds: Aabb, weights: &[f32]) -> Aabb {
         let Some(boxes) = self.0.get(&mesh) else { return bounds };
         boxes.iter().zip(weights).fold(bounds, |all, (of_target, weight)| {
@@ -24,13 +24,13 @@ impl MorphBoxes {
         })
     }
 
-    /// How many targets a mesh has.
+    /// Returns the number of morph targets of a mesh.
     pub fn target_count(&self, mesh: AssetId<Mesh>) -> usize {
         self.0.get(&mesh).map_or(0, Vec::len)
     }
 }
 
-/// Measures meshes as they come: some leave the main world in the same frame.
+/// Measures meshes when they are added: some leave the main world in the same frame.
 pub fn measure_morphs(
     mut boxes: ResMut<MorphBoxes>,
     mut events: MessageReader<AssetEvent<Mesh>>,
@@ -40,7 +40,7 @@ pub fn measure_morphs(
         match event {
             AssetEvent::Added { id } | AssetEvent::Modified { id } => {
                 let Some(mesh) = meshes.get(*id) else { continue };
-                // What is in the render world alone was measured when it came.
+                // A mesh that is in the render world alone was measured when it was added.
                 let Ok(is_morphed) = mesh.try_has_morph_targets() else { continue };
                 let targets = is_morphed.then(|| mesh.get_morph_targets()).flatten();
                 match targets {

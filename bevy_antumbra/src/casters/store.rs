@@ -1,4 +1,4 @@
-//! The library's set of casters, kept in step with the world.
+//! The library's caster set, synchronised with the world.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Instant;
@@ -23,7 +23,7 @@ use super::surface::{CasterSurface, SurfaceTexture};
 use crate::counts::ShadowCounts;
 use crate::warnings::Warnings;
 
-/// The casters of the world. One set, for all lights and views.
+/// Casters of the world: one set for all lights and views.
 #[derive(Resource)]
 pub struct CasterStore {
     pub set: CasterSet,
@@ -31,13 +31,13 @@ pub struct CasterStore {
     meshes: HashMap<MeshKey, KeptMesh>,
     casters: HashMap<Entity, KeptCaster>,
     bent: HashMap<Entity, Bent>,
-    /// Counts frames, to tell what was not seen in the last.
+    /// Frame counter, which identifies casters that were not extracted in the last frame.
     frame: u64,
-    /// World-space box of all that may receive.
+    /// World-space box of all possible receivers.
     pub receivers: Aabb,
 }
 
-/// What is packed once: a mesh with the texture coordinates that its material uses; a bent one for each entity.
+/// Key of a packed mesh: a mesh with the texture coordinates of its material; deformed meshes are packed per entity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct MeshKey {
     mesh: AssetId<Mesh>,
@@ -55,9 +55,9 @@ struct KeptCaster {
     mesh: MeshKey,
     world_from_object: glam::Mat4,
     layers: u32,
-    /// As its material describes it.
+    /// Surface as its material describes it.
     described: CasterSurface,
-    /// As the set has it: a texture may be another one though its asset is the same.
+    /// Surface in the set. Its texture can change although the asset stays the same.
     surface: Surface,
     seen: u64,
 }
@@ -70,17 +70,17 @@ impl MeshKey {
     }
 }
 
-/// What casters are made of, in the render world.
+/// Render-world resources that casters consist of.
 struct Sources<'a> {
     meshes: &'a RenderAssets<RenderMesh>,
     allocator: &'a MeshAllocator,
     images: &'a RenderAssets<GpuImage>,
     queue: &'a RenderQueue,
-    /// Images have come, changed or gone in this frame.
+    /// Whether images were added, modified or removed in this frame.
     have_images_changed: bool,
 }
 
-/// Why a caster is not in the set.
+/// Reason why a caster is not in the set.
 #[derive(Debug, thiserror::Error)]
 enum CasterError {
     #[error(transparent)]
@@ -90,13 +90,13 @@ enum CasterError {
 }
 
 impl KeptCaster {
-    /// Whether it is a caster as it was, wherever it stands: of the same mesh and material, and not bent.
+    /// Whether the extracted caster has the same mesh and material and is not deformed. Its transform may differ.
     fn is_of(&self, caster: &ExtractedCaster) -> bool {
         let is_bent = caster.bend.is_some() || self.mesh.bent_for.is_some();
         !is_bent && self.mesh.mesh == caster.mesh && self.described == caster.surface
     }
 
-    /// Tells the set where it stands now, and in which layers.
+    /// Updates the caster's transform and layers in the set.
     fn place(&mut self, set: &mut CasterSet, world_from_object: glam::Mat4, layers: u32) -> Result<(), CasterError> {
         if self.world_from_object != world_from_object {
             set.set_instances(self.id, Instances::Matrices(&[world_from_object]))?;
@@ -123,7 +123,7 @@ impl CasterStore {
         }
     }
 
-    /// Brings one caster up to date: adds it, or tells the set what has changed.
+    /// Synchronises one caster: adds it, or applies its changes to the set.
     fn bring(&mut self, caster: &ExtractedCaster, sources: &Sources<'_>) -> Result<(), CasterError> {
         if let Some(kept) = self.casters.get_mut(&caster.entity)
             && !sources.have_images_changed
@@ -206,7 +206,7 @@ impl CasterStore {
         }
     }
 
-    /// Brings a mesh's pose, and says that it has changed where it has and is in the set.
+    /// Uploads a mesh's pose. If it has changed and the mesh is in the set, marks the mesh as changed.
     fn bend(
         &mut self,
         caster: &ExtractedCaster,
@@ -228,7 +228,7 @@ impl CasterStore {
         Ok(())
     }
 
-    /// Takes a caster out, and its mesh where nobody else has it.
+    /// Removes a caster, and its mesh if no other caster uses it.
     fn remove(&mut self, entity: Entity) -> Result<(), Error> {
         let Some(kept) = self.casters.remove(&entity) else { return Ok(()) };
         self.set.remove(kept.id)?;
@@ -244,7 +244,7 @@ impl CasterStore {
         Ok(())
     }
 
-    /// Takes out all casters of which this holds.
+    /// Removes all casters for which `is_gone` returns true.
     fn remove_where(&mut self, is_gone: impl Fn(&KeptCaster) -> bool) -> Result<(), Error> {
         let gone: Vec<Entity> =
             self.casters.iter().filter(|(_, kept)| is_gone(kept)).map(|(entity, _)| *entity).collect();
@@ -252,7 +252,7 @@ impl CasterStore {
     }
 }
 
-/// Tells the set what has come, moved, changed and gone. After meshes and images are on the GPU.
+/// Synchronises the set with the extracted casters. Runs after meshes and images are on the GPU.
 pub fn sync_casters(
     mut store: ResMut<CasterStore>,
     extracted: Res<ExtractedCasters>,
@@ -275,7 +275,7 @@ pub fn sync_casters(
         Sources { meshes: &meshes, allocator: &allocator, images: &images, queue: &queue, have_images_changed };
     let changed: HashSet<AssetId<Mesh>> = changed.modified.iter().copied().collect();
     if !changed.is_empty() {
-        // A mesh of another size is another mesh.
+        // The set cannot change a mesh's size, so a modified mesh is removed and added again.
         warnings.of(store.remove_where(|kept| changed.contains(&kept.mesh.mesh)));
     }
     for caster in &extracted.casters {
@@ -295,7 +295,7 @@ pub fn sync_casters(
     counts.spend(began);
 }
 
-/// Records what bends meshes and the set's own packing, once a frame and before any view.
+/// Records mesh deformation and the set's own packing, once per frame and before any view.
 pub fn update_casters(
     mut context: RenderContext,
     store: Option<ResMut<CasterStore>>,

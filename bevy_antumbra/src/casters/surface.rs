@@ -1,4 +1,4 @@
-//! What a material does to light that meets it.
+//! Caster surfaces: how a material blocks light.
 
 use antumbra::SurfaceCoverage;
 use antumbra::casters::{Surface, Texture};
@@ -10,45 +10,45 @@ use bevy::prelude::*;
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::texture::GpuImage;
 
-/// A surface as a material describes it; its texture by name.
+/// Caster surface as a material describes it; its texture is given by asset id.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CasterSurface {
-    /// Blocks all.
+    /// Blocks all light.
     Opaque,
-    /// Blocks all where the texture's alpha × `alpha_factor` is `cutoff` or more.
+    /// Blocks all light where the texture's alpha × `alpha_factor` is `cutoff` or more.
     Masked {
         /// The texture.
         texture: SurfaceTexture,
-        /// Multiplies its alpha.
+        /// Multiplies the texture's alpha.
         alpha_factor: f32,
-        /// 0 to 1.
+        /// Alpha threshold, 0 to 1.
         cutoff: f32,
     },
-    /// Lets pass `(1 − coverage) + coverage · transmitted` of each colour.
+    /// Transmits `(1 − coverage) + coverage · transmitted` of each colour.
     Translucent {
-        /// How much of the surface is there.
+        /// Fraction of the surface that is present.
         coverage: SurfaceCoverage,
-        /// What passes where it is, linear: transmission × colour. Zeros for surfaces that are blended by their alpha and
-        /// transmit nothing: they cover, and never tint.
+        /// Transmittance of the covered part, linear: transmission × colour. Zeros for alpha-blended surfaces without
+        /// transmission: they cover, and never tint.
         transmitted: [f32; 3],
-        /// Its RGB multiplies `transmitted`, its alpha the coverage's.
+        /// Texture whose RGB multiplies `transmitted` and whose alpha multiplies the coverage's.
         texture: Option<SurfaceTexture>,
     },
 }
 
-/// A texture of a surface, and where on the mesh it lies.
+/// Texture of a surface and its mapping onto the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceTexture {
     /// The image.
     pub image: AssetId<Image>,
-    /// The mesh's second texture coordinates instead of its first.
+    /// Whether the mesh's second texture coordinates are used instead of its first.
     pub second_uvs: bool,
-    /// What is done to coordinates before they are used: the columns of a 2 × 3 matrix.
+    /// Transform of the texture coordinates: the columns of a 2 × 3 matrix.
     pub uv_transform: [f32; 6],
 }
 
 impl SurfaceTexture {
-    /// A texture on a mesh's first coordinates as they are.
+    /// Returns a texture on the mesh's first texture coordinates, without a transform.
     pub fn of(image: &Handle<Image>) -> Self {
         let uv_transform = bevy::math::Affine2::IDENTITY.to_cols_array();
         Self { image: image.id(), second_uvs: false, uv_transform }
@@ -56,11 +56,10 @@ impl SurfaceTexture {
 }
 
 impl CasterSurface {
-    /// What a material does to light; `None` where it casts nothing at all.
+    /// Returns the surface of a standard material; `None` if it casts nothing.
     ///
-    /// Alpha is coverage, and what the surface transmits specularly is tinted by its colour and by what its volume absorbs
-    /// over its thickness, half at either side of it. Textures of transmission, metalness and thickness are not read: their
-    /// factors count.
+    /// Alpha is coverage. Specular transmission is tinted by the material's colour and by its volume's absorption over the
+    /// thickness, half at either side. Textures of transmission, metalness and thickness are ignored: only their factors count.
     pub fn of_standard(material: &StandardMaterial) -> Option<Self> {
         let texture = material.base_color_texture.as_ref().map(|image| SurfaceTexture {
             image: image.id(),
@@ -88,12 +87,12 @@ impl CasterSurface {
                 let transmitted = [color.red, color.green, color.blue];
                 Some(Self::Translucent { coverage: SurfaceCoverage::Whole, transmitted, texture })
             }
-            // What only adds light takes none away.
+            // Additive blending blocks no light.
             AlphaMode::Add => None,
         }
     }
 
-    /// Its texture.
+    /// Returns the texture, if there is one.
     pub(crate) fn texture(&self) -> Option<&SurfaceTexture> {
         match self {
             Self::Opaque => None,
@@ -102,7 +101,7 @@ impl CasterSurface {
         }
     }
 
-    /// The same for the library; `None` while the texture is not on the GPU.
+    /// Returns the library's surface; `None` while the texture is not on the GPU.
     pub(crate) fn of_library(&self, images: &RenderAssets<GpuImage>) -> Option<Surface> {
         let texture = |texture: &SurfaceTexture| {
             let image = images.get(texture.image)?;
@@ -124,7 +123,7 @@ impl CasterSurface {
         })
     }
 
-    /// The same on a mesh without the coordinates that its texture needs.
+    /// Returns the surface for a mesh without the texture coordinates that its texture needs.
     pub(crate) fn without_texture(&self) -> Self {
         match self {
             Self::Opaque | Self::Masked { .. } => Self::Opaque,
@@ -135,26 +134,26 @@ impl CasterSurface {
     }
 }
 
-/// What passes where a material is, of each colour.
+/// Returns a material's transmittance, linear RGB.
 fn transmitted_by(material: &StandardMaterial) -> [f32; 3] {
     let share = material.specular_transmission * (1.0 - material.metallic);
     if share <= 0.0 {
         return [0.0; 3];
     }
-    // A volume has two sides, and each takes its half. Of a thin surface the power is 0.
+    // A volume has two sides, and each absorbs half. For a thin surface the power is 0.
     let power = 0.5 * material.thickness / material.attenuation_distance;
     let (color, absorbed) = (material.base_color.to_linear(), material.attenuation_color.to_linear());
     [(color.red, absorbed.red), (color.green, absorbed.green), (color.blue, absorbed.blue)]
         .map(|(color, absorbed)| share * color * absorbed.max(0.0).powf(power))
 }
 
-/// Whether a material shades what no mask is of: a surface that is not in the depth prepass, or a far side.
+/// Whether a material shades surfaces without a mask: one that is not in the depth prepass, or a back side.
 pub(crate) fn is_seen_without_mask(material: &StandardMaterial) -> bool {
     let transmits = material.specular_transmission > 0.0 || material.diffuse_transmission > 0.0;
     !material.unlit && (transmits || is_transparent(material.alpha_mode))
 }
 
-/// Whether surfaces of a mode are drawn after all others, and not into the depth prepass.
+/// Whether surfaces of an alpha mode are drawn after all others, and not into the depth prepass.
 pub(crate) fn is_transparent(mode: AlphaMode) -> bool {
     matches!(mode, AlphaMode::Blend | AlphaMode::Premultiplied | AlphaMode::Multiply | AlphaMode::Add)
 }
@@ -163,11 +162,11 @@ pub(crate) fn is_transparent(mode: AlphaMode) -> bool {
 #[derive(Resource, Default)]
 pub struct OwnSurfaces(pub EntityHashMap<OwnSurface>);
 
-/// What a user's own material says.
+/// Caster surface of a user's own material.
 #[derive(Clone, Debug, Default)]
 pub struct OwnSurface {
-    /// `None` of those that cast nothing, or do not yet.
+    /// `None` if it casts nothing, or is still loading.
     pub casts: Option<CasterSurface>,
-    /// Is not in the depth prepass.
+    /// Whether the surface is not in the depth prepass.
     pub is_transparent: bool,
 }

@@ -1,4 +1,4 @@
-//! Bevy without a window: a scene, some frames, and the picture back.
+//! Bevy without a window: renders a scene for some frames and reads the image back.
 #![allow(dead_code)]
 
 use std::path::Path;
@@ -26,10 +26,10 @@ use bevy::render::texture::GpuImage;
 use bevy::window::ExitCondition;
 use bevy_antumbra::{AntumbraPlugin, NoSoftShadows, Patch, SoftShadows};
 
-/// One app at a time: software adapters have no more than the machine's cores.
+/// Lock for one app at a time, because software adapters use all cores of the machine.
 static ONE: Mutex<()> = Mutex::new(());
 
-/// An app that renders into an image.
+/// App that renders into an image.
 pub struct Headless {
     pub app: App,
     pub size_px: UVec2,
@@ -37,7 +37,7 @@ pub struct Headless {
     _one: MutexGuard<'static, ()>,
 }
 
-/// Linear colours, row by row from the top left.
+/// Image in linear colours, row by row from the top left.
 #[derive(Clone, Debug)]
 pub struct Picture {
     pub size_px: UVec2,
@@ -45,7 +45,7 @@ pub struct Picture {
 }
 
 impl Headless {
-    /// With the plugin.
+    /// Creates an app with the plugin.
     pub fn new(size_px: UVec2, settings: SoftShadows) -> Self {
         let mut headless = Self::bare(size_px);
         headless.app.add_plugins(AntumbraPlugin { settings });
@@ -53,12 +53,12 @@ impl Headless {
         headless
     }
 
-    /// Without it; [`finish`](Self::finish) is to be called.
+    /// Creates an app without the plugin; the caller has to call [`finish`](Self::finish).
     pub fn bare(size_px: UVec2) -> Self {
         Self::reading(size_px, Path::new("assets"))
     }
 
-    /// The same with files from a folder.
+    /// Creates an app without the plugin that reads assets from a folder.
     pub fn reading(size_px: UVec2, folder: &Path) -> Self {
         let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         let mut app = App::new();
@@ -70,10 +70,10 @@ impl Headless {
             .set(AssetPlugin { file_path: folder.to_string_lossy().into(), ..default() })
             .disable::<PipelinedRenderingPlugin>()
             .disable::<TerminalCtrlCHandlerPlugin>();
-        // The examples' windows are a feature, which may be on.
+        // The examples' window feature can be enabled.
         #[cfg(feature = "window")]
         let plugins = plugins.disable::<bevy::winit::WinitPlugin>();
-        // One log for all apps of a process.
+        // Only the first app of a process may install the log.
         static HAS_LOG: AtomicBool = AtomicBool::new(false);
         let log = LogPlugin { filter: "warn,bevy_light=error,bevy_render::renderer=error".into(), ..default() };
         app.add_plugins(if HAS_LOG.swap(true, Ordering::Relaxed) {
@@ -98,13 +98,13 @@ impl Headless {
         self.app.cleanup();
     }
 
-    /// Waits until the GPU has done all that it was given.
+    /// Waits until the GPU has finished all submitted work.
     pub fn wait(&self) {
         let device = self.app.sub_app(RenderApp).world().resource::<RenderDevice>();
         device.wgpu_device().poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
     }
 
-    /// What a camera needs that the picture is read from.
+    /// Returns the components of a camera that renders into the image.
     pub fn camera(&self, camera: &antumbra_scene::Camera) -> impl Bundle + use<> {
         (
             Camera3d::default(),
@@ -122,7 +122,7 @@ impl Headless {
         )
     }
 
-    /// Frames until the shaders are there, and some more.
+    /// Runs frames until the shader is patched, and then the given number of frames.
     pub fn run(&mut self, frames: u32) {
         let start = Instant::now();
         while self.app.world().get_resource::<Patch>() == Some(&Patch::Waiting) {
@@ -136,7 +136,7 @@ impl Headless {
         }
     }
 
-    /// The picture after some frames.
+    /// Returns the image after some frames.
     pub fn picture(&mut self, frames: u32) -> Picture {
         self.run(frames);
         let world = self.app.sub_app(RenderApp).world();
@@ -146,7 +146,7 @@ impl Headless {
     }
 }
 
-/// The largest difference of two pictures, over the brightest of the first.
+/// Returns the largest difference of two images, relative to the brightest value of the first.
 pub fn difference(a: &Picture, b: &Picture) -> f32 {
     let most = a.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
     let values = a.pixels.iter().flatten().zip(b.pixels.iter().flatten());
@@ -187,7 +187,7 @@ fn half_to_f32(half: u16) -> f32 {
 }
 
 impl Picture {
-    /// Writes it for people, where a folder is named: `ANTUMBRA_PICTURES=out cargo test`.
+    /// Writes the image if a folder is set: `ANTUMBRA_PICTURES=out cargo test`.
     pub fn save(&self, name: &str, exposure: f32) {
         let Ok(folder) = std::env::var("ANTUMBRA_PICTURES") else { return };
         let byte = |v: f32| (antumbra_scene::srgb_from_linear(v * exposure) * 255.0).round() as u8;
@@ -197,7 +197,7 @@ impl Picture {
         image::save_buffer(path, &bytes, self.size_px.x, self.size_px.y, image::ColorType::Rgb8).expect("a picture");
     }
 
-    /// Visibility: what of the light without shadows is left with them; `None` where there is none to judge by.
+    /// Returns visibility: the ratio of shadowed to unshadowed light; `None` where the unshadowed image is too dark to judge.
     pub fn over(&self, unshadowed: &Self) -> Vec<Option<[f32; 3]>> {
         let most = unshadowed.pixels.iter().flatten().fold(0.0f32, |most, v| most.max(*v));
         assert!(most > 0.0, "the picture without shadows is black");
@@ -217,12 +217,12 @@ fn quat_looking(axis: glam::Vec3, up: glam::Vec3) -> Quat {
     Transform::IDENTITY.looking_to(from(axis), from(up)).rotation
 }
 
-/// Where a light of the library's is, for Bevy's.
+/// Returns the transform of one of the library's lights in Bevy.
 pub fn light_transform(light: &antumbra::light::Light) -> Transform {
     Transform::from_translation(from(light.center)).with_rotation(quat_looking(light.axis, light.up))
 }
 
-/// A light of the library's, as Bevy has such; how bright is not what is looked at.
+/// Spawns one of the library's lights in Bevy, with an arbitrary intensity.
 pub fn spawn_light(app: &mut App, light: &antumbra::light::Light) -> Entity {
     use antumbra::light::LightShape;
     let transform = light_transform(light);
@@ -254,7 +254,7 @@ pub fn spawn_light(app: &mut App, light: &antumbra::light::Light) -> Entity {
     }
 }
 
-/// Turns a light's shadows off or on.
+/// Turns a light's shadows on or off.
 pub fn set_shadows(app: &mut App, light: Entity, are_on: bool) {
     let mut light = app.world_mut().entity_mut(light);
     if let Some(mut of) = light.get_mut::<PointLight>() {
@@ -270,7 +270,7 @@ pub fn set_shadows(app: &mut App, light: Entity, are_on: bool) {
     }
 }
 
-/// A scene of the laboratory's, in Bevy; gives the entity of each of its instances.
+/// Spawns a scene of the laboratory in Bevy. Returns the entity of each of its instances.
 pub fn spawn_scene(app: &mut App, scene: &Scene) -> Vec<Entity> {
     let images: Vec<Handle<Image>> = scene.images.iter().map(|image| add_image(app, image)).collect();
     let materials: Vec<Handle<StandardMaterial>> = scene
@@ -289,7 +289,7 @@ pub fn spawn_scene(app: &mut App, scene: &Scene) -> Vec<Entity> {
                 specular_transmission: material.transmission,
                 perceptual_roughness: 1.0,
                 reflectance: 0.0,
-                // Judged where the receiver faces the light, whichever side is seen.
+                // Pixels are judged where the receiver faces the light, whichever side the camera sees.
                 double_sided: true,
                 cull_mode: None,
                 ..default()

@@ -1,6 +1,6 @@
-//! `antumbra-animate OUT.png MILLISECONDS FRAME.png...`: an animated PNG that repeats, of frames of one size.
+//! `antumbra-animate OUT.png MILLISECONDS FRAME.png...`: creates a looping animated PNG from frames of one size.
 //!
-//! A frame after the first stores the rectangle in which it differs from the one before, so that a still background costs
+//! Each frame after the first stores the rectangle in which it differs from the previous one, so a still background costs
 //! nothing.
 
 use std::fs::File;
@@ -11,7 +11,7 @@ use png::{BitDepth, BlendOp, ColorType, DisposeOp};
 
 const USAGE: &str = "usage: antumbra-animate OUT.png MILLISECONDS FRAME.png...";
 
-/// An image of three bytes a pixel, rows from the top.
+/// Image with three bytes per pixel, rows from the top.
 #[derive(Debug, PartialEq)]
 struct Image {
     width: u32,
@@ -19,7 +19,7 @@ struct Image {
     rgb: Vec<u8>,
 }
 
-/// A rectangle of pixels: its corner and size.
+/// Rectangle of pixels: corner and size.
 #[derive(Debug, PartialEq, Eq, Clone, Copy)]
 struct Area {
     x: u32,
@@ -46,7 +46,7 @@ fn run(args: &[String]) -> Result<(), String> {
     save(out, &frames, delay_ms)
 }
 
-/// Reads an image of eight bits a channel, with or without alpha, which is dropped.
+/// Reads an image of eight bits per channel. Alpha is dropped.
 fn load(path: &str) -> Result<Image, String> {
     let file = File::open(path).map_err(|error| format!("{path}: {error}"))?;
     let mut reader = png::Decoder::new(BufReader::new(file)).read_info().map_err(|error| format!("{path}: {error}"))?;
@@ -89,7 +89,7 @@ fn encode(to: impl std::io::Write, frames: &[Image], delay_ms: u16) -> Result<()
         let whole = Area { x: 0, y: 0, width: frame.width, height: frame.height };
         let area = if i == 0 { whole } else { changed(&frames[i - 1], frame) };
         if i > 0 {
-            // Size and place are checked against each other as they are set.
+            // The setters check size and position against each other.
             writer.reset_frame_position()?;
             writer.set_frame_dimension(area.width, area.height)?;
             writer.set_frame_position(area.x, area.y)?;
@@ -99,7 +99,7 @@ fn encode(to: impl std::io::Write, frames: &[Image], delay_ms: u16) -> Result<()
     writer.finish()
 }
 
-/// The least rectangle that holds all pixels which differ; one pixel where none does, since a frame may not be empty.
+/// Returns the smallest rectangle with all differing pixels; one pixel if none differs, because a frame may not be empty.
 fn changed(before: &Image, after: &Image) -> Area {
     let width = after.width as usize;
     let pixels = before.rgb.chunks_exact(3).zip(after.rgb.chunks_exact(3));
@@ -113,7 +113,7 @@ fn changed(before: &Image, after: &Image) -> Area {
     Area { x: left, y: top, width: right - left + 1, height: bottom - top + 1 }
 }
 
-/// The pixels of a rectangle.
+/// Returns the pixels of a rectangle.
 fn cut(image: &Image, area: Area) -> Vec<u8> {
     let stride = 3 * image.width as usize;
     let columns = 3 * area.x as usize..3 * (area.x + area.width) as usize;

@@ -1,4 +1,4 @@
-//! Animations of the gallery: a scene's lights swing about the vertical axis through the camera's target.
+//! Animations of the gallery: a scene's lights swing around the vertical axis through the camera's target.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ const FRAMES: u32 = 12;
 const FRAME_MS: u32 = 150;
 const SWING_DEGREES: f32 = 35.0;
 
-/// Name of a scene's animation.
+/// Returns the file name of a scene's animation.
 pub fn image(scene: &str) -> String {
     format!("{scene}-moving.png")
 }
@@ -20,14 +20,14 @@ pub fn image(scene: &str) -> String {
 /// Writes the setup file of each frame.
 ///
 /// # Errors
-/// Files that cannot be written.
+/// If a file cannot be written.
 pub fn write_setups(scene: &str, folder: &Path) -> Result<(), String> {
     let loaded = load(&format!("builtin:{scene}"), &LoadOptions::default()).map_err(|error| error.to_string())?;
     let setup = Setup::for_scene(&loaded);
     for frame in 0..FRAMES {
         let file = folder.join(setup_file(scene, frame));
         let text = at_frame(&setup, frame).to_toml();
-        // A file that stays as it is makes no new image.
+        // An unchanged file must not cause a new image.
         if std::fs::read_to_string(&file).is_ok_and(|old| old == text) {
             continue;
         }
@@ -36,7 +36,7 @@ pub fn write_setups(scene: &str, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Lines `OUTPUT: COMMAND` that render the frames and join them.
+/// Returns the commands that render the frames and join them, as lines `OUTPUT: COMMAND`.
 pub fn commands(scene: &str, technique: &str) -> Vec<String> {
     let image = image(scene);
     let frames: Vec<String> = (0..FRAMES).map(|frame| format!("{scene}-{frame}.frame.png")).collect();
@@ -51,7 +51,7 @@ fn setup_file(scene: &str, frame: u32) -> String {
     format!("{scene}-{frame}.toml")
 }
 
-/// The path is closed, so that the animation repeats without a jump.
+/// Returns the setup of a frame. The path is closed, so that the animation repeats without a jump.
 fn at_frame(setup: &Setup, frame: u32) -> Setup {
     let angle = SWING_DEGREES.to_radians() * (std::f32::consts::TAU * frame as f32 / FRAMES as f32).sin();
     let turn = Quat::from_rotation_y(angle);

@@ -1,9 +1,9 @@
-//! Writes the parts of the documentation that are made of the declarations of techniques and scenes: `cargo xtask docs`. With `site FOLDER
-//! WORK [REPOSITORY]`, the index and the gallery of the site, for `cargo xtask site`.
+//! Writes the parts of the documentation that are generated from the declarations of techniques and scenes: `cargo xtask docs`. With
+//! `site FOLDER WORK [REPOSITORY]`, writes the index and the gallery of the site, for `cargo xtask site`.
 //!
-//! Such a part stands between two comments of a page, of which the first says what it is made of. The text is committed, so that pages
-//! read where they lie. Tests here fail where it is not what the declarations say, and where a page does not hold together: a link
-//! that leads nowhere, a page that the summary lacks, a snippet that nothing compiles.
+//! A generated part is between two comments of a page, the first of which names its content. The text is committed, so that pages can be
+//! read in the repository. Tests here fail if it differs from the declarations, and if a page is inconsistent: a broken link, a page
+//! missing from the summary, a snippet that no compiled source contains.
 
 mod animation;
 mod generated;
@@ -36,7 +36,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Makes every page what the declarations say.
+/// Renews the generated parts of every page.
 fn write() -> Result<(), String> {
     let mut written = 0;
     let pages = pages();
@@ -52,7 +52,7 @@ fn write() -> Result<(), String> {
     Ok(())
 }
 
-/// The pages that may have such parts: the book and the README.
+/// Returns the pages that may contain such parts: the book and the README.
 fn pages() -> Vec<Page> {
     let mut pages = book_pages();
     pages.push(page("README.md"));

@@ -1,4 +1,4 @@
-//! The site's own pages around book and viewer: an index, and a gallery of every scene and technique.
+//! Pages of the site around book and viewer: an index, and a gallery of every scene and technique.
 
 use std::path::Path;
 
@@ -8,12 +8,12 @@ use antumbra_testing::book::root;
 
 use crate::animation;
 
-/// Technique of a scene's images: the library's default, or one that knows masked and translucent casters.
+/// Technique of a scene's images: the library's default, or one that supports alpha-tested and translucent casters.
 fn technique_of(scene: &BuiltinInfo) -> TechniqueKind {
     if scene.opaque { TechniqueKind::Smrt } else { TechniqueKind::MultiLayer }
 }
 
-/// An annular eclipse, as on the laboratory's reports.
+/// Icon: an annular eclipse, as on the laboratory's reports.
 const ICON: &str = "data:image/svg+xml,%3Csvg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 32 32'%3E\
     %3Ccircle cx='16' cy='16' r='14' fill='%23f0b35c'/%3E%3Ccircle cx='17' cy='15.4' r='10.6' fill='%231c1e22'/%3E%3C/svg%3E";
 
@@ -24,11 +24,11 @@ const FILES: [(&str, &str); 3] = [
     ("copy.js", "crates/antumbra-lab/src/report/copy.js"),
 ];
 
-/// Writes index and gallery into a folder, and files for the commands that make the gallery's images into the folder `work`. Returns these
+/// Writes index and gallery into a folder, and input files of the gallery's render commands into the folder `work`. Returns these
 /// commands, which run in `work`, as lines `OUTPUT: COMMAND`.
 ///
 /// # Errors
-/// Files that cannot be read or written.
+/// If a file cannot be read or written.
 pub fn write(folder: &Path, work: &Path, repository: Option<&str>) -> Result<String, String> {
     let pages = [("index.html", index(repository)), ("gallery.html", gallery())];
     for (name, text) in pages {
@@ -81,7 +81,7 @@ fn masthead(repository: Option<&str>) -> String {
     )
 }
 
-/// Command that renders the image of a scene.
+/// Returns the command that renders the image of a scene.
 fn command_of_scene(scene: &BuiltinInfo) -> String {
     format!(
         "antumbra render builtin:{} --technique {} --size 480x270 -o {0}.png",
@@ -90,7 +90,7 @@ fn command_of_scene(scene: &BuiltinInfo) -> String {
     )
 }
 
-/// Address at which the viewer opens a scene with a technique.
+/// Returns the address at which the viewer opens a scene with a technique.
 fn viewer(scene: &str, kind: TechniqueKind) -> String {
     format!("viewer/index.html?scene={scene}&amp;technique={}", kind.name())
 }
@@ -172,7 +172,7 @@ fn card(card: &Card<'_>) -> String {
     )
 }
 
-/// Commands, one on each line, whose lines wrap between words and not at hyphens.
+/// Returns commands, one per line, whose lines wrap between words and not at hyphens.
 fn copyable(commands: &str) -> String {
     let whole = |word| format!("<span>{}</span>", escape(word));
     let lines = commands.lines().map(|line| line.split(' ').map(whole).collect::<Vec<_>>().join(" "));
@@ -182,7 +182,7 @@ fn copyable(commands: &str) -> String {
     )
 }
 
-/// Text of a declaration as HTML: what is between backticks is code.
+/// Returns text of a declaration as HTML; text between backticks becomes code.
 fn inline(text: &str) -> String {
     let parts = escape(text);
     let parts = parts.split('`').enumerate();
@@ -193,7 +193,7 @@ fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Puts values in place of the `{{names}}` of a template.
+/// Replaces the `{{names}}` of a template by values.
 fn fill(template: &str, values: &[(&str, &str)]) -> String {
     values.iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("{{{{{name}}}}}"), value))
 }

@@ -1,4 +1,4 @@
-//! The pages hold together, and say what is so.
+//! Consistency of the pages, and of the pages with the declarations.
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -9,7 +9,7 @@ use antumbra_testing::book::{Page, blocks, book_pages, page, prose, root};
 
 use crate::generated::renewed;
 
-/// The pages beside the book whose links are held, too.
+/// Pages outside the book whose links are checked, too.
 const OTHERS: [&str; 8] = [
     "README.md",
     "ARCHITECTURE.md",
@@ -59,10 +59,10 @@ fn every_technique_is_on_each_page_once() {
     }
 }
 
-/// The text of a page without its blocks of code and spans of code, in which brackets are no links.
+/// Returns the text of a page without code blocks and code spans, in which brackets are not links.
 fn sentences(text: &str) -> String {
     let text = prose(text);
-    // What is behind the last lone backtick of a paragraph stays.
+    // The text after the last unpaired backtick of a paragraph stays.
     let paragraphs = text.split("\n\n").map(|paragraph| {
         let parts: Vec<_> = paragraph.split('`').collect();
         parts.iter().step_by(2).copied().collect::<Vec<_>>().join("code")
@@ -70,13 +70,13 @@ fn sentences(text: &str) -> String {
     paragraphs.collect::<Vec<_>>().join("\n\n")
 }
 
-/// The targets of a page's links and pictures.
+/// Returns the targets of a page's links and images.
 fn links(page: &Page) -> Vec<String> {
     let text = sentences(&page.text);
     text.split("](").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0.to_owned())).collect()
 }
 
-/// The anchors of a page's headings, as GitHub and mdBook make them.
+/// Returns the anchors of a page's headings, as GitHub and mdBook define them.
 fn anchors(text: &str) -> BTreeSet<String> {
     let mut is_code = false;
     let headings = text.lines().filter(|line| {
@@ -92,7 +92,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// `docs/a.md` and `../b.md` are `b.md`.
+/// Resolves a link relative to its page: `../b.md` in `docs/a.md` is `b.md`.
 fn joined(page: &str, target: &str) -> PathBuf {
     let mut path = Path::new(page).parent().unwrap_or(Path::new("")).to_owned();
     for part in Path::new(target).components() {
@@ -117,7 +117,7 @@ fn links_lead_somewhere() {
             let path = if target.is_empty() { PathBuf::from(&page.path) } else { joined(&page.path, target) };
             let file = root().join(&path);
             assert!(file.is_file(), "{}: {link} leads nowhere", page.path);
-            // The book is read without the repository around it, too.
+            // The book must also be readable without the repository around it.
             let is_within = !page.path.starts_with("docs/") || path.starts_with("docs");
             assert!(is_within, "{}: {link} leads out of the book: name the file instead", page.path);
             if !anchor.is_empty() {
@@ -162,14 +162,14 @@ fn every_picture_is_used() {
     }
 }
 
-/// Values of an attribute in HTML.
+/// Returns the values of an attribute in HTML.
 fn values<'a>(html: &'a str, attribute: &str) -> Vec<&'a str> {
     let begin = format!(" {attribute}=\"");
     html.split(begin.as_str()).skip(1).filter_map(|rest| Some(rest.split_once('"')?.0)).collect()
 }
 
-/// Asserts that an address of the site's own pages leads to a page or figure of the book, to the viewer with a scene and a technique that
-/// there are, to another own page, or to an image that a command makes.
+/// Asserts that an address of the site's own pages leads to a page or figure of the book, to the viewer with an existing scene and
+/// technique, to another own page, or to an image that a command creates.
 fn assert_leads_somewhere(address: &str, own: &str, commands: &str) {
     let (path, anchor) = address.split_once('#').unwrap_or((address, ""));
     if let Some(figure) = path.strip_prefix("book/figures/") {
@@ -214,7 +214,7 @@ fn the_sites_own_pages_hold_together() {
                 continue;
             }
             if address.contains("://") {
-                // Nothing is loaded from elsewhere.
+                // Pages load nothing from other hosts.
                 assert!(page.contains(&format!("<a href=\"{address}\"")), "{address}");
                 continue;
             }
@@ -227,7 +227,7 @@ fn the_sites_own_pages_hold_together() {
     assert_eq!(viewer.len(), builtin::NAMES.len() * TechniqueKind::ALL.len(), "every scene with every technique");
 }
 
-/// Code without comments and blanks at both ends of a line.
+/// Returns code lines without comments and surrounding blanks.
 fn code_lines<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     lines
         .map(|line| line.split(" //").next().unwrap_or(line).trim())
@@ -235,7 +235,7 @@ fn code_lines<'a>(lines: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
         .collect()
 }
 
-/// Every file with one of the endings under a folder.
+/// Collects all files under a folder that have one of the extensions.
 fn sources(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -247,7 +247,7 @@ fn sources(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Asserts that each snippet of a language stands, line by line, in a source file that is compiled; returns how many there are.
+/// Asserts that each snippet of a language occurs, line by line, in a compiled source file. Returns the number of snippets.
 fn compiled_snippets(language: &str, folders: &[&str], endings: &[&str]) -> usize {
     let mut files = Vec::new();
     for folder in folders {
@@ -274,21 +274,21 @@ fn rust_snippets_stand_in_what_is_compiled() {
     assert!(snippets >= 8, "{snippets}");
 }
 
-/// Shaders of the examples, which are in files of their own or in strings. The book's highlighter does not know WGSL and says so on the
-/// console, so that the blocks are plain text to it.
+/// Shaders of the examples, in their own files or in strings. The book's highlighter does not know WGSL and warns on the console, so the
+/// blocks are marked as plain text.
 #[test]
 fn wgsl_snippets_stand_in_a_shader_that_runs() {
     let snippets = compiled_snippets("text,wgsl", &["examples"], &["wgsl", "rs"]);
     assert!(snippets >= 2, "{snippets}");
 }
 
-/// Value of a key of a manifest, between quotes.
+/// Returns the quoted value of a key of a manifest.
 fn quoted<'a>(manifest: &'a str, key: &str) -> &'a str {
     let value = manifest.lines().find_map(|line| line.strip_prefix(key)?.trim_start().strip_prefix("= "));
     value.and_then(|value| value.split('"').nth(1)).unwrap_or_else(|| panic!("no `{key}` in quotes"))
 }
 
-/// The table of versions, the citation and each crate's address of documentation follow the manifests.
+/// The table of versions, the citation and each crate's documentation address follow the manifests.
 #[test]
 fn versions_are_those_of_the_manifests() {
     let read = |path: &str| std::fs::read_to_string(root().join(path)).unwrap();

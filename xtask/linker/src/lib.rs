@@ -1,8 +1,8 @@
 //! Links each WESL shader listed in `crates/antumbra/src/shaders.rs` to plain WGSL in `crates/antumbra/linked`:
 //! `cargo xtask shaders`.
 //!
-//! The linked text is committed and embedded as it is, so that whoever builds the library builds no linker. A test here
-//! fails where the text is not what the sources link to.
+//! The linked text is committed and embedded unchanged, so that building the library needs no linker. A test here fails if the text
+//! differs from what the sources link to.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -11,15 +11,15 @@ use std::path::{Path, PathBuf};
 use wesl::syntax::GlobalDeclaration;
 use wesl::{CompileResult, Mangler, ModulePath, SourceMap, Wesl};
 
-/// What relinks, for headers and messages.
+/// Command that relinks, for headers and messages.
 const COMMAND: &str = "cargo xtask shaders";
 
-/// An entry of the library's list.
+/// Entry of the library's list of shaders.
 #[derive(Debug)]
 pub struct Shader {
-    /// Path of the `.wesl` file under `src/`, without its ending.
+    /// Path of the `.wesl` file under `src/`, without extension.
     pub path: &'static str,
-    /// Features that its conditional parts are compiled for, joined by `+`; or none.
+    /// Features of its conditional parts, joined by `+`; empty without features.
     pub features: &'static str,
     /// Path of the linked text under `linked/`.
     pub file: &'static str,
@@ -30,7 +30,7 @@ macro_rules! shaders {
         $(#[doc = $doc:literal])* $(#[cfg($only:ident)])?
         $name:ident = $path:literal $(with $features:literal)?;
     )+) => {
-        /// The library's list.
+        /// Shaders of the library.
         pub const SHADERS: &[Shader] = &[$( Shader {
             path: $path,
             features: concat!($($features)?),
@@ -41,12 +41,12 @@ macro_rules! shaders {
 
 include!("../../../crates/antumbra/src/shaders.rs");
 
-/// The library's folder.
+/// Returns the library's folder.
 pub fn library() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra")
 }
 
-/// Makes `linked/` what the sources link to. Files that are so already are left alone, or cargo would build anew.
+/// Relinks all shaders into `linked/`. Unchanged files are not written, because cargo would rebuild.
 ///
 /// # Errors
 /// The first shader that does not link, or file that cannot be read or written.
@@ -75,15 +75,15 @@ pub fn relink(library: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Every shader's linked text, by its path under `linked/`.
+/// Returns every shader's linked text, by its path under `linked/`.
 fn link_all(sources: &Path) -> Result<BTreeMap<String, String>, String> {
     SHADERS.iter().map(|shader| Ok((shader.file.to_owned(), link(sources, shader)?))).collect()
 }
 
-/// A shader's text, linked from the modules under `sources`.
+/// Returns a shader's text, linked from the modules under `sources`.
 ///
 /// # Errors
-/// Why it does not link.
+/// The reason why it does not link.
 pub fn link(sources: &Path, shader: &Shader) -> Result<String, String> {
     let Shader { path, features, .. } = shader;
     let mut compiler = Wesl::new(sources);
@@ -104,8 +104,8 @@ pub fn link(sources: &Path, shader: &Shader) -> Result<String, String> {
     Ok(format!("// Linked from src/{path}.wesl{with} by `{COMMAND}`: edit that, not this.\n\n{linked}"))
 }
 
-/// Names what a shader imports by the file that has it and its own name there: `space_LightViewGpu`. Names with the whole path were
-/// two fifths of what browsers download of shaders.
+/// Mangler that names imported items by file and item: `space_LightViewGpu`. Names with the whole path took two fifths of the
+/// shader text that browsers download.
 struct ByFile;
 
 impl Mangler for ByFile {
@@ -114,7 +114,7 @@ impl Mangler for ByFile {
     }
 }
 
-/// A name that is declared twice.
+/// Returns the first name that is declared twice.
 fn first_twice(linked: &CompileResult) -> Option<String> {
     let mut names: Vec<String> =
         linked.syntax.global_declarations.iter().filter_map(|one| name_of(one.node())).collect();
@@ -122,7 +122,7 @@ fn first_twice(linked: &CompileResult) -> Option<String> {
     names.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0].clone())
 }
 
-/// What has no name has no module either.
+/// Returns the name of a declaration. Declarations without a name have no module either.
 fn name_of(declaration: &GlobalDeclaration) -> Option<String> {
     match declaration {
         GlobalDeclaration::Declaration(declaration) => Some(declaration.ident.to_string()),
@@ -133,21 +133,21 @@ fn name_of(declaration: &GlobalDeclaration) -> Option<String> {
     }
 }
 
-/// Orders the modules: the shader's own first, then by path, each in the order of its source. The linker appends them
-/// as it meets them from entry points in a hash set, in another order each time where there are several.
+/// Orders the modules: the shader's own first, then by path, each in the order of its source. The linker visits entry points in a hash
+/// set, so with several of them its order differs between runs.
 fn order(linked: &mut CompileResult) {
     let CompileResult { syntax, sourcemap, .. } = linked;
     syntax.global_directives.sort_by_cached_key(ToString::to_string);
     syntax.global_directives.dedup();
     syntax.global_declarations.sort_by_cached_key(|declaration| {
-        // Without a name: last, by their text.
+        // Declarations without a name come last, ordered by text.
         let Some(name) = name_of(declaration.node()) else { return (true, declaration.to_string()) };
-        // The shader's own names are left as they are, and so stand in no map.
+        // The shader's own names are not mangled and therefore not in the source map.
         (false, sourcemap.get_decl(&name).map_or_else(String::new, |(module, _)| module.to_string()))
     });
 }
 
-/// Every file in a folder and its folders, by its path with `/` between the parts.
+/// Returns the text of every file under a folder, by its path with `/` separators.
 fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, String> {
     let mut texts = BTreeMap::new();
     let mut folders = vec![String::new()];
@@ -164,7 +164,7 @@ fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, String> {
             if entry.file_type().map_err(unreadable)?.is_dir() {
                 folders.push(format!("{name}/"));
             } else {
-                // Lossy, so that a file of something else is told as one that does not belong here.
+                // Lossy, so that a binary file is reported as one that does not belong here.
                 let bytes = std::fs::read(entry.path()).map_err(unreadable)?;
                 texts.insert(name, String::from_utf8_lossy(&bytes).into_owned());
             }
@@ -173,7 +173,7 @@ fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, String> {
     Ok(texts)
 }
 
-/// One line for each file of `linked/` that is not what the sources link to.
+/// Returns one line for each file of `linked/` that differs from what the sources link to.
 #[cfg(test)]
 fn faults(linked: &BTreeMap<String, String>, committed: &BTreeMap<String, String>) -> Vec<String> {
     let fault = |file: &String, what: &str| format!("crates/antumbra/linked/{file} {what}: run `{COMMAND}`");
@@ -198,7 +198,7 @@ mod tests {
         assert!(faults.is_empty(), "{}", faults.join("\n"));
     }
 
-    /// An entry that overwrote another's file would leave one of the two with the wrong text.
+    /// Two entries with one file would leave one of them with the wrong text.
     #[test]
     fn each_shader_has_a_file_of_its_own() {
         let files: std::collections::BTreeSet<_> = SHADERS.iter().map(|shader| shader.file).collect();

@@ -1,4 +1,4 @@
-//! `cargo xtask shaders`: makes the library's linked shaders what their sources link to.
+//! `cargo xtask shaders`: relinks the library's shaders.
 
 use std::process::ExitCode;
 

@@ -1,5 +1,5 @@
-//! The shaders of the plugin for Bevy, and its patch of Bevy's own, as far as that needs no build of Bevy, which takes a quarter
-//! of an hour and a newer compiler: `cargo xtask bevy` does the rest.
+//! Tests of the Bevy plugin's shaders and of its patch of Bevy's shader that do not build Bevy, which takes a quarter of an hour and a
+//! newer compiler: `cargo xtask bevy` does the rest.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ fn plugin() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../bevy_antumbra")
 }
 
-/// Names the first fault of a shader.
+/// Parses and validates a shader; panics with its first fault.
 fn validate(name: &str, text: &str) -> naga::Module {
     let module =
         naga::front::wgsl::parse_str(text).unwrap_or_else(|fault| panic!("{name}: {}", fault.emit_to_string(text)));
@@ -46,7 +46,7 @@ fn the_plugins_own_shaders_are_valid() {
     }
 }
 
-/// What the patch uses of Bevy's, as far as it uses it.
+/// Declarations of Bevy that the patch uses.
 const BINDINGS: &str = "
 struct Light { flags: u32, shadow_depth_bias: f32 }
 struct Clustered { data: array<Light, 4> }
@@ -68,7 +68,7 @@ const TYPES: &str = "
 const POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT: u32 = 1u;
 const DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT: u32 = 2u;
 ";
-/// With the lines that are patched, in the order of Bevy's.
+/// Shader with the lines that are patched, in Bevy's order.
 const LIGHTING: &str = "
 import package::bindings as view_bindings;
 import package::types as mesh_view_types;
@@ -107,13 +107,13 @@ fn the_patch_links_in_every_way_that_bevy_compiles_its_shader() {
         let linked = compiler.compile(&lighting).unwrap_or_else(|fault| panic!("features {features:03b}: {fault}"));
         let text = linked.to_string();
         validate(&format!("features {features:03b}"), &text);
-        // With a prepass and arrays masks are read; else there is light.
+        // Masks are read with a prepass and array textures; otherwise everything is lit.
         let has_masks = features & 0b101 == 0b001;
         assert_eq!(text.contains("textureLoad"), has_masks, "features {features:03b}");
     }
 }
 
-/// The version of a package that the plugin is locked to.
+/// Returns the version of a package in the plugin's lock file.
 fn locked(package: &str) -> String {
     let lock = std::fs::read_to_string(plugin().join("Cargo.lock")).expect("the plugin's lock file");
     let after = lock.split(&format!("name = \"{package}\"\nversion = \"")).nth(1).expect("a locked package");

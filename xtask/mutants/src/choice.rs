@@ -1,12 +1,12 @@
-//! Which of the changes are made: a seed's, spread over all sources.
+//! Choice of mutants: random by seed, spread over all sources.
 
-/// A small generator of numbers that are the same on every machine (Steele, Lea and Flood 2014, "Fast splittable
-/// pseudorandom number generators", OOPSLA: SplitMix64).
+/// Random number generator with the same numbers on every machine (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number
+/// generators", OOPSLA: SplitMix64).
 struct Random(u64);
 
 impl Random {
-    /// That of a seed and a source, so that an edit of one source leaves the choice in all others as it was (the name is
-    /// taken in by Fowler, Noll and Vo's hash, FNV-1a).
+    /// Returns the generator of a seed and a source, so that an edit of one source leaves the choice in all others unchanged. The name is
+    /// hashed by Fowler, Noll and Vo's FNV-1a.
     fn of(seed: u64, source: &str) -> Self {
         Self(
             source.bytes().fold(seed ^ 0xcbf2_9ce4_8422_2325, |hash, byte| {
@@ -23,7 +23,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// An order of so many things.
+    /// Returns a random permutation of `count` items.
     fn order(&mut self, count: usize) -> Vec<usize> {
         let mut order: Vec<usize> = (0..count).collect();
         for i in (1..count).rev() {
@@ -33,8 +33,8 @@ impl Random {
     }
 }
 
-/// An order in which to take changes, as (source, change) by their places in their lists: every source's first before any
-/// second, then from each by the root of how many it has, so that a long one does not crowd out the short ones.
+/// Returns the order in which to take changes, as (source, change) indices: first one of every source, then in proportion to the square
+/// root of each source's number of changes, so that long sources do not crowd out short ones.
 pub fn order_of(seed: u64, changes_by_source: &[(&str, usize)]) -> Vec<(usize, usize)> {
     let mut ranked = Vec::new();
     for (source, (name, count)) in changes_by_source.iter().enumerate() {
@@ -64,7 +64,7 @@ mod tests {
         all.dedup();
         assert_eq!(all.len(), order.len(), "each once");
         assert_ne!(order, order_of(8, &sources));
-        // What is chosen of one does not depend on another.
+        // The choice in one source does not depend on another.
         let of_the_last = |sources: &[(&str, usize)]| -> Vec<usize> {
             order_of(7, sources).into_iter().filter(|(source, _)| *source == 3).map(|(_, change)| change).collect()
         };

@@ -1,4 +1,4 @@
-//! Which of the tests that could see a mutant are asked, in which order, and what they say.
+//! Tests of a mutant: which ones run, in which order, and their verdict.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
@@ -7,27 +7,27 @@ use std::time::{Duration, Instant};
 use crate::sources::Folder;
 use crate::suite::{Measured, Outcome, Suite, Test};
 
-/// A test may take this many times as long as when it passes, and [`SPARE`] more, before it is said to hang.
+/// Time limit of a test, as a multiple of its passing time, before [`SPARE`] is added. Beyond it the test counts as hanging.
 const PATIENCE: f64 = 8.0;
 
-/// What a busy machine may add.
+/// Additional time for a busy machine.
 const SPARE: Duration = Duration::from_secs(20);
 
-/// What the tests say of a mutant.
+/// Verdict of the tests on a mutant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// The test that failed, or ran on without an end.
+    /// The test that failed or exceeded its time limit.
     Killed { by: String, hangs: bool },
-    /// How many tests passed.
+    /// Number of tests that passed.
     Survived { asked: usize },
 }
 
-/// How often each test was asked and failed.
+/// Number of runs and failures of each test.
 #[derive(Default)]
 pub struct Record(Mutex<BTreeMap<String, (f64, f64)>>);
 
 impl Record {
-    /// Notes that a test was asked.
+    /// Records a run of a test.
     pub fn note(&self, test: &str, failed: bool) {
         let mut record = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (asked, kills) = record.entry(test.to_owned()).or_default();
@@ -35,7 +35,7 @@ impl Record {
         *kills += if failed { 1.0 } else { 0.0 };
     }
 
-    /// The chance that a test kills a mutant, to begin with `at_first`, for each of its seconds.
+    /// Returns the probability that a test kills a mutant, with the prior `at_first`, per second of its run time.
     fn worth(&self, test: &Test, seconds: f64, at_first: f64) -> f64 {
         let record = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (asked, kills) = record.get(&test.shown()).copied().unwrap_or_default();
@@ -43,8 +43,8 @@ impl Record {
     }
 }
 
-/// What is thought of a test that has not been asked yet: that of one beside the source, that uses little else than what
-/// is changed, or that holds whole masks against kept ones.
+/// Returns the prior of a test without runs. It is high for tests in the module of the source, for tests that use little else than the
+/// changed shaders, and for tests with golden masks.
 fn at_first(test: &Test, known: Option<&Measured>, source: &str, shaders: &BTreeSet<String>) -> f64 {
     if test.is_golden() {
         return 0.5;
@@ -56,17 +56,17 @@ fn at_first(test: &Test, known: Option<&Measured>, source: &str, shaders: &BTree
     beside.max(0.6 * alone)
 }
 
-/// What a test takes of which nothing is known yet, most of them.
+/// Assumed run time of an unmeasured test, seconds.
 const USUAL_S: f64 = 2.0;
 
-/// Of which nothing is known may take this long before it is put behind all others.
+/// Time limit of an unmeasured test, seconds, before it moves behind all others.
 const AT_FIRST_S: f64 = 20.0;
 
-/// Asks the tests, the most promising first, until one fails, or they have taken `seconds` in all. Which
-/// shaders a test uses is learnt when it is first asked.
+/// Runs the tests, the most promising first, until one fails or `seconds` have passed in total. The shaders that a test uses are recorded
+/// at its first run.
 ///
 /// # Errors
-/// Where a test program cannot be run, or a test fails with nothing changed.
+/// If a test program cannot be run, or a test fails without a change.
 pub fn judge(
     suite: &Suite,
     record: &Record,
@@ -100,7 +100,7 @@ pub fn judge(
             Duration::from_secs_f64(PATIENCE * known.seconds) + SPARE
         });
         let ran = suite.run(test, folder, true, limit)?;
-        // It may hang, or is just slow, which is likelier: those that are quick come first.
+        // The test may hang, but is more likely slow, so faster tests run first.
         if known.is_none() && ran.outcome == Outcome::TimedOut {
             suite.keep(test, Measured { seconds: 2.0 * AT_FIRST_S, shaders: ran.shaders })?;
             continue;
@@ -113,7 +113,7 @@ pub fn judge(
         if ran.outcome == Outcome::Passed {
             continue;
         }
-        // That a test fails says something only where it passes with nothing changed.
+        // A failure counts only if the test passes without the change.
         if known.is_none() {
             match suite.run(test, folder, false, limit)?.outcome {
                 Outcome::Passed => {}

@@ -1,10 +1,9 @@
-//! `cargo xtask mutants`: changes the library's shaders one operator, comparison or number at a time, and tells which
-//! changes no test notices.
+//! `cargo xtask mutants`: changes the library's shaders one operator, comparison or number at a time, and reports changes that
+//! no test detects.
 //!
-//! The tests are built once, with the library's feature `mutants`, by which they take shaders' texts from a folder when they
-//! run. Each run of a test tells which shaders it uses; a mutant is shown to those that use a shader that it changed, the most
-//! promising first, until one fails that passes with nothing changed. What was judged stands in
-//! `target/mutants/results.jsonl`, and is not judged again.
+//! The tests are built once, with the library's feature `mutants`, with which they read shader texts from a folder at run time. Each run
+//! of a test reports the shaders it uses. A mutant is tested by those that use a changed shader, the most promising first, until one
+//! fails that passes without the change. Verdicts are stored in `target/mutants/results.jsonl` and reused.
 
 mod choice;
 mod judge;
@@ -37,7 +36,7 @@ writes docs/mutants.md. A run that was ended is taken up where it was.
                     `xtask/mutants/reasons.toml` has no reason for.
 ";
 
-/// What the command line asks for.
+/// Options of the command line.
 #[derive(Debug, PartialEq)]
 struct Options {
     count: usize,
@@ -92,7 +91,7 @@ impl Options {
         Ok(options)
     }
 
-    /// What makes the same choice again.
+    /// Returns the command that reproduces the choice.
     fn command(&self) -> String {
         let only = if self.only.is_empty() { String::new() } else { format!(" --only {}", self.only) };
         format!("cargo xtask mutants --count {} --seed {}{only}", self.count, self.seed)

@@ -1,4 +1,4 @@
-//! Changes that are made each time, whatever the seed: `named.toml`.
+//! Changes that are made every time, whatever the seed: `named.toml`.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde::Deserialize;
 use crate::places::Change;
 use crate::sources::Sources;
 
-/// A change by its text, which stands once in its source.
+/// Change identified by its text, which must occur once in its source.
 #[derive(Debug, Deserialize)]
 pub struct Named {
     pub what: String,
@@ -21,10 +21,10 @@ struct List {
     change: Vec<Named>,
 }
 
-/// The list.
+/// Reads the list.
 ///
 /// # Errors
-/// Where it cannot be read.
+/// If it cannot be read.
 pub fn read(root: &Path) -> Result<Vec<Named>, String> {
     let path = root.join("xtask/mutants/named.toml");
     std::fs::read_to_string(&path)
@@ -35,10 +35,10 @@ pub fn read(root: &Path) -> Result<Vec<Named>, String> {
 }
 
 impl Named {
-    /// Where it is.
+    /// Returns the change, with its place in the source.
     ///
     /// # Errors
-    /// Where its text is not there, or more than once.
+    /// If its text does not occur, or more than once.
     pub fn change(&self, sources: &Sources) -> Result<Change, String> {
         let text = sources.texts.get(&self.file).map_or("", String::as_str);
         let found: Vec<usize> = text.match_indices(&self.from).map(|(at, _)| at).collect();

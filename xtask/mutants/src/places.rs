@@ -1,19 +1,19 @@
-//! Where a shader's source can be changed: its operators, comparisons and numbers, found in its syntax tree.
+//! Places where a shader's source can be changed: operators, comparisons and numbers, found in its syntax tree.
 //!
-//! - Arithmetic takes its opposite: + and −, · and /, also where it assigns; of logic `&&` and `||`; of bits `&` and `|`, `<<`
-//!   and `>>`.
-//! - A comparison becomes its negation. Its boundary (`<` for `<=`) changes one value of a float's billions, which no test
-//!   could be asked to hit, so that is changed in loops' conditions alone, which are of integers.
-//! - A number becomes 0, or twice itself; 0 becomes 1. Those of whole numbers that nothing is multiplied with are one more.
+//! - Arithmetic operators become their opposites: + and −, · and /, also in assignments; likewise `&&` and `||`, `&` and `|`,
+//!   `<<` and `>>`.
+//! - A comparison becomes its negation. Its boundary (`<` for `<=`) affects one of billions of float values, which no test
+//!   can be expected to hit. Therefore it changes only in loop conditions, which compare integers.
+//! - A float becomes 0 and twice itself; 0 becomes 1. An integer is increased by one.
 //!
-//! Attributes, types and the counts in names are left alone: they are the interface to Rust, which has tests of its own.
+//! Attributes, types and digits in names are left alone: they are the interface to Rust, which has its own tests.
 
 use wesl::syntax::{
     AssignmentOperator, BinaryOperator, CaseSelector, CompoundStatement, Expression, ExpressionNode, GlobalDeclaration,
     LiteralExpression, Statement, TranslationUnit,
 };
 
-/// A change to a source: the bytes from `start` to `end` become `to`.
+/// Change of a source: the bytes from `start` to `end` are replaced by `to`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
     pub start: usize,
@@ -21,10 +21,10 @@ pub struct Change {
     pub to: String,
 }
 
-/// Every change that can be made to a source, one of them at a time; some places have two.
+/// Returns every change of a source. They are made one at a time, and some places have two.
 ///
 /// # Errors
-/// Where the source is no WESL.
+/// If the source is not WESL.
 pub fn changes_of(source: &str) -> Result<Vec<Change>, String> {
     let tree: TranslationUnit = source.parse().map_err(|error| format!("{error}"))?;
     let mut places = Places { source, changes: Vec::new() };
@@ -119,7 +119,7 @@ impl Places<'_> {
         expressions.iter().for_each(|expression| self.expression(expression));
     }
 
-    /// As any expression, and the boundary of its comparison where it is one.
+    /// Visits a loop condition: as any expression, and also the boundary of its comparison, if it is one.
     fn loop_condition(&mut self, condition: &ExpressionNode) {
         if let Expression::Binary(binary) = condition.node() {
             let to = match binary.operator {
@@ -160,7 +160,7 @@ impl Places<'_> {
         }
     }
 
-    /// An operator, somewhere in the text between its operands.
+    /// Adds the change of an operator somewhere between its operands.
     fn operator(&mut self, between: std::ops::Range<usize>, from: &str, to: &str) {
         let found = self.source.get(between.clone()).and_then(|text| text.find(from));
         let Some(start) = found.map(|at| between.start + at) else { return };

@@ -1,4 +1,4 @@
-//! The last result, as a page: `docs/mutants.md`.
+//! Report of the last result: `docs/mutants.md`.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -9,7 +9,7 @@ use serde::Deserialize;
 use crate::results::{Fate, Mutant};
 use crate::sources::Sources;
 
-/// What follows this line of the page is of other programs, and kept.
+/// First line of the page's part that is written by other programs and kept.
 const REST: &str = "## Rust";
 
 /// Reasons why no test can detect a mutant: `reasons.toml`.
@@ -28,17 +28,17 @@ struct Reason {
     why: String,
 }
 
-/// What was asked for and came of it.
+/// Options and results of a run.
 pub struct Run<'a> {
     pub command: String,
     pub commit: String,
-    /// How long tests were asked about a mutant at most.
+    /// Time limit of the tests of a mutant, seconds.
     pub seconds: f64,
     pub sources: &'a Sources,
-    /// Those that compile, and the number of those that did not.
+    /// Mutants that compile, with their verdicts.
     pub judged: Vec<(&'a Mutant, &'a Fate)>,
     pub invalid: usize,
-    /// The named changes.
+    /// Named changes, with their verdicts; `None` if not run.
     pub named: Vec<(String, Option<Fate>)>,
 }
 
@@ -63,7 +63,7 @@ impl Reasons {
 /// Writes the page.
 ///
 /// # Errors
-/// Where the reasons cannot be read, or the page cannot be written.
+/// If the reasons cannot be read, or the page cannot be written.
 pub fn write(root: &Path, run: &Run<'_>) -> Result<(), String> {
     let path = root.join("docs/mutants.md");
     let before = std::fs::read_to_string(&path).unwrap_or_default();
@@ -73,10 +73,10 @@ pub fn write(root: &Path, run: &Run<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Says how many were killed.
+/// Prints the number of killed mutants.
 ///
 /// # Errors
-/// Where the reasons cannot be read, or have none for a survivor or a named change that is not killed.
+/// If the reasons cannot be read, or a survivor has none, or a named change is not killed.
 pub fn check(root: &Path, run: &Run<'_>) -> Result<(), String> {
     let killed = run.judged.iter().filter(|(_, fate)| is_killed(fate)).count();
     println!("{}: {killed} of {} killed", run.command, run.judged.len());
@@ -86,7 +86,7 @@ pub fn check(root: &Path, run: &Run<'_>) -> Result<(), String> {
     }
 }
 
-/// The survivors without a reason, and the named changes that no test notices.
+/// Returns the survivors without a reason, and the named changes that no test detects.
 fn unexplained(judged: &[(&Mutant, &Fate)], named: &[(String, Option<Fate>)], reasons: &Reasons) -> Vec<String> {
     let survivors = judged.iter().filter(|(mutant, fate)| !is_killed(fate) && reasons.of(mutant).is_none());
     let named = named.iter().filter(|(_, fate)| !fate.as_ref().is_some_and(is_killed));

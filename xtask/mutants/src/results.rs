@@ -1,4 +1,4 @@
-//! What became of each mutant, in a file that grows by a line for each, so that a run can be ended and taken up again.
+//! Verdicts of mutants, in a file that grows by a line per mutant, so that an interrupted run can be resumed.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::places::Change;
 
-/// A change in the words of a reader, and as what tells it from others: it stays the same while other lines move.
+/// Readable description of a change, and its key: it stays the same while other lines move.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Mutant {
     /// Path of the source under `src/`.
     pub file: String,
-    /// The line, without the space before it.
+    /// Text of the line, without indentation.
     pub text: String,
-    /// From 1, in the line without that space; which of the same lines it is, from 0.
+    /// Column in that text, from 1; and the number of earlier lines with the same text.
     pub column: usize,
     pub repeat: usize,
     pub from: String,
@@ -38,28 +38,28 @@ impl Mutant {
         }
     }
 
-    /// Its line today, from 1; `None` where it is gone.
+    /// Returns its line in the current source, from 1; `None` if it is gone.
     pub fn line_in(&self, source: &str) -> Option<usize> {
         let same = source.lines().enumerate().filter(|(_, line)| line.trim() == self.text);
         same.map(|(at, _)| at + 1).nth(self.repeat)
     }
 }
 
-/// What became of it.
+/// Verdict on a mutant.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fate {
-    /// It does not compile, or no shader is another by it.
+    /// It does not compile, or no shader changes. Contains the reason.
     Invalid(String),
-    /// By this test.
+    /// Killed by this test.
     Killed(String),
-    /// This test ran on, and was ended.
+    /// This test exceeded its time limit.
     Hangs(String),
-    /// So many tests passed.
+    /// Survived this number of tests.
     Survived(usize),
 }
 
-/// A line of the file.
+/// Line of the file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Entry {
     pub mutant: Mutant,
@@ -67,17 +67,17 @@ pub struct Entry {
     pub seconds: f64,
 }
 
-/// The file.
+/// File of verdicts.
 pub struct Results {
     path: PathBuf,
     pub entries: Vec<Entry>,
 }
 
 impl Results {
-    /// What is there from earlier runs; of a mutant that was judged again, the last.
+    /// Reads the results of earlier runs. If a mutant was judged again, the last verdict counts.
     ///
     /// # Errors
-    /// Where a line is none of ours.
+    /// If a line is invalid.
     pub fn read(path: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(path).unwrap_or_default();
         let lines = text.lines().map(serde_json::from_str::<Entry>).collect::<Result<Vec<_>, _>>();
@@ -96,10 +96,10 @@ impl Results {
         self.entries.push(entry);
     }
 
-    /// Adds to the file.
+    /// Adds a line to the file.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn add(&mut self, entry: Entry) -> Result<(), String> {
         let line = serde_json::to_string(&entry).expect("plain data");
         std::fs::OpenOptions::new()

@@ -1,4 +1,4 @@
-//! The run: named changes, then the seed's, by one worker or several, until there are as many as asked for.
+//! Run of mutation tests: named changes, then the seed's, by one worker or several, until the requested number is reached.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -16,25 +16,25 @@ use crate::results::{Entry, Fate, Mutant, Results};
 use crate::sources::{Folder, Made, Sources};
 use crate::suite::Suite;
 
-/// The workspace's root.
+/// Returns the workspace's root.
 pub fn root() -> PathBuf {
     let own = Path::new(env!("CARGO_MANIFEST_DIR"));
     own.ancestors().nth(2).expect("xtask/mutants").to_owned()
 }
 
-/// A change that may be made.
+/// Change that may be made.
 #[derive(Debug)]
 struct Candidate {
     mutant: Mutant,
     change: Change,
-    /// Whether it is one of the named.
+    /// Whether it is one of the named changes.
     is_named: bool,
 }
 
-/// Judges as many mutants as asked for, and writes the page or checks that there is a reason for each that survives.
+/// Judges the requested number of mutants, and writes the page or checks that there is a reason for each survivor.
 ///
 /// # Errors
-/// Where tests do not build or fail with nothing changed, files cannot be read or written, or a check finds a survivor without a reason.
+/// If tests do not build or fail without a change, files cannot be read or written, or a check finds a survivor without a reason.
 pub fn run(options: &Options) -> Result<(), String> {
     let root = root();
     let store = root.join(if options.check { "target/mutants/check" } else { "target/mutants" });
@@ -59,7 +59,7 @@ pub fn run(options: &Options) -> Result<(), String> {
     if options.check { report::check(&root, &outcome) } else { report::write(&root, &outcome) }
 }
 
-/// The named changes, then all others of the sources asked for in the seed's order.
+/// Returns the named changes, then all others of the requested sources in the seed's order.
 fn candidates(options: &Options, sources: &Sources, root: &Path) -> Result<Vec<Candidate>, String> {
     let mut candidates = Vec::new();
     for named in named::read(root)? {
@@ -91,11 +91,11 @@ struct Work<'a> {
 
 struct State {
     results: Results,
-    /// The next candidate to look at.
+    /// Index of the next candidate.
     next: usize,
-    /// Those taken that are mutants, or may be: no more than were asked for.
+    /// Number of candidates taken that are mutants, or may be; at most the requested number.
     taken: usize,
-    /// Judged in this run, and since when.
+    /// Number judged in this run, and its start.
     judged: usize,
     begun: Instant,
 }
@@ -147,7 +147,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// The next that is to be judged. Those judged before count where they are mutants.
+    /// Returns the next candidate to judge. Mutants judged in earlier runs count towards the requested number.
     fn take(&self) -> Option<&Candidate> {
         let mut state = self.state();
         loop {
@@ -174,7 +174,7 @@ impl Work<'_> {
             Made::Shaders(shaders) => shaders,
         };
         folder.put(&shaders)?;
-        // The named are known to be hard to notice.
+        // The named changes are known to be hard to detect, so their tests get more time.
         let seconds = if candidate.is_named { 20.0 } else { 1.0 } * self.options.seconds;
         let names: BTreeSet<String> = shaders.into_keys().collect();
         Ok(match judge(suite, record, folder, file, &names, seconds)? {
@@ -201,7 +201,7 @@ impl Work<'_> {
     }
 }
 
-/// What was asked for and came of it.
+/// Returns the options and results of a run.
 fn outcome<'a>(
     options: &Options,
     root: &Path,

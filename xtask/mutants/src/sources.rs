@@ -1,4 +1,4 @@
-//! The library's shader sources, what each shader is linked of, and what becomes of the shaders when a source is changed.
+//! Shader sources of the library, the sources that each shader is linked from, and the shaders that result from a change.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -8,21 +8,21 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use crate::places::Change;
 
-/// Every `.wesl` file of the library.
+/// All `.wesl` files of the library.
 pub struct Sources {
     /// Text by path under `src/`.
     pub texts: BTreeMap<String, String>,
-    /// Linked text of each shader as it stands, by its place in [`SHADERS`].
+    /// Current linked text of each shader, by its index in [`SHADERS`].
     linked: Vec<String>,
-    /// The sources that each shader is linked of.
+    /// Sources that each shader is linked from.
     parts: Vec<BTreeSet<String>>,
 }
 
-/// What a change makes of the shaders.
+/// Effect of a change on the shaders.
 pub enum Made {
-    /// New texts, by the library's names for changed shaders: see [`changed_name`].
+    /// New texts, by the library's names of the changed shaders: see [`changed_name`].
     Shaders(BTreeMap<String, String>),
-    /// Not a mutant: one of the shaders does not compile, or none is another.
+    /// Not a mutant: one of the shaders does not compile, or none changes.
     Nothing(&'static str),
 }
 
@@ -51,10 +51,10 @@ impl Sources {
         Ok(Self { texts, linked, parts })
     }
 
-    /// Applies a change to a source, in a folder of one's own that has all sources, and links what depends on it.
+    /// Applies a change to a source in a separate folder with all sources, and links the shaders that depend on it.
     ///
     /// # Errors
-    /// Where the folder cannot be written.
+    /// If the folder cannot be written.
     pub fn make(&self, folder: &Folder, file: &str, change: &Change) -> Result<Made, String> {
         let mut text = self.texts[file].clone();
         text.replace_range(change.start..change.end, &change.to);
@@ -80,7 +80,7 @@ impl Sources {
     }
 }
 
-/// A worker's folder: all sources, the shaders that differ, and notes on which a test used.
+/// Folder of a worker: all sources, the changed shaders, and notes of the shaders that a test used.
 pub struct Folder {
     sources: PathBuf,
     pub changed: PathBuf,
@@ -89,7 +89,7 @@ pub struct Folder {
 
 impl Folder {
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn new(path: &Path, sources: &Sources) -> Result<Self, String> {
         let folder = Self { sources: path.join("src"), changed: path.join("changed"), seen: path.join("seen") };
         sources.texts.iter().try_for_each(|(file, text)| folder.write(file, text))?;
@@ -100,34 +100,34 @@ impl Folder {
         write(&self.sources.join(file), text)
     }
 
-    /// Forgets which shaders were used.
+    /// Removes the notes of used shaders.
     ///
     /// # Errors
-    /// Where the notes cannot be removed.
+    /// If the notes cannot be removed.
     pub fn clear_seen(&self) -> Result<(), String> {
         empty(&self.seen)
     }
 
-    /// Which were used since: the library's notes have `=` for `/`.
+    /// Returns the shaders used since [`Self::clear_seen`]. The library's notes have `=` for `/`.
     ///
     /// # Errors
-    /// Where the notes cannot be read.
+    /// If the notes cannot be read.
     pub fn shaders_seen(&self) -> Result<BTreeSet<String>, String> {
         let notes = std::fs::read_dir(&self.seen).map_err(|error| format!("{}: {error}", self.seen.display()))?;
         Ok(notes.filter_map(Result::ok).map(|note| note.file_name().to_string_lossy().replace('=', "/")).collect())
     }
 
-    /// Puts changed shaders where the tests look for them, in place of those of before.
+    /// Writes changed shaders where the tests look for them, in place of the previous ones.
     ///
     /// # Errors
-    /// Where they cannot be written.
+    /// If they cannot be written.
     pub fn put(&self, shaders: &BTreeMap<String, String>) -> Result<(), String> {
         empty(&self.changed)?;
         shaders.iter().try_for_each(|(name, text)| write(&self.changed.join(name), text))
     }
 }
 
-/// Makes a folder that has nothing in it.
+/// Creates an empty folder, or empties it.
 fn empty(folder: &Path) -> Result<(), String> {
     let unable = |error| format!("{}: {error}", folder.display());
     if folder.exists() {
@@ -136,10 +136,10 @@ fn empty(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(unable)
 }
 
-/// Writes a file, and its folder where that is missing.
+/// Writes a file, and creates its folder if missing.
 ///
 /// # Errors
-/// Where it cannot.
+/// If it cannot be written.
 pub fn write(path: &Path, text: &str) -> Result<(), String> {
     path.parent()
         .map_or(Ok(()), std::fs::create_dir_all)
@@ -147,12 +147,12 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
         .map_err(|error| format!("{}: cannot write it: {error}", path.display()))
 }
 
-/// What the library's feature `mutants` calls a shader (`gpu/mutants.rs`): its path, its features.
+/// Returns the name of a shader in the library's feature `mutants` (`gpu/mutants.rs`): its path and its features.
 pub fn changed_name(shader: &Shader) -> String {
     shader.file.strip_prefix("test/").unwrap_or(shader.file).to_owned()
 }
 
-/// A source and all that it imports, by the paths after `package::`.
+/// Returns a source and everything that it imports, by the paths after `package::`.
 fn parts_of(texts: &BTreeMap<String, String>, file: &str) -> BTreeSet<String> {
     let mut parts = BTreeSet::new();
     let mut open = vec![file.to_owned()];
@@ -168,7 +168,7 @@ fn parts_of(texts: &BTreeMap<String, String>, file: &str) -> BTreeSet<String> {
     parts
 }
 
-/// Whether a shader compiles as the library's have to: by WebGPU's own rules.
+/// Whether a shader compiles by WebGPU's own rules, as the library's must.
 fn is_valid(wgsl: &str) -> bool {
     let core = Capabilities::SHADER_FLOAT16_IN_FLOAT32;
     naga::front::wgsl::parse_str(wgsl)
@@ -179,7 +179,7 @@ fn is_valid(wgsl: &str) -> bool {
 mod tests {
     use super::*;
 
-    /// A shader's linked text has names of every module that it is linked of, and of no other.
+    /// A shader's parts are its source and all direct and indirect imports, and no others.
     #[test]
     fn parts_are_what_is_imported_and_what_that_imports() {
         let text = |text: &str| text.to_owned();

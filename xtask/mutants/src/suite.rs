@@ -1,4 +1,4 @@
-//! The tests, built once: which there are, and of those that were asked how long each takes and which shaders it uses.
+//! The tests, built once: their list, and the run time and used shaders of those that ran.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -10,47 +10,47 @@ use serde::{Deserialize, Serialize};
 
 use crate::sources::{Folder, write};
 
-/// The laboratory's tests of whole techniques, and those among them that are asked always.
+/// Test program of whole techniques in the laboratory, and the module of its tests that always run.
 const TECHNIQUES: &str = "techniques";
 const GOLDEN: &str = "golden::";
 
-/// One test of one test program.
+/// Test of a test program.
 #[derive(Clone, Debug)]
 pub struct Test {
-    /// The package's name and the program's, without the number that cargo gives it.
+    /// Names of the package and the program, without the number that cargo adds.
     program: String,
     pub name: String,
 }
 
 impl Test {
-    /// Whether it holds a technique's masks against kept ones.
+    /// Whether it compares a technique's masks with golden masks.
     pub fn is_golden(&self) -> bool {
         self.program.ends_with(TECHNIQUES) && self.name.starts_with(GOLDEN)
     }
 
-    /// As reports name it.
+    /// Returns its name in reports.
     pub fn shown(&self) -> String {
         format!("{} {}", self.program, self.name)
     }
 }
 
-/// What a test does when it passes.
+/// Measurements of a passing test.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Measured {
     pub seconds: f64,
-    /// Shaders that it asks for, as the library's feature `mutants` calls them.
+    /// Shaders that it requests, by their names in the library's feature `mutants`.
     pub shaders: BTreeSet<String>,
 }
 
-/// A built test program.
+/// Built test program.
 #[derive(Clone, Debug)]
 struct Program {
     path: PathBuf,
-    /// Where cargo runs it.
+    /// Folder in which cargo runs it.
     folder: PathBuf,
 }
 
-/// What became of a run.
+/// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     Passed,
@@ -58,30 +58,30 @@ pub enum Outcome {
     TimedOut,
 }
 
-/// A run of a test.
+/// Run of a test.
 #[derive(Debug)]
 pub struct Ran {
     pub outcome: Outcome,
-    /// What it used, until it ended.
+    /// Shaders that it used until it ended.
     pub shaders: BTreeSet<String>,
 }
 
-/// All tests, and what is known of them.
+/// All tests, and their measurements.
 pub struct Suite {
     programs: BTreeMap<String, Program>,
     pub tests: Vec<Test>,
-    /// By the tests' names as reports have them.
+    /// Measurements, by the tests' names in reports.
     measured: Mutex<BTreeMap<String, Measured>>,
-    /// Where that is kept.
+    /// Folder of the stored measurements.
     store: PathBuf,
 }
 
 impl Suite {
-    /// Builds the test programs; of the laboratory's that compare whole techniques with the truth, which take long, those that hold
-    /// masks against kept ones, and all where asked for.
+    /// Builds the test programs. Of the laboratory's slow tests of whole techniques it includes those with golden masks, and all if
+    /// `is_wide`.
     ///
     /// # Errors
-    /// Where they do not build, or what is known of them cannot be read.
+    /// If they do not build, or the measurements cannot be read.
     pub fn new(root: &Path, store: &Path, is_wide: bool) -> Result<Self, String> {
         let file = store.join("tests.json");
         let measured = match std::fs::read_to_string(&file) {
@@ -101,12 +101,12 @@ impl Suite {
         self.measured.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What is known of a test.
+    /// Returns the measurements of a test, if there are any.
     pub fn known(&self, test: &Test) -> Option<Measured> {
         self.measured().get(&test.shown()).cloned()
     }
 
-    /// Every test of every program, not run yet.
+    /// Lists every test of every program, without running it.
     fn listed(&self) -> Result<Vec<Test>, String> {
         let mut tests = Vec::new();
         for (program, built) in &self.programs {
@@ -124,11 +124,11 @@ impl Suite {
         Ok(tests)
     }
 
-    /// Runs the tests of golden masks with nothing changed, of which nothing is known yet: whole techniques use many shaders, and
-    /// notice most of what is changed in them, so that it pays to know which.
+    /// Runs unmeasured tests with golden masks without a change: whole techniques use many shaders and detect most changes of them, so
+    /// their shaders must be known first.
     ///
     /// # Errors
-    /// Where a program cannot be run, or a test fails.
+    /// If a program cannot be run, or a test fails.
     pub fn learn(&self, folder: &Folder) -> Result<(), String> {
         let is_new = |test: &&Test| test.is_golden() && self.known(test).is_none();
         for test in self.tests.iter().filter(is_new) {
@@ -139,10 +139,10 @@ impl Suite {
         Ok(())
     }
 
-    /// Keeps what a run of a test has told.
+    /// Stores the measurements of a test.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If they cannot be written.
     pub fn keep(&self, test: &Test, found: Measured) -> Result<(), String> {
         let mut measured = self.measured();
         measured.insert(test.shown(), found);
@@ -150,11 +150,11 @@ impl Suite {
         write(&self.store.join("tests.json"), &text)
     }
 
-    /// Runs a test with shaders changed as in a folder, or with nothing changed, and tells which it used. What is learnt of
-    /// a test that passes is kept.
+    /// Runs a test with the changed shaders of a folder, or without a change, and returns the shaders that it used. Stores the
+    /// measurements of a test that passes.
     ///
     /// # Errors
-    /// Where its program cannot be run.
+    /// If its program cannot be run.
     pub fn run(&self, test: &Test, folder: &Folder, is_changed: bool, limit: Duration) -> Result<Ran, String> {
         let program = &self.programs[&test.program];
         let unable = |error: std::io::Error| format!("{}: {error}", program.path.display());
@@ -165,7 +165,7 @@ impl Suite {
         if is_changed {
             command.env("ANTUMBRA_MUTANTS_CHANGED", &folder.changed);
         }
-        // Where there is no adapter nothing would be noticed.
+        // Without an adapter, tests would be skipped and detect nothing.
         command.env("ANTUMBRA_REQUIRE_ADAPTER", "1").stdout(Stdio::null()).stderr(Stdio::null());
         let begun = Instant::now();
         let outcome = end_of(&mut command, limit).map_err(unable)?;
@@ -177,7 +177,7 @@ impl Suite {
     }
 }
 
-/// Runs a command, and ends it where it takes longer than the limit.
+/// Runs a command, and kills it at the time limit.
 fn end_of(command: &mut Command, limit: Duration) -> std::io::Result<Outcome> {
     let mut child = command.spawn()?;
     let begun = Instant::now();
@@ -218,7 +218,7 @@ fn build(root: &Path, is_wide: bool) -> Result<BTreeMap<String, Program>, String
         let folder = Path::new(manifest).parent().expect("a file's").to_owned();
         let package = folder.file_name().expect("a package's folder").to_string_lossy().into_owned();
         let target = message["target"]["name"].as_str().unwrap_or_default();
-        // A package's own tests are those of its library, which has its name.
+        // The program of a package's own tests has the library's name, which is the package's.
         let program = if target.replace('_', "-") == package { package } else { format!("{package} {target}") };
         programs.insert(program, Program { path: path.into(), folder });
     }

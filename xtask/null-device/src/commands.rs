@@ -1,4 +1,4 @@
-//! Commands, which are recorded nowhere. For counts of a frame's commands, a line of each is printed to standard error.
+//! Commands, which are not recorded. To count a frame's commands, each prints a line to standard error.
 
 use std::sync::OnceLock;
 
@@ -6,7 +6,7 @@ use ash::vk;
 
 use crate::{Function, does_nothing, erased};
 
-/// The variable that has commands printed.
+/// Environment variable that enables printing.
 const VARIABLE: &str = "ANTUMBRA_NULL_DEVICE_COMMANDS";
 
 fn print(command: &str) {
@@ -21,10 +21,10 @@ pub fn print_submission() {
     print("submit");
 }
 
-/// Functions that print a word and do nothing.
+/// Defines functions that print a word and do nothing else.
 macro_rules! printed {
     ($($word:ident: $($name:literal)|+,)*) => {
-        /// Replacement of a command that is counted.
+        /// Returns the replacement of a counted command.
         fn counted(name: &[u8]) -> Option<Function> {
             match name {
                 $($($name)|+ => {
@@ -50,7 +50,7 @@ printed! {
     timestamp: b"vkCmdWriteTimestamp" | b"vkCmdWriteTimestamp2",
 }
 
-/// Replacement of a function of command buffers.
+/// Returns the replacement of a function of command buffers.
 pub fn replaced(name: &[u8]) -> Option<Function> {
     let is_of_buffers = matches!(
         name,
@@ -80,7 +80,7 @@ unsafe extern "system" fn pipeline_barrier(
     images: u32,
     _: *const vk::ImageMemoryBarrier<'_>,
 ) {
-    // One of nothing orders stages alone.
+    // A barrier without memory, buffers and images orders only stages.
     if memory + buffers + images > 0 {
         print("barrier");
     }

@@ -1,11 +1,10 @@
 //! Vulkan driver that wraps Mesa's RADV on its null device, for `cargo xtask gpu-cost`.
 //!
-//! With `RADV_FORCE_FAMILY=navi21`, RADV makes a device of that family without hardware: its compiler is the real one, but it has no
-//! memory types, no queue that ever finishes, and images that it cannot lay out. wgpu asks for all three before the first pipeline.
-//! This driver answers those questions itself and leaves everything else, pipelines above all, to the wrapped one. Nothing is drawn
-//! or computed.
+//! With `RADV_FORCE_FAMILY=navi21`, RADV creates a device of that family without hardware. Its compiler is the real one, but it has no
+//! memory types, its queues never finish, and it cannot lay out images. wgpu requires all three before the first pipeline. This driver
+//! implements them itself and forwards everything else, above all pipelines, to the wrapped driver. Nothing is drawn or computed.
 //!
-//! The Vulkan loader loads it by a manifest that names it; [`DRIVER`] names the wrapped one.
+//! The Vulkan loader finds it by a manifest; [`DRIVER`] names the wrapped driver.
 //! Specification: Khronos Group, Architecture of the Vulkan Loader Interfaces, "LoaderDriverInterface".
 
 #![allow(unsafe_code)]
@@ -20,10 +19,10 @@ use std::sync::OnceLock;
 use ash::vk;
 use libloading::Library;
 
-/// The variable with the path of the wrapped driver's library.
+/// Environment variable with the path of the wrapped driver's library.
 const DRIVER: &str = "ANTUMBRA_NULL_DEVICE_DRIVER";
 
-/// Any function of Vulkan, as it is looked up.
+/// Untyped Vulkan function.
 type Function = unsafe extern "system" fn();
 type Lookup<Handle> = unsafe extern "system" fn(Handle, *const c_char) -> Option<Function>;
 type Negotiate = unsafe extern "system" fn(*mut u32) -> vk::Result;
@@ -38,11 +37,11 @@ struct Wrapped {
 
 impl Wrapped {
     /// # Panics
-    /// Where there is no such driver: Vulkan has no other way to say which.
+    /// If there is no such driver, because Vulkan cannot report which one is missing.
     fn load() -> Self {
         let path = std::env::var_os(DRIVER).unwrap_or_else(|| panic!("{DRIVER} names no driver"));
-        // SAFETY: a driver's library may be loaded by anyone; its functions have these types by the loader's specification. It
-        // stays loaded as long as the process.
+        // SAFETY: loading a driver's library has no conditions; its functions have these types by the loader's specification. It
+        // stays loaded for the whole process.
         unsafe {
             let library = Library::new(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
             let library: &'static Library = Box::leak(Box::new(library));
@@ -65,10 +64,10 @@ fn wrapped() -> &'static Wrapped {
     WRAPPED.get_or_init(Wrapped::load)
 }
 
-/// Agrees on a version of the interface between loader and driver.
+/// Negotiates a version of the interface between loader and driver.
 ///
 /// # Safety
-/// By the loader alone.
+/// Only for the loader.
 #[unsafe(no_mangle)]
 pub unsafe extern "system" fn vk_icdNegotiateLoaderICDInterfaceVersion(version: *mut u32) -> vk::Result {
     // SAFETY: by the caller.
@@ -97,7 +96,7 @@ pub unsafe extern "system" fn vk_icdGetInstanceProcAddr(
     }
 }
 
-/// Looks up a function of a physical device, which a loader may not know that is older than the wrapped driver.
+/// Looks up a function of a physical device that is unknown to a loader older than the wrapped driver.
 ///
 /// # Safety
 /// As [`vk_icdGetInstanceProcAddr`].
@@ -126,27 +125,27 @@ unsafe extern "system" fn device_function(device: vk::Device, name: *const c_cha
     }
 }
 
-/// Replacement of a device's function, if it has one.
+/// Returns the replacement of a device's function, if it has one.
 fn replaced(name: &[u8], real: Function) -> Option<Function> {
     queue::replaced(name).or_else(|| memory::replaced(name, real)).or_else(|| commands::replaced(name))
 }
 
-/// A function that does nothing, in place of those that return nothing or a result. The calling convention lets any arguments pass.
+/// Does nothing, in place of functions that return nothing or a result. The calling convention accepts any arguments.
 unsafe extern "system" fn nothing() -> vk::Result {
     vk::Result::SUCCESS
 }
 
-/// A function without its type.
+/// Erases the type of a function.
 macro_rules! erased {
     ($function:expr, $type:ty) => {{
         let function: $type = $function;
-        // SAFETY: a pointer to a function, which callers give its type again by its name.
+        // SAFETY: a function pointer, whose type callers restore by its name.
         Some(unsafe { std::mem::transmute::<$type, $crate::Function>(function) })
     }};
 }
 pub(crate) use erased;
 
-/// [`nothing`] without its type.
+/// Returns [`nothing`] with its type erased.
 fn does_nothing() -> Option<Function> {
     erased!(nothing, unsafe extern "system" fn() -> vk::Result)
 }

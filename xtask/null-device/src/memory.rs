@@ -7,7 +7,7 @@ use ash::vk;
 
 use crate::{Function, does_nothing, erased};
 
-/// Types of memory; the wrapped driver takes all of it from the processor's.
+/// Memory types; the wrapped driver allocates all of them from the processor's memory.
 const TYPES: [vk::MemoryPropertyFlags; 3] = [
     vk::MemoryPropertyFlags::DEVICE_LOCAL,
     vk::MemoryPropertyFlags::from_raw(
@@ -27,7 +27,7 @@ static PROPERTIES_2: OnceLock<vk::PFN_vkGetPhysicalDeviceMemoryProperties2> = On
 static BUFFER_NEEDS: OnceLock<vk::PFN_vkGetBufferMemoryRequirements> = OnceLock::new();
 static BUFFER_NEEDS_2: OnceLock<vk::PFN_vkGetBufferMemoryRequirements2> = OnceLock::new();
 
-/// Replacement of an instance's function.
+/// Returns the replacement of an instance's function.
 pub fn of_instance(name: &[u8], real: Function) -> Option<Function> {
     match name {
         b"vkGetPhysicalDeviceMemoryProperties" => {
@@ -44,7 +44,7 @@ pub fn of_instance(name: &[u8], real: Function) -> Option<Function> {
     }
 }
 
-/// Replacement of a device's function.
+/// Returns the replacement of a device's function.
 pub fn replaced(name: &[u8], real: Function) -> Option<Function> {
     match name {
         b"vkGetBufferMemoryRequirements" => {
@@ -73,7 +73,7 @@ pub fn replaced(name: &[u8], real: Function) -> Option<Function> {
     }
 }
 
-/// Memory types for a device that has none of its own.
+/// Adds memory types to a device without any.
 fn complete(properties: &mut vk::PhysicalDeviceMemoryProperties) {
     if properties.memory_type_count > 0 {
         return;
@@ -131,7 +131,7 @@ fn allow_all_types(needs: &mut vk::MemoryRequirements) {
     }
 }
 
-/// Requirements of an image that is never laid out: any that can be met.
+/// Requirements of an image that is never laid out: arbitrary, but satisfiable.
 const IMAGE_NEEDS: vk::MemoryRequirements =
     vk::MemoryRequirements { size: 1 << 16, alignment: 1 << 12, memory_type_bits: ALL_TYPES };
 
@@ -149,7 +149,7 @@ unsafe extern "system" fn image_needs_2(
     unsafe { (*needs).memory_requirements = IMAGE_NEEDS };
 }
 
-/// A function that makes an object which is a handle and nothing else.
+/// Defines a function that creates an object consisting of a handle only.
 macro_rules! creates_handle {
     ($name:ident, $info:ty, $handle:ty) => {
         unsafe extern "system" fn $name(

@@ -1,10 +1,10 @@
-//! Queues whose work is done as soon as it is submitted. A semaphore is the number that submissions raised it to.
+//! Queues that complete work at submission. A semaphore is a counter that submissions raise.
 
 use ash::vk::{self, Handle};
 
 use crate::{Function, does_nothing, erased};
 
-/// Replacement of a function of queues, semaphores and fences.
+/// Returns the replacement of a function of queues, semaphores and fences.
 pub fn replaced(name: &[u8]) -> Option<Function> {
     match name {
         b"vkCreateSemaphore" => erased!(create_semaphore, vk::PFN_vkCreateSemaphore),
@@ -42,7 +42,7 @@ unsafe extern "system" fn create_semaphore(
     vk::Result::SUCCESS
 }
 
-/// A semaphore's value.
+/// Returns a pointer to a semaphore's value.
 fn value_of(semaphore: vk::Semaphore) -> *mut u64 {
     semaphore.as_raw() as *mut u64
 }
@@ -81,7 +81,7 @@ unsafe extern "system" fn submit(
                 let values = &*extension.cast::<vk::TimelineSemaphoreSubmitInfo<'_>>();
                 let semaphores = slice(submit.p_signal_semaphores, submit.signal_semaphore_count);
                 let values = slice(values.p_signal_semaphore_values, values.signal_semaphore_value_count);
-                // A binary semaphore has zero in its place.
+                // A binary semaphore has the value zero.
                 for (&semaphore, &value) in semaphores.iter().zip(values).filter(|(_, value)| **value > 0) {
                     *value_of(semaphore) = value;
                 }
@@ -91,16 +91,16 @@ unsafe extern "system" fn submit(
     vk::Result::SUCCESS
 }
 
-/// Array of Vulkan's; its pointer may be null where it is empty.
+/// Returns a Vulkan array as a slice; its pointer may be null if it is empty.
 unsafe fn slice<'a, T>(first: *const T, count: u32) -> &'a [T] {
     // SAFETY: by the caller.
     if count == 0 { &[] } else { unsafe { std::slice::from_raw_parts(first, count as usize) } }
 }
 
-/// Structures of a `pNext` chain.
+/// Returns the structures of a `pNext` chain.
 unsafe fn extensions(first: *const std::ffi::c_void) -> impl Iterator<Item = *const vk::BaseInStructure<'static>> {
     let link = |at: *const vk::BaseInStructure<'static>| (!at.is_null()).then_some(at);
-    // SAFETY: by the caller, who passes a chain as Vulkan has them.
+    // SAFETY: by the caller, who passes a valid Vulkan chain.
     std::iter::successors(link(first.cast()), move |at| link(unsafe { (**at).p_next }))
 }
 

@@ -1,8 +1,8 @@
-//! Descriptions of every shader module, layout and pipeline as JSON, for the page in `page/`, which makes them in a browser:
+//! Descriptions of every shader module, layout and pipeline as JSON, for the page in `page/`, which creates them in a browser:
 //! the native half of `cargo xtask web --shaders` and `--pipelines`.
 //!
-//! A pipeline is described as it is given to wgpu, so nothing has to be kept beside the code. Linked shaders of which no pipeline
-//! is made here are described as modules, and named.
+//! The descriptors passed to wgpu are recorded, so no list has to be maintained. Linked shaders without a pipeline are described as
+//! modules, and reported.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,10 +10,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::description::{Entry, Programs};
 use crate::device;
 
-/// Writes all to a file; the number of modules and of pipelines.
+/// Writes all descriptions to a file. Returns the number of modules and of pipelines.
 ///
 /// # Errors
-/// What is refused, or cannot be read or written.
+/// If something is rejected, or a file cannot be read or written.
 pub fn write(file: &Path) -> Result<[usize; 2], String> {
     let programs = Arc::new(Mutex::new(Programs::default()));
     let kept = programs.clone();
@@ -26,10 +26,10 @@ pub fn write(file: &Path) -> Result<[usize; 2], String> {
     Ok(counts)
 }
 
-/// Adds the linked shaders that no pipeline was made of, and names them.
+/// Adds the linked shaders without a pipeline, and reports them.
 ///
 /// # Errors
-/// Where one cannot be read.
+/// If one cannot be read.
 fn add_linked(programs: &mut Programs, folder: &Path) -> Result<(), String> {
     let mut missing = Vec::new();
     for file in linked_files(folder)? {
@@ -49,15 +49,15 @@ fn add_linked(programs: &mut Programs, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// The folder of linked shaders.
+/// Returns the folder of linked shaders.
 pub fn linked_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra/linked")
 }
 
-/// Linked shaders, but for those of tests.
+/// Returns the linked shaders, except those of tests.
 ///
 /// # Errors
-/// Where a folder cannot be read.
+/// If a folder cannot be read.
 pub fn linked_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let mut files = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -77,7 +77,7 @@ pub fn linked_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// Stage and name of each entry point of a linked shader.
+/// Returns stage and name of each entry point of a linked shader.
 fn entry_points(wgsl: &str) -> Vec<(&str, &str)> {
     let mut entries = Vec::new();
     for stage in ["compute", "vertex", "fragment"] {

@@ -1,11 +1,11 @@
-//! Programs as WebGPU's JavaScript describes them.
+//! Descriptions of programs for WebGPU's JavaScript API.
 
 use std::collections::HashMap;
 
 use antumbra::programs::Made;
 use serde_json::{Map, Value, json};
 
-/// What was made, each thing once. Modules and layouts are told by their places in these lists.
+/// Everything that was created, without duplicates. Modules and layouts are referred to by their indices in these lists.
 #[derive(Debug, Default)]
 pub struct Programs {
     modules: Listed<wgpu::ShaderModule>,
@@ -14,11 +14,11 @@ pub struct Programs {
     pipelines: Listed<()>,
 }
 
-/// Descriptions, and which of them a thing has: several things may have the same.
+/// Distinct descriptions, and the index of each object's description. Several objects can share one.
 #[derive(Debug)]
 struct Listed<T> {
     descriptions: Vec<Value>,
-    /// By the description's text.
+    /// Indices by the description's text.
     known: HashMap<String, usize>,
     things: HashMap<T, usize>,
 }
@@ -43,25 +43,25 @@ impl<T: Clone + Eq + std::hash::Hash> Listed<T> {
     }
 
     /// # Panics
-    /// Where the thing was not made by us.
+    /// If the object was not recorded.
     fn place_of(&self, thing: &T) -> usize {
         *self.things.get(thing).expect("made by `antumbra::programs` as all is that a pipeline is made of")
     }
 }
 
-/// An entry point of a module.
+/// Entry point of a module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry<'a> {
-    /// The module's place.
+    /// Index of the module.
     pub module: usize,
     /// `compute`, `vertex` or `fragment`.
     pub stage: &'a str,
-    /// Its name; `None` where it is the only one of its stage.
+    /// Name; `None` if it is the only entry point of its stage.
     pub name: Option<&'a str>,
 }
 
 impl Programs {
-    /// Takes down what was made.
+    /// Records a created object.
     pub fn add(&mut self, made: Made<'_>) {
         match made {
             Made::Module(module, label, wgsl) => self.modules.add(module, &json!({ "code": wgsl }), label),
@@ -87,24 +87,24 @@ impl Programs {
         }
     }
 
-    /// A module that no pipeline is made of, as far as is known.
+    /// Adds a module without a known pipeline.
     pub fn add_module(&mut self, label: &str, wgsl: &str) {
         if self.place_of_text(wgsl).is_none() {
             self.modules.descriptions.push(json!({ "label": label, "code": wgsl }));
         }
     }
 
-    /// Where the module of a text is.
+    /// Returns the index of the module with a text.
     pub fn place_of_text(&self, wgsl: &str) -> Option<usize> {
         self.modules.descriptions.iter().position(|module| module["code"] == wgsl)
     }
 
-    /// How many modules and pipelines there are.
+    /// Returns the number of modules and of pipelines.
     pub fn counts(&self) -> [usize; 2] {
         [self.modules.descriptions.len(), self.pipelines.descriptions.len()]
     }
 
-    /// Whether a pipeline is made of an entry point.
+    /// Whether a pipeline uses an entry point.
     pub fn has_pipeline_of(&self, entry: Entry<'_>) -> bool {
         self.pipelines.descriptions.iter().any(|pipeline| {
             let stage = &pipeline[entry.stage];
@@ -113,7 +113,7 @@ impl Programs {
         })
     }
 
-    /// All of it.
+    /// Returns all descriptions.
     pub fn into_json(self) -> Value {
         json!({
             "modules": self.modules.descriptions,
@@ -269,7 +269,7 @@ fn bind_group_layout_entry(entry: &wgpu::BindGroupLayoutEntry) -> Value {
     what
 }
 
-/// `D2Array` is `2d-array`.
+/// Returns the JavaScript name of a dimension: `2d-array` for `D2Array`.
 fn dimension_name(dimension: wgpu::TextureViewDimension) -> String {
     let name = kebab(dimension);
     match name.strip_prefix('d') {
@@ -278,7 +278,7 @@ fn dimension_name(dimension: wgpu::TextureViewDimension) -> String {
     }
 }
 
-/// `Rgba8UnormSrgb` is `rgba8unorm-srgb`, `Depth32Float` is `depth32float`.
+/// Returns the JavaScript name of a format: `rgba8unorm-srgb` for `Rgba8UnormSrgb`, `depth32float` for `Depth32Float`.
 fn format_name(format: wgpu::TextureFormat) -> String {
     let name = name(format);
     ["srgb", "stencil8"].iter().fold(name, |name, end| match name.strip_suffix(end) {
@@ -287,12 +287,12 @@ fn format_name(format: wgpu::TextureFormat) -> String {
     })
 }
 
-/// `Float32x3` is `float32x3`.
+/// Returns the name in lower case: `float32x3` for `Float32x3`.
 fn name(of: impl std::fmt::Debug) -> String {
     format!("{of:?}").to_lowercase()
 }
 
-/// `OneMinusSrcAlpha` is `one-minus-src-alpha`.
+/// Returns the name in kebab case: `one-minus-src-alpha` for `OneMinusSrcAlpha`.
 fn kebab(of: impl std::fmt::Debug) -> String {
     let mut name = String::new();
     for letter in format!("{of:?}").chars() {

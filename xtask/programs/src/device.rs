@@ -1,28 +1,28 @@
-//! Devices that pipelines are made on, within WebGPU's default limits.
+//! Devices that pipelines are created on, within WebGPU's default limits.
 
 use antumbra::Gpu;
 
 use crate::makings::{self, Extent};
 
-/// Every optional feature that the library's pipelines depend on.
+/// All optional features that the library's pipelines depend on.
 pub const FEATURES: wgpu::Features = wgpu::Features::DEPTH_CLIP_CONTROL.union(wgpu::Features::TIMESTAMP_QUERY);
 
-/// Features and extents by which every program is made: hosts have light maps that clip depths, or do not.
+/// Features and extents that together cover all programs: devices whose light maps can disable depth clipping, and others.
 const VARIANTS: [(wgpu::Features, Extent); 2] =
     [(FEATURES, Extent::Parameters), (wgpu::Features::empty(), Extent::Qualities)];
 
-/// Makes every program of every variant on wgpu's own device.
+/// Creates every program of every variant on wgpu's no-op device.
 ///
 /// # Errors
-/// The first thing that is refused that should not be.
+/// The first unexpected rejection.
 pub fn make_all_variants() -> Result<(), String> {
     VARIANTS.into_iter().try_for_each(|(features, extent)| makings::make_all(&no_op(features)?, extent))
 }
 
-/// wgpu's own device that does nothing, with these features: all is validated and nothing compiled.
+/// Creates wgpu's no-op device with these features. It validates everything and compiles nothing.
 ///
 /// # Errors
-/// What wgpu says.
+/// The error of wgpu.
 pub fn no_op(features: wgpu::Features) -> Result<Gpu, String> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::NOOP;
@@ -30,14 +30,14 @@ pub fn no_op(features: wgpu::Features) -> Result<Gpu, String> {
     device(descriptor, features).map(|(gpu, _)| gpu)
 }
 
-/// The first device of Vulkan, and its adapter.
+/// Creates a device on the first Vulkan adapter.
 ///
 /// # Errors
-/// What wgpu says.
+/// The error of wgpu.
 pub fn vulkan(features: wgpu::Features) -> Result<(Gpu, wgpu::AdapterInfo), String> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::VULKAN;
-    // No validation layer and no names of objects: this driver makes pipelines alone.
+    // No validation layer and no object names, because this driver only creates pipelines.
     descriptor.flags = wgpu::InstanceFlags::empty();
     device(descriptor, features)
 }

@@ -1,5 +1,5 @@
-//! Every pipeline of library, renderer and viewer, made on devices that draw nothing: what `cargo xtask web --shaders`,
-//! `portability` and `gpu-cost` know of them.
+//! Creates every pipeline of library, renderer and viewer on devices that draw nothing, for `cargo xtask web --shaders`,
+//! `portability` and `gpu-cost`.
 
 mod costs;
 mod describe;
@@ -13,7 +13,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// For xtask, which is the only one to run it.
+/// Usage, for xtask, the only caller.
 const USAGE: &str = "\
 antumbra-programs describe FILE
 antumbra-programs portability FOLDER [--dxc LIBRARY] [--spirv-val PROGRAM] [--only TEXT]
@@ -68,10 +68,10 @@ fn run(words: &[OsString]) -> Result<(), String> {
     }
 }
 
-/// The values of options, each given once at most.
+/// Returns the values of options, each given at most once.
 ///
 /// # Errors
-/// Where there is another word.
+/// If there is another word.
 fn options<const N: usize>(words: &[OsString], names: [&str; N]) -> Result<[Option<OsString>; N], String> {
     let mut values = [const { None }; N];
     let mut words = words.iter();

@@ -1,4 +1,4 @@
-//! Makes every program on a device, as hosts, renderer and viewer do; draws nothing.
+//! Creates every program on a device, as hosts, renderer and viewer do; draws nothing.
 
 use antumbra::contract::{ParamSpec, ParamValue};
 use antumbra::light::{Light, LightShape};
@@ -13,24 +13,24 @@ use antumbra_scene::{LoadOptions, Setup, load};
 use antumbra_viewer::renderer::{Compile, Renderer};
 use glam::{Mat4, UVec2, Vec2, Vec3};
 
-/// Opaque casters, casters with holes, tinted casters.
+/// Scenes with opaque, alpha-tested and tinted casters.
 const SCENES: [&str; 3] = ["builtin:overlap", "builtin:fence-alpha", "builtin:stained-glass"];
 
-/// How much of what parameters make is made.
+/// Extent of the parameter variants to create.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Extent {
-    /// The default quality.
+    /// Default quality only.
     Default,
     /// Every quality.
     Qualities,
-    /// And every choice, switch and number.
+    /// Every quality, and every choice, switch and number.
     Parameters,
 }
 
-/// Makes all.
+/// Creates all programs.
 ///
 /// # Errors
-/// The first thing that is refused that should not be.
+/// The first unexpected rejection.
 pub fn make_all(gpu: &Gpu, extent: Extent) -> Result<(), String> {
     for &kind in TechniqueKind::ALL {
         make_technique(gpu, kind, extent)?;
@@ -42,10 +42,10 @@ pub fn make_all(gpu: &Gpu, extent: Extent) -> Result<(), String> {
     make_renderer(gpu)
 }
 
-/// Makes what a technique draws with.
+/// Creates the programs of a technique.
 ///
 /// # Errors
-/// The first thing that is refused that should not be.
+/// The first unexpected rejection.
 pub fn make_technique(gpu: &Gpu, kind: TechniqueKind, extent: Extent) -> Result<(), String> {
     for settings in settings_of(kind, extent) {
         let words = || settings.iter().map(|(key, value)| format!(" {key}={value}")).collect::<String>();
@@ -56,7 +56,7 @@ pub fn make_technique(gpu: &Gpu, kind: TechniqueKind, extent: Extent) -> Result<
 
 type Settings = Vec<(&'static str, String)>;
 
-/// Each quality; and from the lowest, each choice and switch turned and each number at both ends.
+/// Returns each quality; and for the lowest, each choice and switch changed and each number at both ends of its range.
 fn settings_of(kind: TechniqueKind, extent: Extent) -> Vec<Settings> {
     let of_quality =
         |quality| kind.quality_settings(quality).into_iter().map(|(key, value)| (key, value.to_string())).collect();
@@ -70,8 +70,6 @@ fn settings_of(kind: TechniqueKind, extent: Extent) -> Vec<Settings> {
             for spec in kind.param_specs() {
                 all.extend(others(spec).into_iter().map(|value| with(&base, spec.key, value)));
             }
-        }
-        if quality == Quality::Fast && extent == Extent::Parameters {
             let of_kind = TOGETHER.iter().filter(|(of, _)| *of == kind.name());
             all.extend(of_kind.map(|(_, pair)| {
                 pair.iter().fold(base.clone(), |settings, (key, value)| with(&settings, key, (*value).to_owned()))
@@ -82,38 +80,38 @@ fn settings_of(kind: TechniqueKind, extent: Extent) -> Vec<Settings> {
     all
 }
 
-/// Parameters that have programs of their own where they are turned together.
+/// Parameters that have their own programs if changed together.
 const TOGETHER: [(&str, [(&str, &str); 2]); 3] = [
     ("essm", [("table", "float"), ("scan", "doubling")]),
     ("essm", [("table", "float"), ("sub", "true")]),
     ("vsm", [("resolve", "exact"), ("msaa", "4")]),
 ];
 
-/// Settings with one more, in place of an earlier value.
+/// Returns settings with one value added or replaced.
 fn with(base: &Settings, key: &'static str, value: String) -> Settings {
     let mut settings: Settings = base.iter().filter(|(known, _)| *known != key).cloned().collect();
     if (key, value.as_str()) == ("placement", "manual") {
-        // It asks for places, in metres from the light.
+        // Manual placement needs the depths of the splits, metres from the light.
         settings.push(("split_depths", "2, 3, 4".into()));
     }
     settings.push((key, value));
     settings
 }
 
-/// What is a count alone, for which no program is made: many of it would take long.
+/// Counts that affect no program; large ones would take long.
 const COUNTS: [&str; 3] = ["samples", "search_samples", "seed"];
 
-/// Sizes of maps, for which no program is made, and what they are here: no adapter holds the largest of some.
+/// Map sizes, which affect no program, and their value here: no adapter supports the largest.
 const SIZES: [&str; 2] = ["map_size", "view_size"];
 const SMALL_TEXELS: &str = "64";
 
-/// Every choice, and both ends of a range: programs are made for some numbers.
+/// Returns every choice, and both ends of a range, because some numbers affect programs.
 fn others(spec: &ParamSpec) -> Vec<String> {
     match spec.default {
         _ if SIZES.contains(&spec.key) || COUNTS.contains(&spec.key) => Vec::new(),
         ParamValue::Bool(_) => vec!["true".into(), "false".into()],
         ParamValue::Choice(_) => {
-            // Browsers have maps of one sample and of four.
+            // Browsers support maps with one sample and with four.
             let is_everywhere = |choice: &&&str| spec.key != "msaa" || matches!(**choice, "1" | "4");
             spec.choices.iter().filter(is_everywhere).map(|choice| (*choice).to_owned()).collect()
         }
@@ -124,13 +122,13 @@ fn others(spec: &ParamSpec) -> Vec<String> {
     }
 }
 
-/// What a technique compiles before its first frame, denoised or not.
+/// Compiles a technique's programs before its first frame, with and without denoising.
 fn make(gpu: &Gpu, kind: TechniqueKind, settings: &Settings) -> Result<(), String> {
     let mut shadow = kind.create(gpu).map_err(|error| error.to_string())?;
     let sizes = kind.param_specs().iter().map(|spec| spec.key).filter(|key| SIZES.contains(key));
     let small: Settings = sizes.map(|key| (key, SMALL_TEXELS.to_owned())).collect();
     for (key, value) in settings.iter().chain(&small) {
-        // A number's least or most is refused beside some others, and then it is not what one can draw with.
+        // The ends of a number's range are invalid together with some other values; such settings cannot draw.
         if shadow.set(key, value).is_err() {
             return Ok(());
         }
@@ -138,13 +136,13 @@ fn make(gpu: &Gpu, kind: TechniqueKind, settings: &Settings) -> Result<(), Strin
     shadow.set_denoise(Some(Denoise::default()));
     shadow.set_half_resolution(true);
     match shadow.warm_up(WarmUp::default()) {
-        // Maps that no browser can hold.
+        // Maps that exceed every browser's limits.
         Err(Error::Unsupported { .. }) | Ok(()) => Ok(()),
         Err(error) => Err(error.to_string()),
     }
 }
 
-/// What hosts bring in other forms than the renderer here does.
+/// Host inputs in forms that the renderer here does not use.
 struct Hosts<'a> {
     gpu: &'a Gpu,
     light: Light,
@@ -170,7 +168,7 @@ impl<'a> Hosts<'a> {
         Receivers::new(&self.depth, Self::SIZE_PX, camera).with_bounds(bounds)
     }
 
-    /// A map that the host has drawn, for techniques that take one.
+    /// Creates the programs of techniques that accept a depth map drawn by the host.
     fn make_maps_of_hosts(&self) -> Result<(), Error> {
         let back = -self.light.frame().axis;
         let view_from_world =
@@ -193,7 +191,7 @@ impl<'a> Hosts<'a> {
         Ok(())
     }
 
-    /// Masks of every format.
+    /// Creates the programs of masks of every format.
     fn make_masks(&self) -> Result<(), Error> {
         for format in Mask::FORMATS {
             for channels in [MaskChannels::One, MaskChannels::Three] {
@@ -210,7 +208,7 @@ impl<'a> Hosts<'a> {
         Ok(())
     }
 
-    /// Receivers of four samples a pixel.
+    /// Creates the programs of receivers with four samples per pixel.
     fn make_split_receivers(&self) -> Result<(), Error> {
         let depth = texture(self.gpu, wgpu::TextureFormat::Depth32Float, 4);
         let normals = [None, Some(wgpu::TextureFormat::Rgba8Unorm), Some(wgpu::TextureFormat::Rgba16Float)]
@@ -218,7 +216,7 @@ impl<'a> Hosts<'a> {
         for normals in &normals {
             let mut receivers = self.receivers().with_normals(normals.as_ref());
             receivers.depth = &depth;
-            // Never submitted.
+            // The commands are never submitted.
             let mut encoder = self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
             SplitReceivers::new(self.gpu).record(&mut Recorder::new(&mut encoder, None), &receivers)?;
         }
@@ -241,7 +239,7 @@ fn texture(gpu: &Gpu, format: wgpu::TextureFormat, sample_count: u32) -> wgpu::T
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Receivers, shading, and what the viewer shows of masks, maps and lists.
+/// Creates the programs of receivers, shading, and the viewer's displays of masks, maps and lists.
 fn make_renderer(gpu: &Gpu) -> Result<(), String> {
     drop(Renderer::new(gpu, Compile::AtOnce));
     let (receivers, programs) = (ReceiverPass::new(gpu), ShadingPrograms::new(gpu.device()));

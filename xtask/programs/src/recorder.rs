@@ -1,4 +1,4 @@
-//! Pipelines as they are made: their programs, and what else a driver's code for them depends on.
+//! Recorder of pipelines: their programs, and the state that a driver's code for them depends on.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use antumbra::programs::Made;
 use naga::ShaderStage;
 
-/// A pipeline.
+/// Pipeline with its programs and state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pipeline {
     pub label: String,
@@ -16,15 +16,15 @@ pub struct Pipeline {
     pub state: String,
 }
 
-/// One stage of a pipeline.
+/// Stage of a pipeline.
 #[derive(Clone, PartialEq)]
 pub struct Program {
     pub stage: ShaderStage,
-    /// Name of its module's text: the label that it first had, with a number where others had that label before.
+    /// Name of its module's text: the first label, with a number if earlier texts had the same label.
     pub module: String,
     pub wgsl: Arc<str>,
     pub entry: String,
-    /// Override constants, as they are given to wgpu.
+    /// Override constants, as passed to wgpu.
     pub constants: Vec<(String, f64)>,
 }
 
@@ -35,34 +35,34 @@ impl fmt::Debug for Program {
 }
 
 impl Program {
-    /// Override constants as text: `0=1 USES_TABLE=0`.
+    /// Returns the override constants as text: `0=1 USES_TABLE=0`.
     pub fn constants_text(&self) -> String {
         let constants = self.constants.iter().map(|(name, value)| format!("{name}={value}"));
         constants.collect::<Vec<_>>().join(" ")
     }
 }
 
-/// `compute`, `vertex`, `fragment`.
+/// Returns the name of a stage: `compute`, `vertex` or `fragment`.
 pub fn stage_name(stage: ShaderStage) -> String {
     format!("{stage:?}").to_lowercase()
 }
 
-/// Modules made so far.
+/// Modules created so far.
 #[derive(Debug, Default)]
 pub struct Recorder {
-    /// Name and text.
+    /// Name and text of each module.
     modules: HashMap<wgpu::ShaderModule, (String, Arc<str>)>,
-    /// Names, by text: techniques that share one give it labels of their own.
+    /// Name of each text. Techniques that share a text label it differently.
     names: HashMap<Arc<str>, String>,
-    /// How many texts have a label.
+    /// Number of texts per label.
     counts: HashMap<String, usize>,
 }
 
 impl Recorder {
-    /// Remembers modules, and returns pipelines.
+    /// Records a module, or returns a pipeline.
     ///
     /// # Panics
-    /// For a pipeline whose module was not recorded: all are made by `antumbra::programs`.
+    /// For a pipeline whose module was not recorded: `antumbra::programs` creates all of them.
     pub fn record(&mut self, made: &Made<'_>) -> Option<Pipeline> {
         match made {
             Made::Module(module, label, wgsl) => {
@@ -132,13 +132,13 @@ impl Recorder {
     }
 }
 
-/// The pipelines that `make` makes; to be called once in a process.
+/// Returns the pipelines that `make` creates. May be called once per process.
 ///
 /// # Errors
-/// What `make` says.
+/// The errors of `make`.
 ///
 /// # Panics
-/// Where there is a listener already: a process has one.
+/// If there is already a listener, because a process can have only one.
 pub fn pipelines_made(make: impl FnOnce() -> Result<(), String>) -> Result<Vec<Pipeline>, String> {
     let made: Arc<Mutex<(Recorder, Vec<Pipeline>)>> = Arc::default();
     let kept = made.clone();
@@ -154,7 +154,7 @@ fn label_of(label: Option<&str>) -> String {
     label.unwrap_or_default().to_owned()
 }
 
-/// The name of a text's only entry point of a stage, which a pipeline need not name.
+/// Returns the name of a text's only entry point of a stage, which a pipeline may omit.
 fn only_entry(wgsl: &str, stage: ShaderStage) -> String {
     let module = naga::front::wgsl::parse_str(wgsl).expect("wgpu has parsed it");
     let entry = module.entry_points.into_iter().find(|entry| entry.stage == stage);
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
     use crate::device;
 
-    /// A pipeline of each module that is made of a text.
+    /// Creates a module and a pipeline of each text and returns the recorded pipelines.
     fn recorded(texts: &[(&str, &str)]) -> Vec<Pipeline> {
         let make = || {
             make_pipelines(&device::no_op(wgpu::Features::empty())?, texts);

@@ -1,18 +1,18 @@
-//! The site in a headless browser, served below a path. A page of ours (`xtask/site/crawl.js`) opens every page in a frame and posts
-//! the faults that it finds: links and anchors that lead nowhere, images without a text, pages wider than a small screen, late images.
+//! The site in a headless browser, served below a path. A crawler page (`xtask/site/crawl.js`) opens every page in a frame and posts the
+//! faults that it finds: broken links and anchors, images without a text, pages wider than a small screen, late images.
 
 use std::path::Path;
 use std::time::Duration;
 
 use crate::web::browser::{self, Patience};
 
-/// Folder of the page that crawls, below the root of the workspace.
+/// Folder of the crawler page, below the root of the workspace.
 const CRAWLER: &str = "xtask/site";
 
 /// Path below which the site is served: not the root, so that absolute links fail.
 const PATH: &str = "some/path/";
 
-/// Software compiles the viewer's shaders slowly.
+/// Time limits. A software adapter compiles the viewer's shaders slowly.
 const PATIENCE: Patience = Patience { silence: Duration::from_secs(400), all: Duration::from_secs(1800) };
 
 /// Crawls the site, if there is a browser or one can be installed.

@@ -1,5 +1,5 @@
-//! `cargo xtask site`: index, gallery, book and viewer as one folder of static files. Every link in it is relative, so that it can be
-//! served below any path.
+//! `cargo xtask site`: builds index, gallery, book and viewer as one folder of static files. All links are relative, so it can be served
+//! below any path.
 
 mod check;
 
@@ -21,10 +21,10 @@ struct Options {
     is_served: bool,
 }
 
-/// Builds the site; checks or serves it if an option says so.
+/// Builds the site; checks or serves it if an option requests it.
 ///
 /// # Errors
-/// What does not build, and faults that the check finds.
+/// A part that does not build, or faults that the check finds.
 pub fn run(arguments: &[String]) -> Result<(), String> {
     let options = parse(arguments)?;
     let folder = options.folder.unwrap_or_else(|| crate::root().join("target/site"));
@@ -56,7 +56,7 @@ fn build(folder: &Path) -> Result<(), String> {
     for needed in [&images, &work] {
         std::fs::create_dir_all(needed).map_err(|error| format!("{}: {error}", needed.display()))?;
     }
-    // A browser resolves relative paths from the site; the programs below run elsewhere.
+    // A browser resolves relative paths from the site; the programs below run in another folder.
     let folder = folder.canonicalize().map_err(|error| format!("{}: {error}", folder.display()))?;
     book::build(&folder.join("book"), Some(&crate::root().join("xtask/book/site/theme")))?;
     let mut pages = book::generator()?;
@@ -71,7 +71,7 @@ fn build(folder: &Path) -> Result<(), String> {
     link_home(&viewer.join("index.html"))
 }
 
-/// Makes the name in the viewer's masthead a link to the index of the site.
+/// Turns the name in the viewer's masthead into a link to the index of the site.
 fn link_home(page: &Path) -> Result<(), String> {
     const NAME: &str = "<div class=\"brand\">Antumbra</div>";
     const LINK: &str = "<div class=\"brand\"><a href=\"../index.html\">Antumbra</a></div>";
@@ -84,7 +84,7 @@ fn link_home(page: &Path) -> Result<(), String> {
     std::fs::write(page, linked).map_err(failed)
 }
 
-/// Address of the repository, from the workspace's manifest.
+/// Returns the address of the repository, from the workspace's manifest.
 fn repository() -> Result<Option<String>, String> {
     let manifest = crate::root().join("Cargo.toml");
     let text = std::fs::read_to_string(&manifest).map_err(|error| format!("{}: {error}", manifest.display()))?;
@@ -92,8 +92,8 @@ fn repository() -> Result<Option<String>, String> {
     Ok(value.map(str::to_owned))
 }
 
-/// Runs the gallery's commands, lines `OUTPUT: COMMAND`, in the folder `work`, and copies what they make for the gallery into `images`.
-/// Outputs that are newer than the program and the files that the command names are kept.
+/// Runs the gallery's commands, lines `OUTPUT: COMMAND`, in the folder `work`, and copies their images for the gallery into `images`.
+/// Outputs newer than the program and the command's files are kept.
 fn make_images(commands: &str, work: &Path, images: &Path) -> Result<(), String> {
     let renderer = shell::built_of_workspace("antumbra")?;
     let animator = shell::built_of_workspace("antumbra-animate")?;

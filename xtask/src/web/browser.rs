@@ -1,4 +1,4 @@
-//! A browser with WebGPU in software: where it is, how it is started, what pages in it post and say.
+//! Browser with WebGPU on a software adapter: finding and launching it, and receiving what its pages post.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -12,10 +12,10 @@ use super::server::Server;
 use crate::machine::{self, Need};
 use crate::shell::find;
 
-/// Names that browsers with WebGPU's software adapter go by.
+/// Program names of browsers with WebGPU's software adapter.
 const BROWSERS: [&str; 5] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "microsoft-edge"];
 
-/// Where their files lie when what is on the path is a script.
+/// Folders of their files, if the program on the path is a script.
 const BROWSER_FOLDERS: [&str; 4] =
     ["/usr/lib/chromium", "/usr/lib/chromium-browser", "/opt/google/chrome", "/opt/microsoft/msedge"];
 
@@ -26,10 +26,10 @@ const BROWSER: [Need; 1] = [Need {
     otherwise: "install Chromium or Chrome",
 }];
 
-/// The browser; installed where it can be.
+/// Returns the browser, installed if possible.
 ///
 /// # Errors
-/// What is missing and what would bring it.
+/// What is missing and how to get it.
 pub fn get() -> Result<PathBuf, String> {
     machine::install(&BROWSER)?;
     browser().ok_or_else(|| "no browser".into())
@@ -39,41 +39,41 @@ fn browser() -> Option<PathBuf> {
     BROWSERS.iter().find_map(|name| find(name))
 }
 
-/// The Vulkan driver in software that lies beside a browser.
+/// Returns the software Vulkan driver that comes with a browser.
 pub fn software_driver(browser: &Path) -> Option<PathBuf> {
     let own = browser.canonicalize().ok().and_then(|browser| browser.parent().map(Path::to_path_buf));
     let folders = own.into_iter().chain(BROWSER_FOLDERS.map(PathBuf::from));
     folders.map(|folder| folder.join("vk_swiftshader_icd.json")).find(|driver| driver.is_file())
 }
 
-/// A browser that ends with this value.
+/// Browser process, killed when dropped.
 pub struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The process may already have ended.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Opens an address in a browser of its own, whose console goes to `log`.
+/// Opens an address in a separate browser, whose console goes to `log`.
 ///
 /// # Errors
-/// Where it cannot be run.
+/// If it cannot be run.
 pub fn launch(browser: &Path, profile: &Path, log: &Path, address: &str) -> Result<Running, String> {
     let file = std::fs::File::create(log).map_err(|error| format!("{}: {error}", log.display()))?;
-    // Chromium takes its options' values in the same word.
+    // Chromium requires option and value in one word.
     let mut profile_option = OsString::from("--user-data-dir=");
     profile_option.push(profile);
     Command::new(browser)
-        // Containers have no sandbox to offer, and the page is ours.
+        // Containers have no sandbox, and the page is trusted.
         .args(["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--no-first-run"])
         .args(["--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader", "--enable-logging=stderr"])
-        // Without these, software draws no canvas that WebGPU has drawn on, and long passes are taken for a hang.
+        // Without these, the software adapter draws no WebGPU canvas, and long passes count as a hang.
         .args(["--use-gl=angle", "--use-angle=swiftshader", "--use-vulkan=swiftshader", "--enable-features=Vulkan"])
         .args(["--ignore-gpu-blocklist", "--disable-gpu-watchdog"])
-        // The picture beside the panel is small: software draws it.
+        // The image beside the panel is small, because it is rendered in software.
         .arg("--window-size=640,360")
         .arg(profile_option)
         .arg(address)
@@ -85,21 +85,21 @@ pub fn launch(browser: &Path, profile: &Path, log: &Path, address: &str) -> Resu
         .map_err(|error| format!("{} cannot be run: {error}", browser.display()))
 }
 
-/// What pages post: path and body.
+/// Posts of pages: path and body.
 pub type Posts = Receiver<(String, Vec<u8>)>;
 
-/// Serves a folder until this program ends; its address, and what pages of it post.
+/// Serves a folder until this program ends. Returns its address, and the posts of its pages.
 ///
 /// # Errors
-/// Where there is no port to be had.
+/// If no port is available.
 pub fn serve_aside(folder: &Path) -> Result<(String, Posts), String> {
     run_aside(Server::new(folder, 0)?)
 }
 
-/// As [`serve_aside`], with another folder below a path such as `a/b/`.
+/// Like [`serve_aside`], with another folder below a path such as `a/b/`.
 ///
 /// # Errors
-/// Where there is no port to be had.
+/// If no port is available.
 pub fn serve_both_aside(folder: &Path, path: &str, below: &Path) -> Result<(String, Posts), String> {
     let mut server = Server::new(folder, 0)?;
     server.mount(path, below);
@@ -110,34 +110,34 @@ fn run_aside(server: Server) -> Result<(String, Posts), String> {
     let address = server.address()?;
     let (sender, posts) = channel();
     thread::spawn(move || {
-        // After the last step nobody listens any more.
+        // After the last step there is no receiver.
         server.run(Arc::new(move |path, body| drop(sender.send((path.to_owned(), body)))));
     });
     Ok((address, posts))
 }
 
-/// An empty folder, in place of an older one.
+/// Creates an empty folder, replacing an older one.
 ///
 /// # Errors
-/// Where it cannot be made.
+/// If it cannot be created.
 pub fn make_anew(folder: &Path) -> Result<(), String> {
     let outcome = if folder.exists() { std::fs::remove_dir_all(folder) } else { Ok(()) }
         .and_then(|()| std::fs::create_dir_all(folder));
     outcome.map_err(|error| format!("{}: {error}", folder.display()))
 }
 
-/// How long a page is waited for.
+/// Time limits of a page.
 pub struct Patience {
-    /// It posts a step at least so often, or it hangs.
+    /// Maximum time between two posts of the page.
     pub silence: Duration,
-    /// All of it takes less, or something is wrong.
+    /// Maximum total time.
     pub all: Duration,
 }
 
-/// Tells of a page's steps until it is done; `take` gets what else it posts.
+/// Prints a page's steps until it is done; `take` receives its other posts.
 ///
 /// # Errors
-/// What the page says it could not do, or that it says nothing.
+/// The failure that the page reports, or a time limit.
 pub fn follow(
     posts: &Posts,
     patience: &Patience,
@@ -167,10 +167,10 @@ pub fn follow(
     Err(format!("the page is not done after {} s; last: {last}", patience.all.as_secs()))
 }
 
-/// Nothing may stand on the page's console.
+/// Checks that the page's console is empty.
 ///
 /// # Errors
-/// The first word that does.
+/// The first line on the console.
 pub fn clean_console(log: &Path) -> Result<(), String> {
     let bytes = std::fs::read(log).map_err(|error| format!("{}: {error}", log.display()))?;
     let text = String::from_utf8_lossy(&bytes);

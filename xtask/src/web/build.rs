@@ -1,4 +1,4 @@
-//! The page as a folder: the program for browsers, what binds it to JavaScript, and the page's own files.
+//! Build of the page as a folder: the WebAssembly program, its JavaScript bindings, and the page's own files.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -7,15 +7,15 @@ use std::time::Instant;
 use crate::shell::{self, cargo, find};
 use crate::wasm;
 
-/// The largest size of the program, bytes before compression. Of 9.2 MB two thirds are code, a fifth the shaders of all techniques.
+/// Size limit of the program, bytes before compression. Of 9.2 MB two thirds are code, a fifth the shaders of all techniques.
 const MAX_WASM_BYTES: u64 = 9_500_000;
 
-/// The page's own files, from `crates/antumbra-web/page`.
+/// Files of the page, from `crates/antumbra-web/page`.
 const PAGE: [&str; 4] = ["index.html", "style.css", "page.js", "check.js"];
-/// Pictures for those without WebGPU, from `docs/figures`.
+/// Images for browsers without WebGPU, from `docs/figures`.
 const FIGURES: [&str; 3] = ["hero_smrt.png", "viewer_compare.png", "viewer_error.png"];
 
-/// Builds the page in a folder that any host of files can serve, and says how long that took and how large it is.
+/// Builds the page in a folder for any static file server, and prints time and sizes.
 ///
 /// # Errors
 /// What is missing, does not compile, or is too large.
@@ -24,7 +24,7 @@ pub fn build(folder: &Path) -> Result<(), String> {
     let mut compile = wasm::compiler(&["build", "--profile", "web", "--package", "antumbra-web"])?;
     shell::run(&mut compile)?;
     let program = wasm::target_folder(&compile).join(wasm::TARGET).join("web/antumbra-web.wasm");
-    // Of an older build nothing may stay.
+    // No file of an older build may remain.
     if folder.exists() {
         std::fs::remove_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
@@ -32,8 +32,8 @@ pub fn build(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(&figures).map_err(|error| format!("{}: {error}", figures.display()))?;
     shell::run(
         Command::new(bindgen()?)
-            // Names of functions would be a quarter of it. Binaryen's wasm-opt takes as little from the download again as it is
-            // worth (nothing, compressed), and the release that Debian has breaks tables of references.
+            // Function names would be a quarter of it. Binaryen's wasm-opt saves nothing after compression, and Debian's release
+            // of it breaks reference tables.
             .args(["--remove-name-section", "--remove-producers-section"])
             .args(["--target", "web", "--no-typescript", "--out-name", "antumbra", "--out-dir"])
             .args([folder, program.as_path()]),
@@ -63,7 +63,7 @@ pub fn build(folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// `5.1 MB, 1.9 MB compressed`.
+/// Returns a file's size and its compressed size: `5.10 MB, 1.90 MB by gzip`.
 fn sizes(file: &Path) -> String {
     let mb = |bytes: u64| format!("{:.2} MB", bytes as f64 / 1e6);
     let whole = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
@@ -74,7 +74,7 @@ fn sizes(file: &Path) -> String {
     }
 }
 
-/// The program that binds WebAssembly to JavaScript, of the very version that the lock file has: the two must agree.
+/// Returns wasm-bindgen in exactly the version of the lock file, because the two must agree.
 fn bindgen() -> Result<PathBuf, String> {
     let lock = crate::root().join("Cargo.lock");
     let text = std::fs::read_to_string(&lock).map_err(|error| format!("{}: {error}", lock.display()))?;
@@ -98,7 +98,7 @@ fn bindgen() -> Result<PathBuf, String> {
     }
 }
 
-/// The version of a package in a lock file.
+/// Returns the version of a package in a lock file.
 fn locked_version<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
     let mut lines = lock.lines().skip_while(|line| *line != format!("name = \"{package}\""));
     lines.nth(1)?.strip_prefix("version = \"")?.strip_suffix('"')

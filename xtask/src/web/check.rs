@@ -1,5 +1,4 @@
-//! The page in a headless browser: it tries itself (`crates/antumbra-web/page/check.js`) and posts what it finds to the
-//! server that it came from.
+//! The page in a headless browser: it tests itself (`crates/antumbra-web/page/check.js`) and posts its results to its server.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,22 +8,22 @@ use super::browser::{self, Patience, Posts};
 use super::compare;
 use crate::shell::{self, cargo};
 
-/// Which masks are drawn.
+/// Set of masks to draw.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Extent {
-    /// One of each technique.
+    /// One mask per technique.
     Techniques,
-    /// And on casters with holes, on tinted ones, with every choice and switch turned.
+    /// Also masks of alpha-tested and tinted casters, and with every choice and switch changed.
     Variants,
 }
 
-/// Software draws some masks for minutes.
+/// Time limits. A software adapter takes minutes for some masks.
 const PATIENCE: Patience = Patience { silence: Duration::from_secs(600), all: Duration::from_secs(10_800) };
 
-/// Draws all masks on the system's adapter, has the page try itself, and holds its masks against the system's.
+/// Draws all masks on the system's adapter, has the page test itself, and compares its masks with the system's.
 ///
 /// # Errors
-/// The first thing that the page could not do, the first word on its console, or a mask that differs.
+/// The page's first failure, the first line on its console, or a mask that differs.
 pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> {
     let began = Instant::now();
     let test = if extent == Extent::Variants { "all" } else { "" };
@@ -43,7 +42,7 @@ pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> 
             let _running = browser::launch(program, &profile, &log, &address)?;
             follow(&posts, &web, &mut told)
         };
-        // Of what a browser that has ended said on its console, its end may be a part.
+        // The console of a browser that ended early may contain messages about its end.
         match outcome {
             Ok(()) => break browser::clean_console(&log)?,
             Err(why) if told.begun.is_some_and(|index| index >= from) => {
@@ -55,7 +54,7 @@ pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> 
     }
     draw_natively(&native, extent, None)?;
     let mut natives = vec![native];
-    // The browser's own driver, without the browser: what differs there is the browser's or ours, not the rasteriser's.
+    // The browser's own driver without the browser: remaining differences are due to the browser or this library, not the rasteriser.
     if let Some(driver) = browser::software_driver(program) {
         draw_natively(&same, extent, Some(&driver))?;
         natives.insert(0, same);
@@ -65,7 +64,7 @@ pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> 
     Ok(())
 }
 
-/// By the system's driver or another. Built of the whole workspace, so that features are those of everything else.
+/// Draws masks with the system's driver or another. The whole workspace is built, so that features are the same everywhere.
 fn draw_natively(folder: &Path, extent: Extent, driver: Option<&Path>) -> Result<(), String> {
     shell::run(cargo().args(["build", "--locked", "--workspace", "--example", "masks"]))?;
     let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
@@ -73,21 +72,21 @@ fn draw_natively(folder: &Path, extent: Extent, driver: Option<&Path>) -> Result
     let extent = if extent == Extent::Variants { "all" } else { "techniques" };
     let mut command = Command::new(program);
     if let Some(driver) = driver {
-        // Vulkan's loader has gone by both names.
+        // The variable's name depends on the version of the Vulkan loader.
         command.env("VK_DRIVER_FILES", driver).env("VK_ICD_FILENAMES", driver);
     }
     shell::run(command.arg(folder).arg(extent))
 }
 
-/// What the page has told of itself, in one browser after another.
+/// State that the page has posted, from one browser after another.
 #[derive(Debug, Default)]
 struct Told {
     adapter: String,
-    /// The mask that it began last.
+    /// Index of the mask that it started last.
     begun: Option<usize>,
 }
 
-/// Writes the masks that come, and tells of steps, until the page is done.
+/// Writes the masks that arrive, and prints steps, until the page is done.
 fn follow(posts: &Posts, folder: &Path, told: &mut Told) -> Result<(), String> {
     browser::follow(posts, &PATIENCE, |path, body| {
         let text = || String::from_utf8_lossy(body).into_owned();

@@ -1,17 +1,17 @@
-//! Masks that a browser drew against those that the system drew, as a table.
+//! Comparison of a browser's masks with the system's, as a table.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// The largest mean of |ΔV| over a mask that two devices may differ by.
+/// Maximum mean of |ΔV| over a mask between two devices.
 const MAX_DIFFERENCE: f64 = 1e-3;
 
-/// One case's outcome.
+/// Result of a case.
 #[derive(Clone, Debug, PartialEq)]
 struct Row {
-    /// `overlap pcss filter=false`.
+    /// Name of the case: `overlap pcss filter=false`.
     name: String,
-    /// The mean of |ΔV|.
+    /// Mean of |ΔV| over the mask.
     difference: f64,
 }
 
@@ -24,17 +24,17 @@ impl Row {
         self.name.split(' ').nth(1).unwrap_or_default()
     }
 
-    /// The parameters that are not at their defaults.
+    /// Returns the parameters that are not at their defaults.
     fn settings(&self) -> String {
         self.name.split(' ').skip(2).collect::<Vec<_>>().join(" ")
     }
 }
 
-/// Compares every mask of each folder's `cases.txt` with the browser's, and writes a table a folder. Those of the first are the
-/// measure: others may be of adapters that put corners of triangles elsewhere.
+/// Compares every mask of each folder's `cases.txt` with the browser's, and writes a table per folder. Only the first folder decides:
+/// other adapters may rasterise triangle corners differently.
 ///
 /// # Errors
-/// Masks that are missing, hold nothing, or differ from the first folder's.
+/// Masks that are missing, contain no shadow, or differ from the first folder's.
 pub fn compare(natives: &[PathBuf], web: &Path, adapter: &str, table: &Path) -> Result<(), String> {
     let mut written = String::new();
     let mut measures = Vec::new();
@@ -57,7 +57,7 @@ pub fn compare(natives: &[PathBuf], web: &Path, adapter: &str, table: &Path) -> 
     }
 }
 
-/// The table of one folder, how many masks it is of, and what differs or is missing.
+/// Returns the table of one folder, its number of masks, and faults: masks that differ or are missing.
 fn compare_with(native: &Path, web: &Path, adapter: &str) -> Result<(String, usize, Vec<String>), String> {
     let cases = native.join("cases.txt");
     let text = std::fs::read_to_string(&cases).map_err(|error| format!("{}: {error}", cases.display()))?;
@@ -83,7 +83,7 @@ fn read(file: &Path) -> Result<Vec<f32>, String> {
     Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
 }
 
-/// The mean of |ΔV|; an error where the masks cannot be held against each other, or hold no shadow.
+/// Returns the mean of |ΔV|; an error if the masks cannot be compared or contain no shadow.
 fn difference(ours: &[f32], theirs: &[f32]) -> Result<f64, String> {
     if ours.len() != theirs.len() || ours.is_empty() {
         return Err(format!("{} pixels and {}", ours.len(), theirs.len()));
@@ -98,7 +98,7 @@ fn difference(ours: &[f32], theirs: &[f32]) -> Result<f64, String> {
     if mean.is_finite() { Ok(mean) } else { Err("visibility that is no number".into()) }
 }
 
-/// A line a technique: at its defaults on each scene, and the worst of its choices.
+/// Returns a line per technique: its defaults on each scene, and its worst choice.
 fn markdown(rows: &[Row], native: &str, web: &str) -> String {
     let mut scenes: Vec<&str> = Vec::new();
     let mut techniques: Vec<&str> = Vec::new();

@@ -1,4 +1,4 @@
-//! `cargo xtask web`: the viewer as a page.
+//! `cargo xtask web`: builds, serves and tests the viewer as a web page.
 
 pub mod browser;
 mod build;
@@ -18,10 +18,10 @@ use server::Server;
 
 use crate::wasm;
 
-/// Where the page is served if nothing else has the port.
+/// Port of the page's server, if it is free.
 const PORT: u16 = 8080;
 
-/// Builds the page; serves it or tries it in a browser where that is asked for.
+/// Builds the page; serves it or tests it in a browser if an option requests it.
 ///
 /// # Errors
 /// What does not build, or does not work.
@@ -44,15 +44,15 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     }
 }
 
-/// The folder that the page is built in.
+/// Returns the folder of the built page.
 fn folder() -> PathBuf {
     crate::root().join("target/web")
 }
 
-/// Serves a folder on this machine until the program ends, on the port or another one.
+/// Serves a folder on this machine until the program ends, on the port if free, else on another one.
 ///
 /// # Errors
-/// Where there is no port to be had.
+/// If no port is available.
 pub fn serve(folder: &Path, port: u16, by: &str) -> Result<(), String> {
     let server = Server::new(folder, port).or_else(|problem| {
         eprintln!("xtask: {problem}; taking another port");
@@ -63,7 +63,7 @@ pub fn serve(folder: &Path, port: u16, by: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Builds the page and tries it in a browser, where there is one or it can be installed.
+/// Builds the page and tests it in a browser, if there is one or it can be installed.
 fn check(extent: Extent) -> Result<(), String> {
     match wasm::compiler(&[]).and_then(|_| browser::get()) {
         Ok(browser) => {

@@ -1,5 +1,5 @@
-//! Every shader module and layout of library, renderer and viewer, and if asked for every pipeline, made by a browser's compiler:
-//! `xtask/programs` makes and describes them natively, and its page makes them again in a headless browser, within WebGPU's
+//! Compiles every shader module and layout of library, renderer and viewer, and optionally every pipeline, with a browser's compiler.
+//! `xtask/programs` creates and describes them natively; its page creates them again in a headless browser, within WebGPU's
 //! default limits.
 
 use std::path::Path;
@@ -9,25 +9,25 @@ use std::time::{Duration, Instant};
 use super::browser::{self, Patience};
 use crate::shell;
 
-/// The page's own files, from `xtask/programs/page`.
+/// Files of the page, from `xtask/programs/page`.
 const PAGE: [&str; 2] = ["index.html", "make.js"];
 
-/// The page itself waits for no pipeline longer than twenty seconds.
+/// Time limits. The page itself waits at most twenty seconds for a pipeline.
 const PATIENCE: Patience = Patience { silence: Duration::from_secs(300), all: Duration::from_secs(1800) };
 
-/// How much the browser makes.
+/// Extent of what the browser creates.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Extent {
-    /// What its own compiler reads and checks: seconds.
+    /// Modules and layouts, which the browser's own compiler checks: seconds.
     ModulesAndLayouts,
-    /// And what its driver makes of them: on a software driver many minutes, and more memory than some have.
+    /// Also pipelines, which its driver compiles: many minutes on a software driver, and more memory than some have.
     Pipelines,
 }
 
-/// Has a browser make them, where there is one or it can be installed.
+/// Creates them in a browser, if there is one or it can be installed.
 ///
 /// # Errors
-/// What the browser refuses, and why.
+/// What the browser rejects, and why.
 pub fn check(extent: Extent) -> Result<(), String> {
     match browser::get() {
         Ok(browser) => check_in(&browser, extent),

@@ -1,4 +1,4 @@
-//! A server for one folder on this machine alone, and for a page that posts what it found.
+//! Web server for one folder, on the loopback address, which also receives the posts of its pages.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -6,19 +6,19 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
 
-/// What a page may post at most: a mask has 24 KB.
+/// Size limit of a post, bytes; a mask has 24 KB.
 const MAX_POSTED_BYTES: usize = 1 << 24;
 
-/// Called with the path and the body of what is posted.
+/// Callback with the path and the body of a post.
 pub type OnPost = Arc<dyn Fn(&str, Vec<u8>) + Send + Sync>;
 
-/// A server that has a port.
+/// Server with a port.
 pub struct Server {
     listener: TcpListener,
     folders: Folders,
 }
 
-/// The folder of the root, and another one with the path below which it is served.
+/// Folder of the root, and optionally another one with the path below which it is served.
 #[derive(Clone)]
 struct Folders {
     root: PathBuf,
@@ -26,10 +26,10 @@ struct Folders {
 }
 
 impl Server {
-    /// Takes `port` of the loopback address, or any where it is 0.
+    /// Binds `port` of the loopback address, or any port if it is 0.
     ///
     /// # Errors
-    /// Where the port is taken.
+    /// If the port is taken.
     pub fn new(folder: &Path, port: u16) -> Result<Self, String> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
             .map_err(|error| format!("cannot serve on 127.0.0.1:{port}: {error}"))?;
@@ -41,21 +41,21 @@ impl Server {
         self.folders.mounted = Some((path.to_owned(), folder.to_owned()));
     }
 
-    /// Where it is.
+    /// Returns the server's address.
     ///
     /// # Errors
-    /// Where the system does not say.
+    /// If the system does not know it.
     pub fn address(&self) -> Result<String, String> {
         let address = self.listener.local_addr().map_err(|error| format!("cannot tell the server's port: {error}"))?;
         Ok(format!("http://{address}/"))
     }
 
-    /// Answers, each connection on a thread of its own, until the program ends.
+    /// Answers requests, each connection on its own thread, until the program ends.
     pub fn run(self, on_post: OnPost) {
         for connection in self.listener.incoming().flatten() {
             let (folders, on_post) = (self.folders.clone(), on_post.clone());
             thread::spawn(move || {
-                // Whoever hangs up needs no answer.
+                // A closed connection needs no answer.
                 let _ = answer(connection, &folders, &on_post);
             });
         }
@@ -95,7 +95,7 @@ fn answer(mut connection: TcpStream, folders: &Folders, on_post: &OnPost) -> std
     }
 }
 
-/// The file of a path; none outside the folders.
+/// Returns the file of a path; `None` outside the folders.
 fn file(folders: &Folders, path: &str) -> Option<PathBuf> {
     let path = path.trim_start_matches('/');
     let mounted =
@@ -107,7 +107,7 @@ fn file(folders: &Folders, path: &str) -> Option<PathBuf> {
     (is_inside && file.is_file()).then_some(file)
 }
 
-/// The media type by a file's ending; browsers insist on those of programs.
+/// Returns the media type for a file's extension. Browsers require the right one for programs.
 fn kind_of(file: &Path) -> &'static str {
     match file.extension().and_then(|ending| ending.to_str()) {
         Some("html") => "text/html; charset=utf-8",

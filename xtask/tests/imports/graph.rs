@@ -1,23 +1,23 @@
-//! Which module of a folder imports which, and the cycles of that.
+//! Graph of imports between the modules of a folder, and its cycles.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::source::{Crate, ModulePath};
 
-/// Modules beside one another, by the imports between them: the module that imports, the one that is imported, and where.
+/// Imports between sibling modules: importing module, imported module, and places.
 #[derive(Debug, Default)]
 pub struct Graph {
     edges: BTreeMap<(ModulePath, ModulePath), Vec<String>>,
 }
 
 impl Graph {
-    /// The graph of a crate.
+    /// Returns the graph of a crate.
     pub fn of(of: &Crate) -> Self {
         let mut found = Self::default();
         for import in &of.imports {
             let to = of.declaring(&import.to);
             let common = import.from.iter().zip(&to).take_while(|(from, to)| from == to).count();
-            // One is in the other: a folder and what is in it.
+            // One contains the other: a folder and a module in it.
             if common == import.from.len() || common == to.len() {
                 continue;
             }
@@ -28,17 +28,17 @@ impl Graph {
         found
     }
 
-    /// How many modules import one beside them.
+    /// Returns the number of edges.
     pub fn len(&self) -> usize {
         self.edges.len()
     }
 
-    /// The edges by name.
+    /// Returns the edges by name.
     pub fn pairs(&self) -> Vec<(String, String)> {
         self.edges.keys().map(|(from, to)| (from.join("::"), to.join("::"))).collect()
     }
 
-    /// The modules that a module leads to.
+    /// Returns the modules that are reachable from a module.
     fn reached<'a>(&'a self, from: &'a ModulePath) -> BTreeSet<&'a ModulePath> {
         let mut reached = BTreeSet::new();
         let mut open = vec![from];
@@ -49,7 +49,7 @@ impl Graph {
         reached
     }
 
-    /// Each group of modules that lead to one another: its members, then every import within it by its number of places and the first.
+    /// Describes each cyclic group of modules: its members, then every import within it with its number of places and the first one.
     pub fn cycles(&self) -> Vec<String> {
         let modules: BTreeSet<&ModulePath> = self.edges.keys().flat_map(|(from, to)| [from, to]).collect();
         let reached: BTreeMap<_, _> = modules.iter().map(|module| (*module, self.reached(module))).collect();

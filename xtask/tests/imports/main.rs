@@ -1,11 +1,11 @@
-//! Imports run one way: the modules of each crate, by what their Rust and WESL files import, make no cycle.
+//! Imports run one way: the modules of each crate, by the imports of their Rust and WESL files, form no cycle.
 //!
-//! Two levels: the top-level modules of a crate, and below, the modules of one folder. A file belongs to the module of its path, so
-//! that `map.rs` and `map.wesl` are one; a path through a re-export counts for the module that declares the item. A folder's own
-//! `mod.rs` lists its modules and may import them, and they may import what it declares: that is no edge.
+//! Two levels are checked: the top-level modules of a crate, and the modules of each folder. A file belongs to the module of its path, so
+//! `map.rs` and `map.wesl` are one. A path through a re-export counts for the module that declares the item. A folder's own `mod.rs`
+//! lists its modules and may import them, and they may import its items: that is no edge.
 //!
-//! Code for tests alone (`#[cfg(test)]`, `tests.rs`, `testing.rs`) is left out: a test of a low module may use a high one to make
-//! its input, and whoever builds the library never builds it.
+//! Test-only code (`#[cfg(test)]`, `tests.rs`, `testing.rs`) is left out: a test of a low-level module may use a high-level one to create
+//! its input, and users of the library never build it.
 //!
 //! `ANTUMBRA_TREE=path cargo test -p xtask --test imports -- --nocapture` reads another checkout.
 
@@ -18,12 +18,12 @@ use std::path::{Path, PathBuf};
 use graph::Graph;
 use source::Crate;
 
-/// The checkout that is read.
+/// Returns the checkout to read.
 fn tree() -> PathBuf {
     std::env::var_os("ANTUMBRA_TREE").map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), PathBuf::from)
 }
 
-/// The folders of crates with sources: the workspace's, the plugin's and the example's.
+/// Returns the source folders of crates: the workspace's, the plugin's and the example's.
 fn crates_of(tree: &Path) -> Vec<PathBuf> {
     let mut folders = vec![tree.join("xtask"), tree.join("bevy_antumbra"), tree.join("fuzz")];
     for group in ["crates", "xtask"] {
@@ -54,7 +54,7 @@ fn modules_make_no_cycle() {
     assert!(report.is_empty(), "modules import one another in a circle:{report}");
 }
 
-/// Edges of a crate that is given as text: module, module.
+/// Returns the edges of a crate that is given as text, as pairs of modules.
 fn edges(files: &[(&str, &str)]) -> Vec<(String, String)> {
     Graph::of(&Crate::of_texts(files.iter().map(|(path, text)| ((*path).to_owned(), (*text).to_owned())))).pairs()
 }

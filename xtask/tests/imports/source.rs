@@ -1,14 +1,14 @@
-//! A crate's modules and the paths that their files name.
+//! Modules of a crate, and the paths that their files name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use crate::tokens::{Token, tokens};
 
-/// Names from the crate's root on.
+/// Module path: names from the crate's root on.
 pub type ModulePath = Vec<String>;
 
-/// A path that a file names.
+/// Path that a file names.
 #[derive(Debug)]
 pub struct Import {
     pub from: ModulePath,
@@ -17,16 +17,16 @@ pub struct Import {
     pub line: usize,
 }
 
-/// What is known of a crate.
+/// Modules and imports of a crate.
 #[derive(Debug, Default)]
 pub struct Crate {
     pub modules: BTreeSet<ModulePath>,
     pub imports: Vec<Import>,
-    /// What `use` makes a module's own: module and name, and the path it stands for.
+    /// Names that `use` adds to a module: module and name, with the path that it refers to.
     pub named: BTreeMap<(ModulePath, String), ModulePath>,
 }
 
-/// The sorted entries of a folder; none where there is none.
+/// Returns the sorted entries of a folder; none if it does not exist.
 pub fn entries(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
@@ -35,7 +35,7 @@ pub fn entries(folder: &Path) -> Vec<PathBuf> {
 }
 
 impl Crate {
-    /// The crate whose sources are in `folder`.
+    /// Reads the crate whose sources are in `folder`.
     pub fn read(folder: &Path) -> Self {
         let mut files = Vec::new();
         let mut folders = vec![folder.to_owned()];
@@ -52,7 +52,7 @@ impl Crate {
         Self::of_texts(files)
     }
 
-    /// The crate of these files: path within `src`, text.
+    /// Returns the crate of these files: path within `src`, and text.
     pub fn of_texts(files: impl IntoIterator<Item = (String, String)>) -> Self {
         let mut files: Vec<(String, String)> = files.into_iter().collect();
         files.sort();
@@ -74,7 +74,7 @@ impl Crate {
 
     fn read_file(&mut self, file: &str, module: &ModulePath, tokens: &[Token]) {
         let is_wesl = file.ends_with(".wesl");
-        // The inline modules that are open, and at which depth of braces each ends.
+        // The open inline modules, and the depth of braces at which each ends.
         let (mut inline, mut depth) = (Vec::<(String, usize)>::new(), 0);
         let mut at = 0;
         while at < tokens.len() {
@@ -105,7 +105,7 @@ impl Crate {
         }
     }
 
-    /// A tree of `use` or `import`, from `at` on, which is left behind it.
+    /// Reads a tree of `use` or `import` at `at`, and moves `at` past it.
     fn read_tree(
         &mut self,
         file: &str,
@@ -157,7 +157,7 @@ impl Crate {
         }
     }
 
-    /// A path from the crate's root on; `None` for other crates'.
+    /// Returns a path from the crate's root on; `None` for other crates'.
     fn absolute(&self, here: &ModulePath, path: &[String]) -> Option<ModulePath> {
         let (first, rest) = path.split_first()?;
         let mut base = match first.as_str() {
@@ -180,10 +180,10 @@ impl Crate {
         Some(base)
     }
 
-    /// The module that declares what a path names.
+    /// Returns the module that declares the item of a path.
     pub fn declaring(&self, path: &ModulePath) -> ModulePath {
         let mut path = path.clone();
-        // Re-exports of re-exports end somewhere; a circle of names does not compile.
+        // Limit of re-exports of re-exports; a circle of names does not compile.
         for _ in 0..8 {
             let known = (0..=path.len()).rev().find(|&length| self.is_module(&path[..length])).unwrap_or(0);
             let Some(name) = path.get(known) else { return path };
@@ -200,7 +200,7 @@ impl Crate {
     }
 }
 
-/// Words joined by `::` from `at` on, which is left behind them.
+/// Returns words joined by `::` at `at`, and moves `at` past them.
 fn path_at(tokens: &[Token], at: &mut usize) -> Vec<String> {
     let mut path = Vec::new();
     while let Some(token) = tokens.get(*at) {
@@ -220,7 +220,7 @@ fn is_for_tests(name: &str) -> bool {
     matches!(name, "tests" | "testing" | "test_support")
 }
 
-/// The module of a file by its path within `src`.
+/// Returns the module of a file, by its path within `src`.
 fn module_of(path: &str) -> ModulePath {
     let path = path.rsplit_once('.').map_or(path, |(stem, _)| stem);
     let mut module: ModulePath = path.split(['/', '\\']).map(str::to_owned).collect();
@@ -231,7 +231,7 @@ fn module_of(path: &str) -> ModulePath {
     module
 }
 
-/// Tokens but those of items for tests alone.
+/// Removes the tokens of test-only items.
 fn without_tests(tokens: Vec<Token>) -> Vec<Token> {
     let mut kept = Vec::new();
     let mut at = 0;
@@ -249,7 +249,7 @@ fn without_tests(tokens: Vec<Token>) -> Vec<Token> {
     kept
 }
 
-/// Past the item whose attributes start at `at`: its braces, or its `;` or `,` outside of brackets.
+/// Returns the end of the item whose attributes start at `start`: after its braces, or its `;` or `,` outside of brackets.
 fn end_of_item(tokens: &[Token], start: usize) -> usize {
     let (mut depth, mut is_in_attribute) = (0, true);
     for (at, token) in tokens.iter().enumerate().skip(start) {

@@ -1,6 +1,6 @@
-//! Words and punctuation of Rust and WESL, without comments and texts, each with its line.
+//! Words and punctuation of Rust and WESL, without comments and string literals, each with its line.
 
-/// A word, `::`, or one other character.
+/// Token: a word, `::`, or one other character.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Token {
     pub text: String,
@@ -13,7 +13,7 @@ impl Token {
     }
 }
 
-/// The tokens of a file.
+/// Returns the tokens of a file.
 pub fn tokens(source: &str) -> Vec<Token> {
     let chars: Vec<char> = source.chars().collect();
     let (mut found, mut at, mut line) = (Vec::new(), 0, 1);
@@ -31,7 +31,7 @@ pub fn tokens(source: &str) -> Vec<Token> {
     found
 }
 
-/// Where what starts at `at` ends.
+/// Returns the end of the token, comment or literal that starts at `at`.
 fn end_of(chars: &[char], at: usize) -> usize {
     let next = |offset: usize| chars.get(at + offset).copied().unwrap_or('\0');
     match (chars[at], next(1)) {
@@ -62,7 +62,7 @@ fn end_of_block(chars: &[char], start: usize) -> usize {
     at
 }
 
-/// Past the quote that ends what has begun before `at`.
+/// Returns the position after the closing quote of a literal whose content starts at `at`.
 fn end_of_text(chars: &[char], mut at: usize, quote: char) -> usize {
     while at < chars.len() && chars[at] != quote {
         at += if chars[at] == '\\' { 2 } else { 1 };
@@ -70,7 +70,7 @@ fn end_of_text(chars: &[char], mut at: usize, quote: char) -> usize {
     (at + 1).min(chars.len())
 }
 
-/// Past a text with a prefix: `r"…"`, `r#"…"#`, `b"…"`; `None` for words.
+/// Returns the position after a literal with a prefix: `r"…"`, `r#"…"#`, `b"…"`; `None` for words.
 fn end_of_raw(chars: &[char], start: usize) -> Option<usize> {
     let mut at = start;
     while matches!(chars.get(at), Some('r' | 'b')) {

@@ -1,13 +1,13 @@
-// The first surface behind each pixel's centre: depth, exact geometric normal, and what shading wants to know.
+// The first surface behind each pixel's centre: depth, exact geometric normal, and inputs of shading.
 //
-// One pass, 32 bytes of colour a pixel, WebGPU's default limit:
+// One pass with 32 bytes of colour per pixel, WebGPU's default limit:
 //   depth             Depth32Float  reversed, infinite far
 //   geometric_normal  Rgba32Float   xyz unit, world space, on the camera's side; w 1 where there is geometry
 //   surface           Rgba32Uint    see `pack_surface`
 //
-// The geometric normal is the triangle's own: the vertex shader pulls all three corners of its triangle, so that every
-// corner computes the same cross product. Screen-space derivatives of position lose half of the digits, and a bias
-// at grazing light needs them.
+// The geometric normal is the triangle's own: the vertex shader fetches all three corners of its triangle, so every corner
+// computes the same cross product. Screen-space derivatives of position lose half of the digits, which a bias at grazing light
+// needs.
 
 struct View {
     view_from_world: mat4x4f,
@@ -69,15 +69,15 @@ fn largest_component(v: vec3f) -> f32 {
     return max(a.x, max(a.y, a.z));
 }
 
-// Unit, or zero for a triangle without area. Edges are scaled first, so that neither a triangle of a micrometre nor one
-// of a thousand kilometres leaves the range of squares.
+// Returns the unit cross product, or zero for a triangle without area. Edges are scaled first, so that squares stay in range
+// for triangles from a micrometre to a thousand kilometres.
 fn unit_cross(a: vec3f, b: vec3f) -> vec3f {
     let n = cross(a / max(largest_component(a), 1e-37), b / max(largest_component(b), 1e-37));
     let scale = largest_component(n);
     return select(vec3f(), normalize(n / max(scale, 1e-37)), scale > 0.0);
 }
 
-// The inverse transpose but for a positive factor: the cofactors, with the determinant's sign.
+// Transforms by the inverse transpose up to a positive factor: the cofactors, with the determinant's sign.
 fn transform_normal(to_world: mat3x3f, normal: vec3f) -> vec3f {
     let cofactors = mat3x3f(
         cross(to_world[1], to_world[2]),
@@ -88,14 +88,14 @@ fn transform_normal(to_world: mat3x3f, normal: vec3f) -> vec3f {
     return (cofactors * normal) * select(1.0, -1.0, determinant < 0.0);
 }
 
-// Meyer, Süßmuth, Sußner, Stamminger, Greiner, "On Floating-Point Normal Vectors", EGSR 2010: the octahedral map.
+// Octahedral map of a unit vector. Meyer, Süßmuth, Sußner, Stamminger, Greiner, "On Floating-Point Normal Vectors", EGSR 2010.
 fn octahedral_from_unit(n: vec3f) -> vec2f {
     let p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
     let folded = (1.0 - abs(p.yx)) * select(vec2f(-1.0), vec2f(1.0), p >= vec2f());
     return select(folded, p, n.z >= 0.0);
 }
 
-// Ward, "Real Pixels", Graphics Gems II, 1991: a shared exponent.
+// Packs a colour with a shared exponent. Ward, "Real Pixels", Graphics Gems II, 1991.
 fn pack_rgbe(color: vec3f) -> u32 {
     let largest = largest_component(color);
     if !(largest > 1e-9) {
@@ -105,7 +105,7 @@ fn pack_rgbe(color: vec3f) -> u32 {
     return pack4x8unorm(vec4f(color / exp2(exponent), (exponent + 128.0) / 255.0));
 }
 
-// x: base colour (square roots, near enough to how eyes see steps) and opacity; y: shading normal, octahedral;
+// Packs a surface. x: base colour as square roots, close to perceptual steps, and opacity; y: shading normal, octahedral;
 // z: emission, shared exponent; w: metallic, roughness, transmission.
 fn pack_surface(base_color: vec4f, shading_normal: vec3f) -> vec4u {
     return vec4u(
@@ -120,7 +120,7 @@ fn unmapped_color(corner: Corner) -> vec4f {
     return material.base_color * corner.color;
 }
 
-// The first hit's normal as shading sees it: smooth, on the side of the geometric one.
+// Returns the smooth shading normal of the first hit, on the side of the geometric normal.
 fn visible_shading_normal(corner: Corner) -> vec3f {
     let length_squared = dot(corner.shading_normal, corner.shading_normal);
     if !(length_squared > 0.0) {
@@ -170,8 +170,8 @@ fn vertex_pull(@builtin(vertex_index) corner_index: u32, @builtin(instance_index
     return pulled_corner(corner_index, instance);
 }
 
-// Where coordinates do not change from pixel to pixel, of a mesh without any or of a colour per triangle, an anisotropic sampler has no
-// ellipse to filter, and Mesa's (25.0) gives black. It is the largest level's texel that is meant.
+// Samples the base colour. If coordinates are constant over the pixels (a mesh without any, or one colour per triangle), an
+// anisotropic sampler has no ellipse to filter, and Mesa 25.0 returns black; the texel of the largest level is used instead.
 fn base_color_texel(uv: vec2f) -> vec4f {
     let filtered = textureSample(base_color_texture, smooth_sampler, uv);
     let at_once = textureSampleLevel(base_color_texture, level_0_sampler, uv, 0.0);
@@ -183,7 +183,7 @@ fn fragment_solid(corner: Corner) -> Surface {
     return shaded(corner, unmapped_color(corner) * base_color_texel(corner.uv));
 }
 
-// Present where the bilinear alpha of the largest level reaches the cutoff, as visibility is defined.
+// Keeps fragments whose bilinear alpha of the largest level reaches the cutoff, as the definition of visibility does.
 @fragment
 fn fragment_masked(corner: Corner) -> Surface {
     let texel = base_color_texel(corner.uv);

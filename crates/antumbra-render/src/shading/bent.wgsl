@@ -1,12 +1,12 @@
-// How brightly a light's shading may be at most where triangles around a vertex face away: per vertex the least irradiance
-// of any of them, over that of a surface that faces the light, interpolated over the picture.
+// Upper limit of a light's shading where triangles around a vertex face away: the minimum irradiance of these triangles per
+// vertex, relative to a surface that faces the light, interpolated over the image.
 // Source: Sintorn, Eisemann, Assarsson 2008, section 4.3, with an area light's irradiance in the cosine's place.
 //
-// Comes after receivers.wgsl and irradiance.wgsl.
+// Appended to receivers.wgsl and irradiance.wgsl.
 
 @group(2) @binding(0) var<uniform> light: Light;
 @group(2) @binding(1) var<storage, read> light_points: array<vec4f>;
-// Where each vertex's normals begin, and the last ones end; then the normals.
+// Offset of each vertex's normals and the end of the last ones; then the normals.
 @group(2) @binding(2) var<storage, read> vertex_faces: array<u32>;
 
 struct BentCorner {
@@ -35,7 +35,7 @@ fn vertex_bent(@builtin(vertex_index) corner_index: u32, @builtin(instance_index
     let to_world_linear = mat3x3f(to_world[0].xyz, to_world[1].xyz, to_world[2].xyz);
     let vertex = indices[corner_index];
     let x = (to_world * vec4f(position_in_object(vertex), 1.0)).xyz;
-    // A sheet seen from behind is shaded by its other side.
+    // The back of a sheet is shaded with opposite normals.
     let first = corner_index - corner_index % 3u;
     let a = position_in_object(indices[first]);
     let front = cross(

@@ -1,15 +1,15 @@
-// Irradiance from a light of unit radiance, unshadowed, at a point with a normal. Functions alone: whoever includes
-// this file brings `light_points`, the positions of a list of points in xyz.
+// Unshadowed irradiance of a light of unit radiance at a point with a normal. Functions only: the including module has to
+// declare `light_points`, the positions of a list of points in xyz.
 //
 //   rectangle, disk   Lambert 1760 for polygons, as in Baum, Rushmeier, Winget, "Improving Radiosity Solutions Through
 //                     the Use of Analytically Determined Form-Factors", SIGGRAPH 1989, clipped at the horizon; exact
 //                     for the rectangle. A disk is a regular polygon of the same area: within 0.4 % of exact.
 //   sphere, sun       Snyder, "Area Light Sources for Real-Time Graphics", MSR-TR-96-11, 1996, in the form of Lagarde
 //                     and de Rousiers, "Moving Frostbite to PBR", SIGGRAPH course 2014: exact, the horizon included.
-//   ellipsoid         A volume that glows throughout, of the strength of the sphere of its volume, as far above the
-//                     horizon as it reaches along the normal: exact from afar, within 6 % two of its largest radii
-//                     away.
-//   points            The mean over the list of the inverse square.
+//   ellipsoid         Glowing volume with the strength of a sphere of the same volume. Its extent along the normal
+//                     determines how far it rises above the horizon. Exact from afar, within 6 % at two of its largest
+//                     radii.
+//   points            Mean of the inverse square over the list.
 
 const RECTANGLE = 0u;
 const DISK = 1u;
@@ -24,37 +24,36 @@ struct Light {
     center: vec3f,
     kind: u32,
     right: vec3f,
-    // Rectangle: half its width. Disk, sphere: the radius. Ellipsoid: the radius along right. Sun: the tangent of half
-    // its angle.
+    // Rectangle: half the width. Disk, sphere: radius. Ellipsoid: radius along right. Sun: tangent of half its angle.
     half_width: f32,
     up: vec3f,
-    // Rectangle: half its height. Ellipsoid: the radius along up.
+    // Rectangle: half the height. Ellipsoid: radius along up.
     half_height: f32,
     axis: vec3f,
-    // Ellipsoid: the radius along the axis.
+    // Ellipsoid: radius along the axis.
     half_depth: f32,
-    // Linear RGB. Of a point: its radiant intensity.
+    // Radiance, linear RGB; radiant intensity of a point.
     radiance: vec3f,
     point_count: u32,
-    // Visibility has three channels rather than one.
+    // Whether visibility has three channels instead of one.
     is_tinted: u32,
-    // Cosines of a spot's inner and outer angle; −2 and −3 where there is no cone.
+    // Cosines of a spot's inner and outer angle; −2 and −3 without a cone.
     cone_inner_cosine: f32,
     cone_outer_cosine: f32,
     padding: u32,
 }
 
-// The part above the horizon of a polygon's boundary, summed edge by edge.
+// Polygon boundary clipped at the horizon, summed edge by edge.
 struct HorizonClip {
     sum: f32,
     is_crossed: bool,
-    // Where the boundary goes below the horizon, and where it comes up again.
+    // Points where the boundary goes below the horizon and where it comes up again.
     leaves: vec3f,
     enters: vec3f,
 }
 
-// Lambert: the angle that an edge subtends times the cosine between the normal and the normal of the edge's plane
-// through the receiver. `p` and `q` are seen from the receiver and need not be unit.
+// Lambert's integral of an edge: the angle that it subtends times the cosine between the normal and the normal of the edge's
+// plane through the receiver. `p` and `q` are relative to the receiver and need not be unit.
 fn edge_integral(p: vec3f, q: vec3f, normal: vec3f) -> f32 {
     let c = cross(p, q - p);
     let length_c = length(c);
@@ -105,8 +104,8 @@ fn rectangle_irradiance(light: Light, to_center: vec3f, normal: vec3f) -> f32 {
     return closed_sum(clip, normal);
 }
 
-// Corners of the polygon that stands for a disk, and the circumscribed radius at which it has the disk's area:
-// sqrt(2 pi / (n sin(2 pi / n))).
+// Number of corners of the polygon that approximates a disk, and its circumradius for the disk's area, relative to the disk's
+// radius: sqrt(2 pi / (n sin(2 pi / n))).
 const DISK_CORNERS = 24;
 const DISK_CORNER_RADIUS = 1.0057411;
 
@@ -123,8 +122,8 @@ fn disk_irradiance(light: Light, to_center: vec3f, normal: vec3f) -> f32 {
     return closed_sum(clip, normal);
 }
 
-// Lagarde and de Rousiers 2014, listing 7: of a sphere whose centre is `ratio` radii away in a direction that makes
-// `cosine` with the normal.
+// Irradiance of a sphere whose centre is `ratio` radii away in a direction at `cosine` to the normal. Lagarde and
+// de Rousiers 2014, listing 7.
 fn sphere_irradiance(cosine: f32, ratio: f32) -> f32 {
     let ratio_2 = ratio * ratio;
     let below = 1.0 - ratio_2 * cosine * cosine;
@@ -137,7 +136,7 @@ fn sphere_irradiance(cosine: f32, ratio: f32) -> f32 {
     return max((cosine * angle - x * sqrt(below)) / ratio_2 + atan(sqrt(below) / x), 0.0);
 }
 
-// How far the ellipsoid reaches along a direction from its centre.
+// Returns the ellipsoid's extent along a direction from its centre.
 fn reach_along(light: Light, direction: vec3f) -> f32 {
     return length(vec3f(
         light.half_width * dot(light.right, direction),
@@ -146,7 +145,7 @@ fn reach_along(light: Light, direction: vec3f) -> f32 {
     ));
 }
 
-// A receiver on or inside a sphere sees it fill half of all directions; nearer than this ratio nothing changes.
+// Minimum distance over radius. A receiver on or inside a sphere sees it fill half of all directions.
 const NEAREST_RATIO = 1.0001;
 
 fn ellipsoid_irradiance(light: Light, to_center: vec3f, normal: vec3f) -> f32 {
@@ -157,7 +156,7 @@ fn ellipsoid_irradiance(light: Light, to_center: vec3f, normal: vec3f) -> f32 {
     return sphere_irradiance(dot(to_center, normal) / center_distance, ratio) * strength_radius_2 / (reach * reach);
 }
 
-// Inverse squares end at a centimetre: a point light has some size.
+// Minimum squared distance to a point light, m², because point lights have some size: one centimetre.
 const NEAREST_POINT_M_2 = 1e-4;
 
 fn points_irradiance(light: Light, x: vec3f, normal: vec3f) -> f32 {
@@ -170,8 +169,8 @@ fn points_irradiance(light: Light, x: vec3f, normal: vec3f) -> f32 {
     return sum / f32(light.point_count);
 }
 
-// Below this size over distance a flat emitter is a point to better than 1e-6, and Lambert's differences of angles
-// would begin to lose digits.
+// Size over distance below which a flat emitter counts as a point. The error is below 1e-6, and Lambert's differences of
+// angles would lose digits.
 const POINT_LIKE_RATIO = 1e-3;
 
 fn flat_irradiance(light: Light, to_center: vec3f, normal: vec3f) -> f32 {
@@ -203,7 +202,7 @@ fn irradiance(light: Light, x: vec3f, normal: vec3f) -> f32 {
             return ellipsoid_irradiance(light, to_center, normal);
         }
         case SUN: {
-            // A disc of this tangent fills the cone of a sphere with this sine.
+            // A disc with this tangent subtends the same cone as a sphere with this sine.
             let sine = light.half_width * inverseSqrt(1.0 + light.half_width * light.half_width);
             return sphere_irradiance(-dot(light.axis, normal), 1.0 / sine);
         }
@@ -216,7 +215,7 @@ fn irradiance(light: Light, x: vec3f, normal: vec3f) -> f32 {
     }
 }
 
-// The irradiance of a surface at x that faces the light's centre.
+// Returns the irradiance of a surface at x that faces the light's centre.
 fn facing_irradiance(light: Light, x: vec3f) -> f32 {
     let to_center = select(light.center - x, -light.axis, light.kind == SUN);
     return irradiance(light, x, to_center / max(length(to_center), 1e-6));

@@ -1,5 +1,5 @@
-// The picture: each light's unshadowed irradiance times visibility, added up; then ambient, emission, what shows
-// through translucent surfaces, and a tone curve.
+// The image: sum over the lights of unshadowed irradiance times visibility; then ambient light, emission, surfaces behind
+// translucent ones, and a tone curve.
 //
 //   diffuse    Lambert
 //   specular   GGX (Walter, Marschner, Li, Torrance, EGSR 2007) towards the light's most representative point (Karis,
@@ -9,7 +9,7 @@
 //              2014
 //   tones      AgX (Sobotka 2022) in the polynomial form of Wrensch, "Minimal AgX Implementation", 2023
 //
-// Visibility is multiplied in, never interpreted: whatever technique or tracer made it, the rest is the same.
+// Visibility is only multiplied, never interpreted: shading is the same for every technique and for the ray tracer.
 
 struct Frame {
     view_from_clip: mat4x4f,
@@ -18,19 +18,19 @@ struct Frame {
     has_layer_behind: u32,
 }
 
-// In storage, not uniforms: software drivers compile for a uniform's value, here anew for every picture.
+// Storage instead of uniform buffers: software drivers specialise shaders for uniform values, here for every image.
 @group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var depth_image: texture_depth_2d;
 @group(0) @binding(2) var surface_image: texture_2d<u32>;
 
 @group(1) @binding(0) var<storage, read> light: Light;
 @group(1) @binding(1) var<storage, read> light_points: array<vec4f>;
-// Of the picture's size, or one texel for all.
+// Visibility mask of the image's size, or one texel for all pixels.
 @group(1) @binding(2) var visibility_image: texture_2d<f32>;
-// What coherent shading needs (bent.wgsl); of the picture's size, or one texel of 1 for all.
+// Input of coherent shading (bent.wgsl), of the image's size; or one texel of 1 for all pixels.
 @group(1) @binding(3) var bent_image: texture_2d<f32>;
 
-// The layer behind translucent surfaces, and both layers' lit radiance.
+// Layer behind translucent surfaces, and the direct lighting of both layers.
 @group(2) @binding(0) var behind_depth_image: texture_depth_2d;
 @group(2) @binding(1) var behind_surface_image: texture_2d<u32>;
 @group(2) @binding(2) var direct_image: texture_2d<f32>;
@@ -38,16 +38,16 @@ struct Frame {
 
 // Reflectance of dielectrics along the normal: glass, plastics, stone.
 const DIELECTRIC_F0 = 0.04;
-// Perceptual roughness below which a highlight would fall between pixels.
+// Minimum perceptual roughness; a smaller highlight would fall between pixels.
 const SMOOTHEST = 0.09;
-// Half floats end at 65504.
+// Maximum radiance, within the range of half floats (65504).
 const BRIGHTEST = 3e4;
 
-// Radiance of the surroundings where the key light gives a white surface the radiance 2.5: outdoors a clear sky gives
-// about a seventh of the sun. Blue above, warm below, so that umbrae have form and colour.
+// Radiance of the surroundings if the key light gives a white surface the radiance 2.5: a clear sky has about a seventh of
+// the sun's. Blue above and warm below, so that umbrae have form and colour.
 const SKY = vec3f(0.24, 0.31, 0.43);
 const GROUND = vec3f(0.18, 0.16, 0.14);
-// What the camera's own side gets besides, so that surfaces turned from the sky keep their shape.
+// Additional ambient light from the camera's side, so that surfaces facing away from the sky keep their shape.
 const FILL = 0.07;
 
 const BACKGROUND_HORIZON = vec3f(0.90, 0.98, 1.08);
@@ -96,13 +96,13 @@ fn position_in_world(pixel: vec2u, depth: f32) -> vec3f {
     return (frame.world_from_view * vec4f(pos_in_view.xyz / pos_in_view.w, 1.0)).xyz;
 }
 
-// A point halfway to the near plane: any depth would do for a direction.
+// Returns the direction of a pixel. It uses a point halfway to the near plane; any depth gives the same direction.
 fn direction_from_eye(pixel: vec2u) -> vec3f {
     return normalize(position_in_world(pixel, 0.5) - frame.eye_in_world);
 }
 
-// Karis 2013: the point of the light nearest to the mirrored ray, as seen from the receiver, and the light's size over
-// its distance.
+// Representative point of the light (Karis 2013), nearest to the mirrored ray as seen from the receiver, and the light's size
+// over its distance.
 struct Representative {
     to_light: vec3f,
     size_ratio: f32,
@@ -114,7 +114,7 @@ fn nearest_on_ball(to_center: vec3f, radius: f32, mirrored: vec3f) -> vec3f {
 }
 
 fn nearest_on_plane_shape(to_center: vec3f, mirrored: vec3f) -> vec3f {
-    // Where the mirrored ray meets the light's plane; where it does not, the point nearest to the ray's far end.
+    // Intersection of the mirrored ray and the light's plane; if there is none, the point nearest to the ray's far end.
     let slope = dot(mirrored, light.axis);
     let t = select(1e4 * length(to_center), dot(to_center, light.axis) / slope, slope < -1e-4);
     let offset = clamp(t, 0.0, 1e4 * length(to_center)) * mirrored - to_center;
@@ -162,7 +162,7 @@ fn fresnel(f0: vec3f, cosine: f32) -> vec3f {
     return f0 + (1.0 - f0) * pow(1.0 - saturate(cosine), 5.0);
 }
 
-// What neither a metal's mirror nor what transmits has taken: of a metal nothing is transmitted.
+// Returns the fraction that is neither reflected by metal nor transmitted; metals transmit nothing.
 fn diffuse_share(surface: Surface) -> f32 {
     return saturate(1.0 - surface.metallic - surface.transmission);
 }
@@ -175,7 +175,7 @@ fn f0_of(surface: Surface) -> vec3f {
 fn ggx(alpha: f32, widened_alpha: f32, n_dot_h: f32, n_dot_l: f32, n_dot_v: f32) -> f32 {
     let a2 = alpha * alpha;
     let d = n_dot_h * n_dot_h * (a2 - 1.0) + 1.0;
-    // The peak of the distribution over its widened one: energy spread over the light.
+    // Ratio of the peaks of the distribution and its widened form: spreads the energy over the light.
     let narrowing = alpha / widened_alpha;
     let distribution = a2 / (PI * d * d) * narrowing * narrowing;
     let k = 0.5 * alpha;
@@ -183,7 +183,7 @@ fn ggx(alpha: f32, widened_alpha: f32, n_dot_h: f32, n_dot_l: f32, n_dot_v: f32)
     return distribution / (4.0 * masking);
 }
 
-// Irradiance by the smooth normal, bent towards darkness where triangles around face away.
+// Returns the irradiance of the smooth normal, darkened where triangles around the vertex face away.
 fn coherent_irradiance(x: vec3f, normal: vec3f, bent: f32) -> f32 {
     let smooth_irradiance = irradiance(light, x, normal);
     let facing = facing_irradiance(light, x);
@@ -193,7 +193,7 @@ fn coherent_irradiance(x: vec3f, normal: vec3f, bent: f32) -> f32 {
     return facing * coherent_cosine(smooth_irradiance / facing, bent);
 }
 
-// The strength of a spot towards `x`: KHR_lights_punctual.
+// Returns the strength of a spot towards `x`, as in KHR_lights_punctual.
 fn cone_strength(x: vec3f) -> f32 {
     let cosine = dot(normalize(x - light.center), light.axis);
     let falloff = (cosine - light.cone_outer_cosine) / max(light.cone_inner_cosine - light.cone_outer_cosine, 1e-3);
@@ -220,7 +220,7 @@ fn lit_radiance(surface: Surface, x: vec3f, bent: f32) -> vec3f {
         saturate(dot(normal, nearest.to_light)),
         saturate(dot(normal, to_eye)),
     );
-    // A list of points has no mirror image to be limited by.
+    // A list of points has no mirror image as a limit.
     let mirror_image = select(1.0, BRIGHTEST, light.kind == POINTS);
     let specular = fresnel(f0_of(surface), dot(to_eye, half_way)) * min(reflected * received, mirror_image);
     return (diffuse + specular * light.radiance) * cone_strength(x);
@@ -240,7 +240,7 @@ fn surroundings(direction: vec3f) -> vec3f {
     return mix(GROUND, SKY, smoothstep(-1.0, 1.0, direction.y));
 }
 
-// Karis 2014: the integral of GGX over uniform surroundings, fitted.
+// Returns the fitted integral of GGX over uniform surroundings (Karis 2014).
 fn ambient_reflectance(f0: vec3f, roughness: f32, n_dot_v: f32) -> vec3f {
     let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let a = min(r.x * r.x, exp2(-9.28 * n_dot_v)) * r.x + r.y;
@@ -263,7 +263,7 @@ fn background_radiance(from_eye: vec3f) -> vec3f {
     return mix(BACKGROUND_HORIZON, beyond, smoothstep(0.0, 0.75, sqrt(abs(up)) * 0.9));
 }
 
-// What a layer sends to the eye: the background where it has nothing.
+// Returns the radiance of a layer towards the eye: the background if it has no geometry.
 fn layer_radiance(surface: Surface, has_geometry: bool, direct: vec3f, from_eye: vec3f) -> vec3f {
     if !has_geometry {
         return background_radiance(from_eye);
@@ -271,13 +271,13 @@ fn layer_radiance(surface: Surface, has_geometry: bool, direct: vec3f, from_eye:
     return ambient_radiance(surface, from_eye) + direct;
 }
 
-// Blended surfaces lie over what is behind by their opacity; transmitting ones let it pass, tinted.
+// Composites a surface over the one behind: blended by opacity; transmission is tinted by base colour.
 fn over(surface: Surface, front: vec3f, behind: vec3f) -> vec3f {
     return surface.opacity * (front + surface.transmission * surface.base_color * behind)
         + (1.0 - surface.opacity) * behind;
 }
 
-// Wrensch 2023: into AgX's primaries.
+// Conversion to AgX's primaries and back (Wrensch 2023).
 const AGX_FROM_LINEAR = mat3x3f(
     vec3f(0.842479062253094, 0.0423282422610123, 0.0423756549057051),
     vec3f(0.0784335999999992, 0.878468636469772, 0.0784336),
@@ -288,10 +288,10 @@ const LINEAR_FROM_AGX = mat3x3f(
     vec3f(-0.0980208811401368, 1.15190312990417, -0.0980434501171241),
     vec3f(-0.0990297440797205, -0.0989611768448433, 1.15107367264116),
 );
-// The range of exposures that the curve spans, powers of two.
+// Range of exposures of the curve, as powers of two.
 const AGX_DARKEST = -12.47393;
 const AGX_BRIGHTEST = 4.026069;
-// Sobotka's "punchy" look, its saturation of 1.4 lowered: shadows of strong colours kept turning neon.
+// Sobotka's "punchy" look with less saturation than its 1.4, so that shadows of strong colours do not turn neon.
 const AGX_POWER = 1.35;
 const AGX_SATURATION = 1.25;
 
@@ -301,14 +301,14 @@ fn agx_contrast(x: vec3f) -> vec3f {
     return 15.5 * x4 * x2 - 40.14 * x4 * x + 31.96 * x4 - 6.868 * x2 * x + 0.4298 * x2 + 0.1191 * x - 0.00232;
 }
 
-// Linear scene radiance to linear display values in [0, 1].
+// Converts linear scene radiance to linear display values in [0, 1].
 fn tone_mapped(radiance: vec3f) -> vec3f {
     let exposure = log2(max(AGX_FROM_LINEAR * radiance, vec3f(1e-10)));
     let encoded = saturate((exposure - AGX_DARKEST) / (AGX_BRIGHTEST - AGX_DARKEST));
     let punchy = pow(max(agx_contrast(encoded), vec3f()), vec3f(AGX_POWER));
     let luma = dot(punchy, vec3f(0.2126, 0.7152, 0.0722));
     let saturated = luma + AGX_SATURATION * (punchy - luma);
-    // The curve is made for a display with a power of 2.2.
+    // The curve assumes a display with a power of 2.2.
     return pow(saturate(LINEAR_FROM_AGX * saturated), vec3f(2.2));
 }
 
@@ -317,7 +317,7 @@ fn vertex_screen(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-// One light's radiance from every pixel's surface; blended by addition.
+// Returns one light's radiance from each pixel's surface; blended additively.
 @fragment
 fn fragment_light(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
@@ -325,7 +325,7 @@ fn fragment_light(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if depth == 0.0 {
         discard;
     }
-    // What is in full shadow adds nothing, however much it would be lit: highlights cost the most of a picture.
+    // Pixels in full shadow skip shading, because highlights are the most expensive part of the image.
     let visibility = visibility_at(pixel);
     if all(visibility == vec3f()) {
         discard;

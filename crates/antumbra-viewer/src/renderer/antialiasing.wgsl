@@ -1,29 +1,29 @@
-// Antialiasing of a picture whose masks have one sample a pixel: where a pixel that is shifted by a part of itself takes its visibility
-// from, and the sum of what is seen there. As the laboratory's pictures are made, whose NORMALS_COUNT and ALIKE precede this text.
+// Antialiasing of an image whose masks have one sample per pixel. It finds the source of visibility of each pixel shifted by a
+// subpixel offset, and sums the shifted images. It works as in the laboratory, whose NORMALS_COUNT and ALIKE precede this text.
 
 struct Samples {
-    // Of the image at the pixels' centres.
+    // Inverse projection of the image at the pixels' centres.
     view_from_clip: mat4x4f,
-    // Of the shifted one.
+    // Inverse projection of the shifted image.
     shifted_view_from_clip: mat4x4f,
     world_from_view: mat4x4f,
     eye_in_world: vec3f,
-    // Size of a pixel, metres, at a metre from the eye.
+    // Size of a pixel at a distance of one metre, metres.
     pixel_at_1_m: f32,
     offset_px: vec2f,
-    // Of the sum.
+    // Weight of the image in the sum.
     weight: f32,
     padding: f32,
 }
 
-// In storage, not uniforms: software drivers compile for a uniform's value, here anew for every offset.
+// Storage instead of uniform buffers: software drivers specialise shaders for uniform values, here for every offset.
 @group(0) @binding(0) var<storage, read> samples: Samples;
 @group(0) @binding(1) var depth_image: texture_depth_2d;
 @group(0) @binding(2) var normal_image: texture_2d<f32>;
 @group(0) @binding(3) var shifted_depth_image: texture_depth_2d;
 @group(0) @binding(4) var shifted_normal_image: texture_2d<f32>;
 
-// A mask; or the picture at the pixels' centres, and the shifted one.
+// A mask; or the image at the pixels' centres and the shifted image.
 @group(1) @binding(0) var values_image: texture_2d<f32>;
 @group(1) @binding(1) var shifted_values_image: texture_2d<f32>;
 
@@ -45,7 +45,7 @@ struct Shown {
     pixel_m: f32,
 }
 
-// Pixels between the sample at a pixel and the plane of what is shown, and what their normals count.
+// Returns the distance in pixels between the sample at a pixel and the plane of the shown surface, plus a normal penalty.
 fn unlike(shown: Shown, pixel: vec2i, depth: f32) -> f32 {
     let pos_in_world = position_in_world(samples.view_from_clip, pixel, depth);
     let off_plane = abs(dot(pos_in_world - shown.pos_in_world, shown.normal)) / shown.pixel_m;
@@ -54,7 +54,7 @@ fn unlike(shown: Shown, pixel: vec2i, depth: f32) -> f32 {
 
 struct Source {
     pixel: vec2i,
-    // The surface is the one at the pixel's centre.
+    // Whether the surface is the one at the pixel's centre.
     is_own: bool,
 }
 
@@ -62,7 +62,7 @@ fn source_of(pixel: vec2i) -> Source {
     let own_depth = textureLoad(depth_image, pixel, 0);
     let depth = textureLoad(shifted_depth_image, pixel, 0);
     if depth == 0.0 {
-        // Background has no visibility, and any sample does.
+        // Background has no visibility, so any sample is valid.
         return Source(pixel, own_depth == 0.0);
     }
     let pos_in_world = position_in_world(samples.shifted_view_from_clip, pixel, depth);
@@ -93,14 +93,14 @@ fn source_of(pixel: vec2i) -> Source {
     return best;
 }
 
-// A mask's values for the shifted image; none where the centre's colour is taken: what is dark costs no shading.
+// Returns a mask's values for the shifted image; zero where the centre's colour is used, which skips shading there.
 @fragment
 fn fragment_gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let source = source_of(vec2i(position.xy));
     return select(textureLoad(values_image, source.pixel, 0), vec4f(), source.is_own);
 }
 
-// A share of the sum: the centre's colour, noise and steps included, where the surface is the same; else the shifted picture's.
+// Adds one image to the sum: the centre's colour, noise included, where the surface is the same; else the shifted image's.
 @fragment
 fn fragment_add(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2i(position.xy);

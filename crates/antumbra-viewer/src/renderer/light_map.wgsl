@@ -1,7 +1,7 @@
-// A light map as grey levels: what is near to the light is bright.
+// Light map in grey levels: surfaces near the light are bright.
 
 struct LightMap {
-    // In the picture, pixels.
+    // Corner in the image, pixels.
     corner_px: vec2f,
     side_px: f32,
     is_perspective: u32,
@@ -10,29 +10,29 @@ struct LightMap {
     empty_depth: f32,
     nearest_m: f32,
     farthest_m: f32,
-    // How channels lie in a filtered map's words.
+    // Packing of channels in a filtered map's words.
     packing: u32,
     size_texels: vec2u,
-    // Where a filtered map's level begins in its texture.
+    // Origin of a filtered map's level in its texture.
     origin_texels: vec2u,
-    // What depths were multiplied with before they were stored: of the place, x + y u + z v.
+    // Factor of stored depths at the map position (u, v): x + y u + z v.
     depth_warp: vec4f,
-    // Where nothing casts; sRGB.
+    // Colour of texels without casters; sRGB.
     empty_color: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> map: LightMap;
 @group(0) @binding(1) var depths: texture_depth_2d;
 @group(0) @binding(2) var depths_of_samples: texture_depth_multisampled_2d;
-// The least and the greatest depth of a square of texels.
+// Minimum and maximum depth of a square of texels.
 @group(0) @binding(3) var extremes: texture_2d<f32>;
 @group(0) @binding(4) var words: texture_2d<u32>;
-// The least and the greatest first channel, as words in the order of floats.
+// Minimum and maximum of the first channel, as words ordered like floats.
 @group(0) @binding(5) var<storage, read_write> sought: array<atomic<u32>, 2>;
-// The same, once they are known.
+// The same values for reading, once they are complete.
 @group(0) @binding(6) var<storage, read> ends: array<u32, 2>;
 
-// The farthest is told from where nothing casts.
+// Grey level of the farthest surface, which must differ from texels without casters.
 const DARKEST = 0.08;
 
 @vertex
@@ -63,14 +63,14 @@ fn fragment_single(@builtin(position) position: vec4f) -> @location(0) vec4f {
     return color_of(textureLoad(depths, texel, 0), texel);
 }
 
-// The first sample stands for its texel.
+// Uses the first sample of the texel.
 @fragment
 fn fragment_multisampled(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = texel_at(position);
     return color_of(textureLoad(depths_of_samples, texel, 0), texel);
 }
 
-// The nearest: the greatest where nothing is 0, the least where nothing is 1.
+// Uses the nearest depth: the maximum if empty texels are 0, the minimum if they are 1.
 @fragment
 fn fragment_extremes(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = texel_at(position);
@@ -96,7 +96,7 @@ fn first_channel(texel: vec2u) -> f32 {
     }
 }
 
-// Words that are ordered as floats are, those below zero among them.
+// Maps a float to a word with the same order, negative numbers included.
 fn ordered_from_float(value: f32) -> u32 {
     let bits = bitcast<u32>(value);
     return select(bits | 0x80000000u, ~bits, (bits & 0x80000000u) != 0u);
@@ -120,7 +120,7 @@ fn seek_ends(@builtin(global_invocation_id) id: vec3u) {
 fn fragment_filtered(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let least = float_from_ordered(ends[0]);
     let greatest = float_from_ordered(ends[1]);
-    // Of one value alone all are bright.
+    // If all values are equal, all texels are bright.
     let part = (first_channel(texel_at(position)) - least) / max(greatest - least, 1e-30);
     return vec4f(vec3f(mix(1.0, DARKEST, saturate(part))), 1.0);
 }

@@ -1,24 +1,24 @@
-// Lists per texel of a light's map, as colours by how long they are.
+// Lengths of a light map's lists per texel, as colours.
 
 struct Lists {
-    // In the picture, pixels.
+    // Corner in the image, pixels.
     corner_px: vec2f,
     extent_px: vec2f,
     size_texels: vec2u,
-    // The level's first list.
+    // Index of the level's first list.
     first: u32,
-    // 1: a list's words are where it begins and how long it is. 0: where it begins.
+    // 1: a list's words are its offset and its length. 0: its offset alone.
     is_counted: u32,
-    // 1: texels lie along a curve of halvings. 0: row after row. 2: a word tells which.
+    // Order of texels. 1: Z-order curve. 0: row by row. 2: the word at `told_by` is 1 for the curve.
     order: u32,
     told_by: u32,
     padding_1: u32,
     padding_2: u32,
-    // Where nothing is listed; sRGB.
+    // Colour of empty lists; sRGB.
     empty_color: vec4f,
 }
 
-// How long the longest list is, and how much is listed in all.
+// Length of the longest list, and sum of all lengths.
 struct Totals {
     longest: atomic<u32>,
     sum: atomic<u32>,
@@ -27,10 +27,10 @@ struct Totals {
 @group(0) @binding(0) var<uniform> lists: Lists;
 @group(0) @binding(1) var<storage, read> words: array<u32>;
 @group(0) @binding(2) var<storage, read_write> totals: Totals;
-// The same, once all are counted: longest, sum.
+// The same values for reading, once they are complete: longest, sum.
 @group(0) @binding(3) var<storage, read> counted: array<u32, 2>;
 
-// Bits of a map's side: 65536 texels, more than any device has.
+// Number of bits of a map's side: 65536 texels, more than any device supports.
 const MAX_BITS = 16u;
 
 fn length_at(texel: vec2u) -> u32 {
@@ -38,7 +38,7 @@ fn length_at(texel: vec2u) -> u32 {
     if lists.order == 1u || (lists.order == 2u && words[lists.told_by] == 1u) {
         i = 0u;
         for (var bit = 0u; bit < MAX_BITS; bit++) {
-            // Chromium's compiler wants every parenthesis.
+            // Chromium's compiler requires all parentheses.
             i |= (((texel.x >> bit) & 1u) << (2u * bit)) | (((texel.y >> bit) & 1u) << (2u * bit + 1u));
         }
     }
@@ -66,7 +66,7 @@ fn vertex_screen(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-// From dark violet over red to light yellow, ever brighter; sRGB.
+// Colour ramp from dark violet over red to light yellow, of increasing brightness; sRGB.
 fn ramp(part: f32) -> vec3f {
     let from_violet = mix(vec3f(0.20, 0.07, 0.42), vec3f(0.86, 0.30, 0.26), saturate(2.0 * part));
     return mix(from_violet, vec3f(1.0, 0.96, 0.62), saturate(2.0 * part - 1.0));
@@ -80,8 +80,8 @@ fn fragment_lists(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if length == 0u {
         return lists.empty_color;
     }
-    // The longest is the brightest, also where none has more than one; of others, one is the darkest, and twice as long is a
-    // step brighter, whatever the length.
+    // The longest list is the brightest, even if its length is 1. Otherwise length 1 is the darkest, and each doubling is one
+    // equal step brighter.
     let part = log2(f32(length)) / log2(f32(max(counted[0], 2u)));
     return vec4f(ramp(select(part, 1.0, length == counted[0])), 1.0);
 }

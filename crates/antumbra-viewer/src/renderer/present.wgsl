@@ -1,11 +1,11 @@
-// The window's picture: of each pixel the side of the divider that it lies on, as the view asks.
+// The window's image: each pixel shows its side of the divider, in the selected view.
 
 struct Present {
-    // A diverging map over ±error_range, from the most negative error to the most positive; sRGB.
+    // Diverging colour map over ±error_range, from the most negative error to the most positive; sRGB.
     ramp: array<vec4f, 11>,
-    // Which colours stand for pixels that are not judged.
+    // Colour of pixels that are not judged.
     not_judged: vec4f,
-    // Columns from here on show the right side.
+    // First column of the right side.
     divider_px: u32,
     show: u32,
     // Bit 0: the left side's mask is tinted; bit 1: the right side's.
@@ -23,7 +23,7 @@ const TRUTH = 3u;
 @group(0) @binding(2) var right_picture: texture_2d<f32>;
 @group(0) @binding(3) var left_mask: texture_2d<f32>;
 @group(0) @binding(4) var right_mask: texture_2d<f32>;
-// Below zero where it is not judged.
+// Traced visibility; below zero where pixels are not judged.
 @group(0) @binding(5) var truth: texture_2d<f32>;
 
 @vertex
@@ -31,7 +31,7 @@ fn vertex_screen(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-// IEC 61966-2-1.
+// Converts linear values to sRGB (IEC 61966-2-1).
 fn srgb_from_linear(linear: vec3f) -> vec3f {
     let v = saturate(linear);
     return select(1.055 * pow(v, vec3f(1.0 / 2.4)) - 0.055, 12.92 * v, v <= vec3f(0.0031308));
@@ -61,7 +61,7 @@ fn fragment_present(@builtin(position) position: vec4f) -> @location(0) vec4f {
     visibility = select(visibility.rrr, visibility, is_tinted);
     let traced = load(truth, pixel).r;
     switch present.show {
-        // Values are grey levels, without a curve: half visibility is half of white.
+        // Values are linear grey levels: visibility 0.5 is half of white.
         case VISIBILITY: {
             return vec4f(visibility, 1.0);
         }

@@ -1,4 +1,4 @@
-//! Pipelines announced on standard error, each before a driver compiles it and prints its statistics there.
+//! Announcement of pipelines on standard error, each before a driver compiles it and prints its statistics there.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -9,25 +9,25 @@ use crate::device;
 use crate::makings::{self, Extent};
 use crate::recorder::{Pipeline, Program, Recorder, stage_name};
 
-/// Beginnings of lines that are ours.
+/// Prefixes of announcement lines.
 pub const DEVICE: &str = "@device ";
 pub const TECHNIQUE: &str = "@technique ";
 pub const PIPELINE: &str = "@pipeline ";
 pub const END: &str = "@end";
 
-/// Device that pipelines are made on.
+/// Device that pipelines are created on.
 #[derive(Clone)]
 enum Place {
-    /// wgpu's own, for which nothing is compiled: these are a technique's pipelines at its default settings.
+    /// wgpu's no-op device, which compiles nothing. Used for a technique's pipelines at its default settings.
     NoOp(&'static str),
-    /// Vulkan's.
+    /// Vulkan device.
     Driver,
 }
 
-/// Announces the pipelines of each technique at its default settings, then makes all pipelines by the first Vulkan driver.
+/// Announces the pipelines of each technique at its default settings, then creates all pipelines on the first Vulkan driver.
 ///
 /// # Errors
-/// Where there is no driver, or a pipeline is refused.
+/// If there is no driver, or a pipeline is rejected.
 pub fn announce_all() -> Result<(), String> {
     let place = Arc::new(Mutex::new(Place::Driver));
     let recorder = Mutex::new(Recorder::default());
@@ -46,7 +46,7 @@ pub fn announce_all() -> Result<(), String> {
     let set_place = |to| *place.lock().unwrap_or_else(PoisonError::into_inner) = to;
     for &kind in TechniqueKind::ALL {
         set_place(Place::NoOp(kind.name()));
-        // On a device of its own, for pipelines that techniques share are made once on each.
+        // Each technique needs its own device, because shared pipelines are created only once per device.
         makings::make_technique(&device::no_op(device::FEATURES)?, kind, Extent::Default)?;
     }
     set_place(Place::Driver);

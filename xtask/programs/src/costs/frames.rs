@@ -1,4 +1,4 @@
-//! Commands of one frame of each technique, by `antumbra bench` on the null device, whose driver prints them.
+//! Commands of one frame of each technique: `antumbra bench` runs on the null device, whose driver prints them.
 //!
 //! Nothing is drawn: values that techniques read back are zero, and commands that depend on them are missing.
 
@@ -18,22 +18,22 @@ pub const SIZE: &str = "1920x1080";
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Frame {
     pub technique: String,
-    /// Direct dispatches, with those by which wgpu checks indirect ones.
+    /// Number of direct dispatches, including those with which wgpu validates indirect ones.
     pub dispatches: usize,
     pub indirect_dispatches: usize,
-    /// Barriers on memory, buffers or images.
+    /// Number of barriers on memory, buffers or images.
     pub barriers: usize,
     pub render_passes: usize,
     pub draws: usize,
     pub copies: usize,
-    /// Bytes of the technique's textures and buffers.
+    /// Memory of the technique's textures and buffers, bytes.
     pub memory_bytes: u64,
 }
 
-/// Counts a frame of each technique on a family's null device; files go to `folder`.
+/// Counts the commands of a frame of each technique on a family's null device; files go to `folder`.
 ///
 /// # Errors
-/// The first technique that cannot be drawn with.
+/// The first technique that fails.
 pub fn count(
     device: &NullDevice<'_>,
     antumbra: &Path,
@@ -71,7 +71,7 @@ fn count_one(
     Ok(Frame { technique: technique.to_owned(), memory_bytes, ..counted(&commands) })
 }
 
-/// The commands of the last frame that takes times.
+/// Returns the commands of the last frame with timestamps.
 fn last_timed(log: &str) -> Option<Vec<&str>> {
     let commands = log.lines().filter_map(|line| line.strip_prefix("@command ")).collect::<Vec<_>>();
     let mut frames = commands.rsplit(|command| *command == "submit");
@@ -91,7 +91,7 @@ fn counted(commands: &[&str]) -> Frame {
     }
 }
 
-/// The memory in the JSON of a bench of one technique.
+/// Returns the memory in the JSON of a benchmark of one technique, bytes.
 fn memory_in(results: &str) -> Option<u64> {
     let results: Value = serde_json::from_str(results).ok()?;
     results["rows"][0]["ran"]["memory_bytes"].as_u64()

@@ -1,26 +1,26 @@
-//! Limits of registers and spills, and exceptions to them from `exceptions.toml`.
+//! Limits of registers and spills, and exceptions from `exceptions.toml`.
 
 use serde::Deserialize;
 
 use super::table::{Counts, Table};
 
-/// Vector registers of a thread. With more, a SIMD unit of RDNA 2 holds fewer than eight waves, in Mesa's count: too few to hide loads.
+/// Maximum vector registers per thread. With more, an RDNA 2 SIMD unit holds fewer than eight waves (Mesa's count): too few to hide loads.
 pub const MAX_REGISTERS: u32 = 128;
 
-/// The exceptions of the repository.
+/// Exceptions of the repository.
 const EXCEPTIONS: &str = include_str!("../../exceptions.toml");
 
-/// Exceptions, and the compiler that they are for.
+/// Exceptions, and the compiler that they apply to.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Exceptions {
-    /// Beginning of Mesa's version.
+    /// Prefix of Mesa's version.
     mesa: String,
     #[serde(default, rename = "exception")]
     all: Vec<Exception>,
 }
 
-/// Higher limits for pipelines of a label.
+/// Higher limits for pipelines with a label.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Exception {
@@ -31,10 +31,10 @@ struct Exception {
 }
 
 impl Exceptions {
-    /// Those of the repository.
+    /// Reads the exceptions of the repository.
     ///
     /// # Errors
-    /// Where the file is not of that form.
+    /// If the file has another form.
     pub fn read() -> Result<Self, String> {
         Self::of_text(EXCEPTIONS)
     }
@@ -47,10 +47,10 @@ impl Exceptions {
         }
     }
 
-    /// Whether a table is of the compiler that these are for.
+    /// Checks that a table comes from the compiler that the exceptions apply to.
     ///
     /// # Errors
-    /// Which compilers there are.
+    /// The expected and the actual compiler.
     pub fn are_for(&self, table: &Table) -> Result<(), String> {
         let version = table.driver.strip_prefix("Mesa ").unwrap_or(&table.driver);
         let is_it =
@@ -58,7 +58,7 @@ impl Exceptions {
         if is_it { Ok(()) } else { Err(format!("limits are for Mesa {}, and this is {}", self.mesa, table.driver)) }
     }
 
-    /// Reason of a label's exception.
+    /// Returns the reason of a label's exception.
     pub fn reason(&self, label: &str) -> Option<&str> {
         self.of(label).map(|exception| exception.why.as_str())
     }
@@ -67,7 +67,7 @@ impl Exceptions {
         self.all.iter().find(|exception| exception.label == label)
     }
 
-    /// Faults: programs beyond the limits and their exceptions, and exceptions that no program needs.
+    /// Returns faults: programs beyond the limits and their exceptions, and exceptions that no program needs.
     pub fn judge(&self, tables: &[Table]) -> Vec<String> {
         let mut faults = Vec::new();
         for table in tables {
@@ -95,7 +95,7 @@ impl Exceptions {
 }
 
 impl Exception {
-    /// Faults of an exception that no program needs.
+    /// Returns the faults of an exception that no program needs.
     fn in_vain(&self, tables: &[Table]) -> Vec<String> {
         let most = |count: fn(&Counts) -> u32| {
             let rows = tables.iter().flat_map(|table| &table.rows).filter(|row| row.name.label == self.label);

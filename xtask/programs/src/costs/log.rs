@@ -1,4 +1,4 @@
-//! Log of a run: announcements of pipelines, and after each the statistics that Mesa's driver prints with `RADV_DEBUG=shaderstats`, a
+//! Log of a run: announcements of pipelines, each followed by the statistics that Mesa's driver prints with `RADV_DEBUG=shaderstats`, a
 //! block for each stage.
 
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ use super::table::{Counts, Name, Row, Table};
 #[derive(Debug, Default, PartialEq)]
 pub struct Log {
     pub table: Table,
-    /// The stages of each technique's pipelines at its default settings, in order.
+    /// Stages of each technique's pipelines at its default settings, in order.
     pub techniques: Vec<(String, Vec<Name>)>,
 }
 
@@ -20,7 +20,7 @@ impl Log {
     /// Reads the log of a run on a family of devices.
     ///
     /// # Errors
-    /// Where the run did not come to its end, or the driver printed nothing.
+    /// If the run did not finish, or the driver printed nothing.
     pub fn read(text: &str) -> Result<Self, String> {
         let (mut log, mut reader) = (Self::default(), Reader::default());
         let mut has_ended = false;
@@ -62,17 +62,17 @@ impl Log {
     }
 }
 
-/// Reads a driver's blocks.
+/// Reader of a driver's statistics blocks.
 #[derive(Default)]
 struct Reader {
-    /// Stages of the pipeline that was announced last; none before the first, when the driver compiles programs of its own.
+    /// Stages of the pipeline announced last; empty before the first, while the driver compiles its own programs.
     names: Vec<Name>,
     stage: String,
     block: Option<HashMap<String, u32>>,
 }
 
 impl Reader {
-    /// The row that ends with a line.
+    /// Reads a line. Returns the row that ends with it.
     fn read(&mut self, line: &str) -> Option<Row> {
         if let Some(title) = line.strip_suffix(':').filter(|title| title.contains(" Shader")) {
             // "Compute Shader:", "Pixel Shader:", "Vertex Shader as ESGS:".
@@ -85,7 +85,7 @@ impl Reader {
             let name = self.names.iter().find(|name| name.stage == self.stage)?.clone();
             return Some(Row { name, counts: counts_in(&block) });
         } else if let (Some(block), Some((key, value))) = (&mut self.block, line.split_once(": ")) {
-            // The hashes are no numbers of 32 bits, and no counts.
+            // Hashes are not counts, and exceed 32 bits.
             block.extend(value.trim().parse().ok().map(|value| (key.to_owned(), value)));
         }
         None
@@ -113,7 +113,7 @@ fn word<'a>(value: &'a Value, key: &str) -> &'a str {
     value[key].as_str().unwrap_or_default()
 }
 
-/// The stages of an announced pipeline.
+/// Returns the stages of an announced pipeline.
 fn names_of(pipeline: &Value) -> Vec<Name> {
     let programs = pipeline["programs"].as_array().map(Vec::as_slice).unwrap_or_default();
     let own = |value, key| word(value, key).to_owned();
@@ -128,7 +128,7 @@ fn names_of(pipeline: &Value) -> Vec<Name> {
     programs.iter().map(name).collect()
 }
 
-/// `NAVI21` of `Null hardware (RADV NAVI21)`.
+/// Returns the family in a device's name: `NAVI21` in `Null hardware (RADV NAVI21)`.
 fn family_in(device: &str) -> String {
     let inside = device.split_once("RADV ").map_or(device, |(_, after)| after);
     inside.trim_end_matches(')').to_owned()

@@ -1,4 +1,4 @@
-//! Pipelines' part of `cargo xtask gpu-cost`: counts by Mesa's compiler for AMD, on the null device of Mesa's RADV, which the driver in
+//! Pipeline part of `cargo xtask gpu-cost`: counts by Mesa's AMD compiler, on the null device of Mesa's RADV, which the driver in
 //! `xtask/null-device` wraps.
 
 pub mod announcement;
@@ -19,10 +19,10 @@ use null_device::NullDevice;
 use page::Title;
 use table::Table;
 
-/// A family of devices.
+/// Family of devices.
 struct Family {
     title: &'static str,
-    /// Names in versions of Mesa, the newest first.
+    /// Names in different versions of Mesa, the newest first.
     names: &'static [&'static str],
 }
 
@@ -33,22 +33,22 @@ const FAMILIES: [Family; 2] = [
 
 /// Inputs and outputs of a run.
 pub struct Options {
-    /// Folder that tables and the drivers' logs are written to.
+    /// Output folder of tables and the drivers' logs.
     pub folder: PathBuf,
-    /// The library of Mesa's RADV.
+    /// Library of Mesa's RADV.
     pub driver: OsString,
-    /// The library of the driver that wraps it.
+    /// Library of the driver that wraps RADV.
     pub null_device: OsString,
-    /// The page to write, and the command `antumbra`, which draws the frames that are on it.
+    /// Page to write, and the command `antumbra`, which draws the page's frames.
     pub page: Option<(PathBuf, PathBuf)>,
-    /// An earlier table to compare with.
+    /// Earlier table for comparison.
     pub earlier: Option<PathBuf>,
 }
 
-/// Counts the costs of every pipeline for each family, and writes them down; judges them where no page is asked for.
+/// Counts the costs of every pipeline for each family and writes them to files. Fails beyond the limits unless a page is requested.
 ///
 /// # Errors
-/// Where the driver cannot be used, a limit is passed, or an exception is not needed.
+/// If the driver cannot be used, a limit is exceeded, or an exception is not needed.
 pub fn run(options: &Options) -> Result<(), String> {
     let exceptions = Exceptions::read()?;
     let earlier = options.earlier.as_deref().map(read_table).transpose()?;
@@ -80,7 +80,7 @@ pub fn run(options: &Options) -> Result<(), String> {
 /// Compares tables with the limits.
 ///
 /// # Errors
-/// What is beyond them, where that is to fail.
+/// If `fails`, and a limit is exceeded or an exception is not needed.
 fn judge(exceptions: &Exceptions, tables: Vec<Table>, fails: bool) -> Result<(), String> {
     if let Some(other) = tables.iter().find_map(|table| exceptions.are_for(table).err()) {
         eprintln!("programs: SKIPPED limits of registers and spills: {other}");
@@ -97,7 +97,7 @@ fn judge(exceptions: &Exceptions, tables: Vec<Table>, fails: bool) -> Result<(),
     }
 }
 
-/// The driver's counts for a family; none, and a message, where it does not know the family.
+/// Returns the driver's counts for a family. Prints a message and returns `None` if it does not know the family.
 fn measure(options: &Options, device: &NullDevice<'_>, family: &Family) -> Result<Option<(Title, Log)>, String> {
     let mut problem = String::new();
     for name in family.names {
@@ -114,17 +114,17 @@ fn measure(options: &Options, device: &NullDevice<'_>, family: &Family) -> Resul
     Ok(None)
 }
 
-/// Standard error of this program on the null device.
+/// Returns the standard error of this program on the null device.
 fn log_of(device: &NullDevice<'_>, family: &str) -> Result<String, String> {
     let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program is: {error}"))?;
     let mut command = device.command(&own, family);
-    // A pipeline out of a cache prints nothing.
+    // Cached pipelines print nothing.
     command.arg(ANNOUNCE).env("RADV_DEBUG", "shaderstats,nocache").env("MESA_SHADER_CACHE_DISABLE", "true");
     let output = command.output().map_err(|error| format!("cannot run on the null device: {error}"))?;
     Ok(String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
-/// The argument by which this program announces pipelines.
+/// Argument with which this program announces pipelines.
 pub const ANNOUNCE: &str = "announce";
 
 fn read_table(file: &Path) -> Result<Table, String> {

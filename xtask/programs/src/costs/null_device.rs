@@ -5,7 +5,7 @@ use std::process::Command;
 
 use super::{Options, write};
 
-/// The driver that wraps RADV's, as Vulkan's loader finds it.
+/// Driver that wraps RADV's, with its manifest for the Vulkan loader.
 pub struct NullDevice<'a> {
     options: &'a Options,
     manifest: PathBuf,
@@ -15,7 +15,7 @@ impl<'a> NullDevice<'a> {
     /// Writes the driver's manifest.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// If it cannot be written.
     pub fn new(options: &'a Options) -> Result<Self, String> {
         let manifest = options.folder.join("null_device.json");
         let library = options.null_device.to_string_lossy();
@@ -24,10 +24,10 @@ impl<'a> NullDevice<'a> {
         Ok(Self { options, manifest })
     }
 
-    /// A program on the device of a family.
+    /// Returns the command of a program on a family's device.
     pub fn command(&self, program: &Path, family: &str) -> Command {
         let mut command = Command::new(program);
-        // Vulkan's loader has gone by both names.
+        // The variable's name depends on the version of the Vulkan loader.
         command.env("VK_DRIVER_FILES", &self.manifest).env("VK_ICD_FILENAMES", &self.manifest);
         command.env("ANTUMBRA_NULL_DEVICE_DRIVER", &self.options.driver).env("RADV_FORCE_FAMILY", family);
         command

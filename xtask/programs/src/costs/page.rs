@@ -5,16 +5,16 @@ use super::limits::{Exceptions, MAX_REGISTERS};
 use super::log::Log;
 use super::table::{Counts, Name, Row, Table};
 
-/// Registers that a pipeline is listed with.
+/// Number of registers above which a pipeline is listed.
 const MANY_REGISTERS: u32 = 96;
 
-/// A family's architecture and year.
+/// Architecture and year of a family.
 pub struct Title(pub &'static str);
 
-/// Writes the page of a log for each family and of each technique's frame.
+/// Returns the page, from a log for each family and the frames of each technique.
 ///
 /// # Errors
-/// Where a technique draws with a pipeline that was not counted.
+/// If a technique draws with a pipeline that was not counted.
 pub fn page(logs: &[(Title, Log)], frames: &[Frame], exceptions: &Exceptions) -> Result<String, String> {
     let families: Vec<String> = logs.iter().map(|(title, log)| format!("{} ({})", log.table.family, title.0)).collect();
     let driver = logs.first().map_or("", |(_, log)| log.table.driver.as_str());
@@ -36,12 +36,12 @@ pub fn page(logs: &[(Title, Log)], frames: &[Frame], exceptions: &Exceptions) ->
     Ok(text)
 }
 
-/// A line of a table.
+/// Returns a line of a table.
 fn line(cells: impl IntoIterator<Item = String>) -> String {
     format!("| {} |\n", cells.into_iter().collect::<Vec<_>>().join(" | "))
 }
 
-/// The head of a table: columns for all, and columns for each family.
+/// Returns the head of a table: common columns, columns for each family, and last columns.
 fn head(logs: &[(Title, Log)], common: &[&str], of_family: &[&str], last: &[&str]) -> String {
     let of_families = logs.iter().flat_map(|(_, log)| {
         of_family.iter().enumerate().map(|(i, column)| match i {
@@ -69,7 +69,7 @@ fn techniques(logs: &[(Title, Log)]) -> Result<String, String> {
         for (_, log) in logs {
             let rows = rows_of(&log.table, stages)?;
             let counts = || rows.iter().map(|row| row.counts);
-            // Of other stages it is where the driver passes vertices on.
+            // In other stages it is used by the driver to pass vertices on.
             let memory = rows.iter().filter(|row| row.name.stage == "compute").map(|row| row.counts.workgroup_bytes);
             let of_all = [
                 counts().map(|counts| counts.registers).max(),
@@ -85,7 +85,7 @@ fn techniques(logs: &[(Title, Log)]) -> Result<String, String> {
     Ok(text)
 }
 
-/// Commands of a frame of each technique.
+/// Returns the section on commands of a frame of each technique.
 fn commands(frames: &[Frame]) -> String {
     let mut text = format!(
         "## Commands of a frame\n\nOf `{SCENE}` at {SIZE} with default settings, after the first frames; MiB that the technique keeps. \
@@ -120,7 +120,7 @@ fn commands(frames: &[Frame]) -> String {
     text
 }
 
-/// Rows of a technique's stages.
+/// Returns the rows of a technique's stages.
 fn rows_of<'a>(table: &'a Table, stages: &[Name]) -> Result<Vec<&'a Row>, String> {
     let mut rows = Vec::new();
     for stage in stages {
@@ -133,7 +133,7 @@ fn rows_of<'a>(table: &'a Table, stages: &[Name]) -> Result<Vec<&'a Row>, String
     Ok(rows)
 }
 
-/// Pipelines with many registers for any family.
+/// Returns the section on pipelines with many registers for any family.
 fn wide_pipelines(logs: &[(Title, Log)]) -> String {
     let mut wide: Vec<(u32, &Name)> = Vec::new();
     for Row { name, counts } in logs.iter().flat_map(|(_, log)| &log.table.rows) {
@@ -150,7 +150,7 @@ fn wide_pipelines(logs: &[(Title, Log)]) -> String {
     for (_, name) in wide {
         let mut cells = vec![format!("`{}`", name.text())];
         for (_, log) in logs {
-            // Several where one program is compiled for several layouts.
+            // There are several if one program is compiled for several layouts.
             let counts: Vec<Counts> =
                 log.table.rows.iter().filter(|row| row.name == *name).map(|row| row.counts).collect();
             let all = |count: fn(&Counts) -> u32| {
@@ -168,7 +168,7 @@ fn wide_pipelines(logs: &[(Title, Log)]) -> String {
     text
 }
 
-/// Exceptions with their counts and reasons.
+/// Returns the section on exceptions, with their counts and reasons.
 fn exceptions_of(logs: &[(Title, Log)], exceptions: &Exceptions) -> String {
     let mut labels: Vec<&str> = Vec::new();
     for Row { name, .. } in logs.iter().flat_map(|(_, log)| &log.table.rows) {

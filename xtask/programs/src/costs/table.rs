@@ -1,4 +1,4 @@
-//! Tables of a compiler's counts, a row for each stage of a pipeline, as text with tabs between columns.
+//! Tables of a compiler's counts: one row for each stage of a pipeline, as tab-separated text.
 
 use std::collections::HashMap;
 
@@ -16,12 +16,12 @@ pub struct Name {
 }
 
 impl Name {
-    /// Whether another is of the same program. Techniques that share one give its pipeline labels of their own.
+    /// Whether another name is of the same program. Techniques that share a program label its pipeline differently.
     pub fn is_same_program(&self, other: &Self) -> bool {
         Self { label: other.label.clone(), ..self.clone() } == *other
     }
 
-    /// As a person reads it.
+    /// Returns the name in readable form.
     pub fn text(&self) -> String {
         let mut text = self.label.clone();
         if self.module != self.label {
@@ -37,26 +37,26 @@ impl Name {
     }
 }
 
-/// Counts of one program.
+/// Counts of a program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Counts {
-    /// Vector registers of a thread.
+    /// Number of vector registers per thread.
     pub registers: u32,
-    /// Waves that a SIMD unit holds at a time.
+    /// Number of waves that a SIMD unit holds at a time.
     pub waves: u32,
-    /// Vector registers that are kept in memory instead.
+    /// Number of vector registers spilled to memory.
     pub spills: u32,
-    /// Scalar registers that are kept in lanes of vector registers.
+    /// Number of scalar registers spilled to lanes of vector registers.
     pub scalar_spills: u32,
-    /// Bytes of workgroup memory.
+    /// Workgroup memory, bytes.
     pub workgroup_bytes: u32,
-    /// Bytes of memory of a thread, for spills and arrays that are indexed dynamically.
+    /// Memory per thread for spills and dynamically indexed arrays, bytes.
     pub scratch_bytes: u32,
     pub instructions: u32,
 }
 
 impl Counts {
-    /// Each count by its name.
+    /// Returns each count with its name.
     fn named(&self) -> [(&'static str, u32); 7] {
         [
             ("registers", self.registers),
@@ -70,28 +70,28 @@ impl Counts {
     }
 }
 
-/// A stage of a pipeline.
+/// Row of a table: a stage of a pipeline.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Row {
     pub name: Name,
     pub counts: Counts,
 }
 
-/// Counts for a family of devices.
+/// Table of counts for a family of devices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// As Mesa names it.
+    /// Mesa's name of the family.
     pub family: String,
-    /// Mesa's version.
+    /// Version of Mesa.
     pub driver: String,
-    /// Sorted, each once.
+    /// Distinct rows, sorted.
     pub rows: Vec<Row>,
 }
 
 const NAMES: [&str; 6] = ["label", "stage", "module", "entry", "constants", "state"];
 
 impl Table {
-    /// As text.
+    /// Returns the table as text.
     pub fn to_text(&self) -> String {
         let columns: Vec<&str> = NAMES.into_iter().chain(Counts::default().named().map(|(name, _)| name)).collect();
         let mut text = format!("# {}\n# {}\n{}\n", self.family, self.driver, columns.join("\t"));
@@ -105,10 +105,10 @@ impl Table {
         text
     }
 
-    /// From text.
+    /// Reads a table from text.
     ///
     /// # Errors
-    /// Where it is not such a table.
+    /// If it is not such a table.
     pub fn of_text(text: &str) -> Result<Self, String> {
         let mut lines = text.lines();
         let mut heading = || lines.next()?.strip_prefix("# ").map(str::to_owned);
@@ -121,7 +121,7 @@ impl Table {
         Ok(Self { rows: rows.collect::<Result<_, _>>()?, ..empty })
     }
 
-    /// Changes since an earlier table, a line for each count.
+    /// Returns the changes since an earlier table, one line per count.
     pub fn difference(&self, earlier: &Self) -> String {
         let mut text = format!("{}: {} → {}\n", self.family, earlier.driver, self.driver);
         let (before, after) = (earlier.by_place(), self.by_place());
@@ -158,7 +158,7 @@ impl Table {
         text
     }
 
-    /// Counts by name, and by order where several rows have one.
+    /// Returns the counts by name, and by order among rows with the same name.
     fn by_place(&self) -> HashMap<(&Name, usize), Counts> {
         let mut places = HashMap::new();
         for row in &self.rows {

@@ -1,4 +1,4 @@
-//! Compilers of other systems as programs of their own: what makes one abort or hang is an error like any other.
+//! Compilers of other systems in separate processes, so that an abort or a hang is an error like any other.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -10,15 +10,15 @@ use naga::ShaderStage;
 
 use super::Options;
 
-/// The first argument by which this program compiles one file by DXC.
+/// First argument with which this program compiles one file with DXC.
 pub const DXIL: &str = "dxil";
 
-/// Far more than the slowest program takes.
+/// Time limit, far above the slowest program's time.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Compilers that are available.
+/// Available compilers.
 pub struct Compilers {
-    /// This program, which calls DXC's library.
+    /// Path of this program, which calls DXC's library.
     own: PathBuf,
     dxc: Option<OsString>,
     spirv_val: Option<OsString>,
@@ -26,13 +26,13 @@ pub struct Compilers {
 
 impl Compilers {
     /// # Errors
-    /// Where this program does not know where it is.
+    /// If the path of this program is unknown.
     pub fn new(options: &Options) -> Result<Self, String> {
         let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program is: {error}"))?;
         Ok(Self { own, dxc: options.dxc.clone(), spirv_val: options.spirv_val.clone() })
     }
 
-    /// DXC's first error for a file of HLSL.
+    /// Returns DXC's first error for an HLSL file.
     pub fn dxc(&self, file: &Path, entry: &str, stage: ShaderStage) -> Option<String> {
         let profile = match stage {
             ShaderStage::Vertex => "vs_6_0",
@@ -44,7 +44,7 @@ impl Compilers {
         run(&mut command, &file.with_extension("dxc.txt"))
     }
 
-    /// spirv-val's first error for a file of SPIR-V.
+    /// Returns spirv-val's first error for a SPIR-V file.
     pub fn spirv_val(&self, file: &Path) -> Option<String> {
         let mut command = Command::new(self.spirv_val.as_ref()?);
         command.args(["--target-env", "vulkan1.1"]).arg(file);
@@ -52,7 +52,7 @@ impl Compilers {
     }
 }
 
-/// Runs a compiler, whose messages go to `log`; its first error, where it refuses, dies or hangs.
+/// Runs a compiler, whose messages go to `log`. Returns its first error if it fails, dies or hangs.
 fn run(command: &mut Command, log: &Path) -> Option<String> {
     let status = match limited(command, log) {
         Ok(Some(status)) => status,
@@ -70,7 +70,7 @@ fn run(command: &mut Command, log: &Path) -> Option<String> {
     })
 }
 
-/// Exit status of a command; none where it takes longer than [`PATIENCE`].
+/// Returns the exit status of a command; `None` if it takes longer than [`PATIENCE`].
 fn limited(command: &mut Command, log: &Path) -> std::io::Result<Option<ExitStatus>> {
     let messages = File::create(log)?;
     let mut running = command.stdout(messages.try_clone()?).stderr(messages).spawn()?;
@@ -85,10 +85,10 @@ fn limited(command: &mut Command, log: &Path) -> std::io::Result<Option<ExitStat
     running.wait().map(|_| None)
 }
 
-/// The first line that names an error, else the first line, from its place in the file on.
+/// Returns the first line that names an error, else the first line, without the file name.
 fn first_error(messages: &str) -> Option<String> {
     let line = messages.lines().find(|line| line.contains("error")).or_else(|| messages.lines().next())?;
-    // DXC's name of the file says nothing.
+    // The file name is always the same.
     let line = line.strip_prefix("hlsl.hlsl:").unwrap_or(line);
     Some(super::one_line(line))
 }

@@ -1,7 +1,7 @@
-//! Microsoft's DXC as a library, by its interface `IDxcCompiler3` (`dxcapi.h` of DirectXShaderCompiler).
+//! Microsoft's DXC as a library, through its interface `IDxcCompiler3` (`dxcapi.h` of DirectXShaderCompiler).
 //!
-//! The library is at hand where its command is not, and its COM interfaces need no headers: an object's first word is the address of
-//! its table of functions.
+//! The library is often available where the command is not. Its COM interfaces need no headers: an object's first word is the address
+//! of its table of functions.
 
 use std::ffi::{OsStr, c_void};
 use std::fs;
@@ -33,7 +33,7 @@ struct Buffer {
 /// `DXC_CP_UTF8`.
 const UTF8: u32 = 65001;
 
-/// An object of COM.
+/// COM object.
 type Object = *mut c_void;
 
 type CreateInstance = unsafe extern "C" fn(*const Id, *const Id, *mut Object) -> i32;
@@ -44,10 +44,10 @@ type Errors = unsafe extern "C" fn(Object, *mut Object) -> i32;
 type Bytes = unsafe extern "C" fn(Object) -> *const u8;
 type Size = unsafe extern "C" fn(Object) -> usize;
 
-/// `wchar_t`, of which Linux has 32 bits.
+/// Type `wchar_t`, 32 bits on Linux.
 type Wide = u32;
 
-/// Places in the tables of functions; each begins with the three of `IUnknown`.
+/// Indices in the tables of functions; each table begins with the three functions of `IUnknown`.
 mod place {
     pub const COMPILE: usize = 3;
     pub const STATUS: usize = 3;
@@ -56,13 +56,13 @@ mod place {
     pub const SIZE: usize = 4;
 }
 
-/// Compiles a file of HLSL to DXIL, which is dropped; DXC's messages where it refuses. What makes DXC abort ends this process.
+/// Compiles an HLSL file to DXIL, which is dropped. Returns DXC's messages if it fails. If DXC aborts, so does this process.
 ///
 /// # Errors
-/// Where the library or the file cannot be read, or DXC cannot be asked.
+/// If the library or the file cannot be read, or DXC cannot be called.
 pub fn compile(library: &OsStr, file: &Path, entry: &str, profile: &str) -> Result<Option<String>, String> {
     let text = fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
-    // Without a validator, which the library lacks; the version of the language is the one that wgpu asks for.
+    // Without the validator, which the library lacks. The language version is wgpu's.
     let options = ["-E", entry, "-T", profile, "-HV", "2018", "-Vd"].map(wide);
     let options = options.each_ref().map(|option| option.as_ptr());
     compile_text(library, &text, &options)
@@ -74,10 +74,10 @@ fn wide(word: &str) -> Vec<Wide> {
 
 #[allow(unsafe_code)]
 fn compile_text(library: &OsStr, text: &[u8], options: &[*const Wide]) -> Result<Option<String>, String> {
-    // SAFETY: the library is DXC's, whose constructors have no conditions; types of functions are those of `dxcapi.h`, with the
-    // calling convention that its `WinAdapter.h` has on Linux; all pointers outlive the calls. Objects live until the process ends.
+    // SAFETY: the library is DXC's, whose constructors have no conditions; function types are those of `dxcapi.h`, with the
+    // calling convention of its `WinAdapter.h` on Linux; all pointers outlive the calls. Objects live until the process ends.
     unsafe {
-        // Left loaded: it has exit handlers of its own.
+        // The library stays loaded, because it has exit handlers.
         let library = ManuallyDrop::new(Library::new(library).map_err(|error| error.to_string())?);
         let create: Symbol<'_, CreateInstance> =
             library.get(b"DxcCreateInstance\0").map_err(|error| error.to_string())?;
@@ -111,10 +111,10 @@ fn compile_text(library: &OsStr, text: &[u8], options: &[*const Wide]) -> Result
     }
 }
 
-/// A function of an object's table.
+/// Returns a function of an object's table.
 ///
 /// # Safety
-/// The object has such a function there.
+/// The object's table must have a function of this type at that index.
 #[allow(unsafe_code)]
 unsafe fn function<F: Copy>(object: Object, place: usize) -> F {
     // SAFETY: by the caller; a function's address has the size of a pointer.

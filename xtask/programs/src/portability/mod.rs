@@ -1,6 +1,6 @@
-//! Pipelines' part of `cargo xtask portability`: translates each program as wgpu does on other systems, and has their compilers judge it.
-//! DXC compiles HLSL, spirv-val judges SPIR-V; MSL is translated alone, for Apple's compiler runs nowhere else.
-//! Linked shaders that no pipeline has are judged, too.
+//! Pipeline part of `cargo xtask portability`: translates each program as wgpu does on other systems, and validates it with their
+//! compilers. DXC compiles HLSL, spirv-val validates SPIR-V; MSL is only translated, because Apple's compiler runs nowhere else.
+//! Linked shaders without a pipeline are included.
 
 mod compilers;
 mod dxc;
@@ -24,17 +24,17 @@ pub use dxc::compile as compile_hlsl;
 
 /// Programs and compilers of a check.
 pub struct Options {
-    /// Folder that translations are written to, emptied first.
+    /// Output folder of translations, emptied first.
     pub folder: PathBuf,
-    /// DXC's library; without it HLSL is not compiled.
+    /// Library of DXC; `None` skips compiling HLSL.
     pub dxc: Option<OsString>,
-    /// The command spirv-val; without it SPIR-V is not judged.
+    /// Command spirv-val; `None` skips validating SPIR-V.
     pub spirv_val: Option<OsString>,
-    /// A part of the label, module or entry point of the programs to check.
+    /// Substring of the label, module or entry point of the programs to check.
     pub only: Option<String>,
 }
 
-/// A step that a program can fail at.
+/// Step that a program can fail at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
     Constants,
@@ -59,7 +59,7 @@ impl Step {
         }
     }
 
-    /// Whether it is taken with these options.
+    /// Whether the step runs with these options.
     fn is_taken(self, options: &Options) -> bool {
         match self {
             Self::Dxc => options.dxc.is_some(),
@@ -69,20 +69,20 @@ impl Step {
     }
 }
 
-/// A step that a program failed at, and the first error.
+/// Step that a program failed at, and its first error.
 type Failure = (Step, String);
 
-/// Translates every program and has it judged; prints each failure and the count of each step.
+/// Translates and validates every program. Prints each failure and the count of each step.
 ///
 /// # Errors
-/// Where a program fails, or nothing could be checked.
+/// If a program fails, or nothing could be checked.
 pub fn check(options: &Options) -> Result<(), String> {
     let programs = programs(options.only.as_deref())?;
     if programs.is_empty() {
         return Err("there is no such program".to_owned());
     }
     empty(&options.folder)?;
-    // Each text is read once, by the first job that needs it.
+    // Each text is parsed once, by the first job that needs it.
     let modules: HashMap<Arc<str>, OnceLock<Result<Validated, String>>> =
         programs.iter().map(|(_, program)| (program.wgsl.clone(), OnceLock::new())).collect();
     let compilers = Compilers::new(options)?;
@@ -114,7 +114,7 @@ pub fn check(options: &Options) -> Result<(), String> {
     }
 }
 
-/// The programs of all pipelines, each once, with the label of a pipeline that has it.
+/// Returns the distinct programs of all pipelines, with the label of one of their pipelines.
 fn programs(only: Option<&str>) -> Result<Vec<(String, Program)>, String> {
     let pipelines = recorder::pipelines_made(device::make_all_variants)?;
     let mut programs = distinct(pipelines);
@@ -131,7 +131,7 @@ fn programs(only: Option<&str>) -> Result<Vec<(String, Program)>, String> {
     Ok(programs)
 }
 
-/// Programs of a linked shader that no pipeline has and that need no constants: hosts put functions of some into shaders of their own.
+/// Returns programs of a linked shader without pipeline and required constants. Hosts include functions of some in their own shaders.
 fn without_pipeline(programs: &[(String, Program)], name: &str, wgsl: &str) -> Vec<Program> {
     let module = naga::front::wgsl::parse_str(wgsl).unwrap_or_default();
     if module.overrides.iter().any(|(_, constant)| constant.init.is_none()) {
@@ -152,7 +152,7 @@ fn without_pipeline(programs: &[(String, Program)], name: &str, wgsl: &str) -> V
     module.entry_points.into_iter().filter(|entry| !has_pipeline(entry)).map(program).collect()
 }
 
-/// Programs in order of their first pipelines.
+/// Returns the distinct programs in order of their first pipelines.
 fn distinct(pipelines: Vec<Pipeline>) -> Vec<(String, Program)> {
     let mut known = std::collections::HashSet::new();
     let all = pipelines
@@ -161,7 +161,7 @@ fn distinct(pipelines: Vec<Pipeline>) -> Vec<(String, Program)> {
     all.filter(|(_, program)| known.insert((program.wgsl.clone(), format!("{program:?}")))).collect()
 }
 
-/// A program's failures. Its translations are written beside `stem`.
+/// Returns a program's failures. Its translations are written next to `stem`.
 fn judge(
     compilers: &Compilers,
     stem: &Path,
@@ -192,7 +192,7 @@ fn judge(
     failures
 }
 
-/// The first line of an error, short enough for a line of output.
+/// Returns the first line of an error, shortened for output.
 fn one_line(error: &str) -> String {
     error.lines().next().unwrap_or_default().chars().take(300).collect()
 }

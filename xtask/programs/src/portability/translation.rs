@@ -1,4 +1,4 @@
-//! Programs in the languages of other systems, by naga with the options that wgpu gives it.
+//! Translation of programs to the languages of other systems, by naga with the options that wgpu uses.
 
 use naga::back::{hlsl, msl, pipeline_constants, spv};
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
@@ -6,31 +6,31 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 use crate::recorder::Program;
 
-/// A module and what naga's validator knows of it.
+/// Module with the information of naga's validator.
 pub type Validated = (naga::Module, ModuleInfo);
 
-/// A program in a language, and the name of its entry point there.
+/// Program in a language, and the name of its entry point there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
     pub bytes: Vec<u8>,
     pub entry: String,
 }
 
-/// A program in every language, or why naga cannot write it.
+/// Program in every language, or the reason why naga cannot write it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Translation {
-    /// For shader model 6.0.
+    /// HLSL for shader model 6.0.
     pub hlsl: Result<Text, String>,
-    /// Version 2.4.
+    /// MSL 2.4.
     pub msl: Result<Text, String>,
-    /// Version 1.3, that of Vulkan 1.1.
+    /// SPIR-V 1.3, that of Vulkan 1.1.
     pub spirv: Result<Text, String>,
 }
 
-/// Reads and validates a module.
+/// Parses and validates a module.
 ///
 /// # Errors
-/// What naga says.
+/// The error of naga.
 pub fn validated(wgsl: &str) -> Result<Validated, String> {
     let module = naga::front::wgsl::parse_str(wgsl).map_err(|error| error.to_string())?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module);
@@ -41,11 +41,11 @@ pub fn validated(wgsl: &str) -> Result<Validated, String> {
 /// Translates a program of a module.
 ///
 /// # Errors
-/// Where its constants do not fit the module.
+/// If its constants do not fit the module.
 pub fn translate((module, info): &Validated, program: &Program) -> Result<Translation, String> {
     let constants = program.constants.iter().cloned().collect();
     let entry = (program.stage, program.entry.as_str());
-    // As in wgpu, constants come first: code that they switch off is not translated.
+    // As in wgpu, constants are applied first: code that they disable is not translated.
     let (module, info) = pipeline_constants::process_overrides(module, info, Some(entry), &constants)
         .map_err(|error| with_causes(&error))?;
     let place = module.entry_points.iter().position(|known| known.stage == entry.0 && known.name == entry.1);
@@ -57,7 +57,7 @@ pub fn translate((module, info): &Validated, program: &Program) -> Result<Transl
     })
 }
 
-/// As wgpu asks where a driver does not check bounds itself.
+/// Bounds checks that wgpu uses if a driver has none.
 const BOUNDS: BoundsCheckPolicies = BoundsCheckPolicies {
     index: BoundsCheckPolicy::Restrict,
     buffer: BoundsCheckPolicy::Restrict,
@@ -68,7 +68,7 @@ const BOUNDS: BoundsCheckPolicies = BoundsCheckPolicies {
 fn in_hlsl(module: &naga::Module, info: &ModuleInfo, program: &Program, place: usize) -> Result<Text, String> {
     let options = hlsl::Options {
         shader_model: hlsl::ShaderModel::V6_0,
-        // Where the count of workgroups and the first vertex come from: a space that no group has.
+        // Binding of the number of workgroups and the first vertex, in a space without bind groups.
         special_constants_binding: Some(hlsl::BindTarget { space: 100, ..hlsl::BindTarget::default() }),
         ..hlsl::Options::default()
     };
@@ -94,14 +94,14 @@ fn in_spirv(module: &naga::Module, info: &ModuleInfo, program: &Program) -> Resu
     Ok(Text { entry: program.entry.clone(), bytes: words.iter().flat_map(|word| word.to_le_bytes()).collect() })
 }
 
-/// An entry point's name, of the names of all or of the only one that was written.
+/// Returns an entry point's name, from the names of all or of the only one written.
 fn name_in<E: std::error::Error>(names: Vec<Result<String, E>>, place: usize) -> Result<String, String> {
     let place = if names.len() == 1 { 0 } else { place };
     let name = names.into_iter().nth(place).ok_or("no entry point was written")?;
     name.map_err(|error| with_causes(&error))
 }
 
-/// An error with its causes, of which naga's messages leave out all but the first.
+/// Returns an error with its causes. naga's messages omit all but the first.
 fn with_causes(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();
