@@ -7,7 +7,7 @@
 //!
 //! ```no_run
 //! # use antumbra::casters::*; use antumbra::*; use glam::*;
-//! Once.
+//! # fn example(gpu: &Gpu, mesh: &Mesh<'_>, recorder: &mut Recorder<'_>) -> Result<(), Error> {
 //! // Once.
 //! let mut casters = CasterSet::new(gpu);
 //! let crate_mesh = casters.add_mesh(mesh)?;

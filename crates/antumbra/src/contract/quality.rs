@@ -15,8 +15,8 @@ pub enum Quality {
     High,
     /// Least error that the technique's parameters reach, regardless of time: for stills and comparison.
     Best,
-    /// The algorithm as published, for comparison; not on the ladder. See [`Printed`]. Techniques that do not follow one paper
-    /// closely have no such setting.
+    /// The algorithm as published, for comparison; not on the ladder. See [`PublishedForm`](super::PublishedForm). Techniques that
+    /// do not follow one paper closely have no such setting.
     Paper,
 }
 

@@ -154,22 +154,22 @@ impl AnyShadow {
         self.inner.set_quality(quality);
     }
 
-    /// Denoiser settings of the next frame: [`Shadow::denoise`].
+    /// Denoiser settings of the next frame; `None` without a denoiser.
     pub fn denoise(&self) -> Option<&Denoise> {
         self.inner.denoise()
     }
 
-    /// Sets the denoiser of the next frame: [`Shadow::denoise`].
+    /// Sets the denoiser of the next frame; `None` disables it.
     pub fn set_denoise(&mut self, denoise: Option<Denoise>) {
         self.inner.set_denoise(denoise);
     }
 
-    /// Whether the next frame's technique writes a mask of half the width and height: [`Shadow::half_resolution`].
+    /// Whether the next frame's technique writes a mask of half the width and height.
     pub fn half_resolution(&self) -> bool {
         self.inner.half_resolution()
     }
 
-    /// Sets [`Shadow::half_resolution`] of the next frame.
+    /// Sets whether the next frame's technique writes a mask of half the width and height.
     pub fn set_half_resolution(&mut self, is_half: bool) {
         self.inner.set_half_resolution(is_half);
     }
