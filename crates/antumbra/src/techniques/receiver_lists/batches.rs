@@ -1,6 +1,7 @@
 //! Batches of triangles, limited by the memory for them: opaque ones first, then a batch for each surface that blocks
 //! some light points and not others, shared by all casters with it, then one for each caster that transmits a fraction
 //! of the light.
+//!
 //! Masked surfaces are present or absent at a position. Translucent ones without tint block as many of many light points
 //! as they stop light: the transmittances of several then multiply, as they do along each segment. Tinted ones, and all
 //! with a single light point, transmit a fraction.
