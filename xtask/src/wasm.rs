@@ -55,7 +55,7 @@ pub fn compiler(arguments: &[&str]) -> Result<Command, String> {
     };
     if !ours_is_here() && find("rustup").is_some() {
         eprintln!("xtask: this toolchain lacks {TARGET}; asking rustup for it");
-        // If rustup's server is unreachable, Debian's may not be.
+        // If rustup's server is unreachable, Debian's may still be reachable.
         let _ = succeeds(Command::new("rustup").args(["target", "add", TARGET]));
     }
     if ours_is_here() {

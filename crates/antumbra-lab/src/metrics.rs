@@ -31,7 +31,7 @@ use roughness::Roughness;
 pub use roughness::TILE_PX;
 use ssim::add_ssim;
 
-/// Thresholds of the reference: umbra below the first, lit above the second, penumbra between them.
+/// Thresholds of the reference: umbra below the first, lit above the second, penumbra strictly between them.
 pub(crate) const UMBRA_BELOW: f32 = 0.01;
 pub(crate) const LIT_ABOVE: f32 = 0.99;
 

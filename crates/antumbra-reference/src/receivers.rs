@@ -1,6 +1,6 @@
 //! Receivers: points on surfaces, each with the side that is seen.
 //!
-//! **Ray offset** ("hair"). A segment to the light must start off its own surface, on the side that the camera sees, or it
+//! **Ray offset.** A segment to the light must start off its own surface, on the side that the camera sees, or it
 //! would meet that surface. The distance is derived as follows. The hit is rebuilt from the triangle's corners in double
 //! precision and then rounded to single. It thus lies off the triangle's plane by at most half a unit in the last place per
 //! axis: `2⁻²⁴ |x|`, whatever the distance to the camera and the size of the triangle. Adding the ray offset rounds once
@@ -9,7 +9,7 @@
 //! doubled:
 //!
 //! ```text
-//! hair = 2⁻²¹ |x| + 2⁻⁴⁶ · largest |corner|
+//! offset = 2⁻²¹ |x| + 2⁻⁴⁶ · largest |corner|
 //! ```
 //!
 //! where the second term is the double-precision rounding of the corners' sum. The offset is 5 µm at 10 m from the world's

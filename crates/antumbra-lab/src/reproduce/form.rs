@@ -35,7 +35,7 @@ impl fmt::Display for Form {
 
 impl Row {
     /// Returns the forms in which the row runs: both if the technique is the paper's own and ours departs from it, else the published one.
-    /// Techniques that the paper compares with run as published in both.
+    /// Techniques that the paper compares with run as published only, which stands for both forms.
     pub fn forms(&self, paper: &Paper) -> &'static [Form] {
         let kind = TechniqueKind::from_name(self.technique);
         let is_own = paper.own.contains(&self.technique);

@@ -1,5 +1,5 @@
 //! The techniques against the ray tracer on the built-in scenes, by family. Bounds are values measured on a software
-//! adapter, with a small margin; they may be tightened, never loosened. `kept` compares with golden masks.
+//! adapter, with a small margin; they may be tightened, never loosened. `golden` compares with golden masks.
 
 mod as_published;
 mod backprojection;

@@ -36,7 +36,7 @@ impl ViewKind {
     }
 }
 
-/// Validation error that wgpu reports for a storage buffer; `None` as for [`ViewKind::complaint`].
+/// Validation error that wgpu reports for a storage buffer; `None` as for [`ViewKind::validation_error`].
 pub(crate) fn storage_validation_error(gpu: &Gpu, buffer: &wgpu::Buffer) -> Option<String> {
     let ty = wgpu::BufferBindingType::Storage { read_only: false };
     let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };

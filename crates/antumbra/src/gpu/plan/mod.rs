@@ -24,7 +24,7 @@ mod tests;
 
 use device::{PlannedDevice, PlannedQueue};
 
-/// Plan of GPU memory. Lights are prepared on a device that allocates nothing, and report what they would allocate.
+/// Plan of GPU memory. Lights are prepared on a device that allocates and compiles nothing, and report what they would allocate.
 ///
 /// Use [`gpu`](Self::gpu) in place of the real handle: create techniques with it, set their parameters and
 /// [`prepare`](crate::Shadow::prepare) their frames. [`Shadow::memory_bytes`](crate::Shadow::memory_bytes) then returns what

@@ -84,8 +84,8 @@
 //! would get wrong, and `resolve missing` looks those up, packed side by side.
 //!
 //! A level stores only what receivers look up in it. Filters as wide as its own apply only to occluders far enough in front of
-//! the farthest receiver, so its lists end there. Levels without occluders at such distances are not made: of seventeen on
-//! `overlap`, nine are. `prune=false` makes all levels in full, as the paper does.
+//! the farthest receiver, so its lists end there. Levels without occluders at such distances are not made: nine of
+//! seventeen on `overlap`. `prune=false` makes all levels in full, as the paper does.
 //!
 //! A lookup first finds the levels that contain anything for it: by four reads of `nearest` per level, those with a fragment
 //! near enough to the light around the receiver, and of these the ones whose lists have fragments at the level's depths. It

@@ -4,6 +4,7 @@
 //! 2008; Marco Salvi, "Rendering Filtered Shadows with Exponential Shadow Maps", ShaderX6, 2008. The comparison of a receiver
 //! at t with a depth z is replaced by e^{−c(t − z)} = e^{−ct} · e^{cz}: one channel that can be filtered like a colour. The map
 //! stores e^{c(z − 1)}, which a 32-bit float holds up to c = 80.
+//!
 //! # Limits
 //! Shadows are too bright near contacts, within 1/c of the light's range. Where part of a kernel lies beyond the receiver,
 //! e^{−c(t − z)} exceeds 1 without bound. It is clamped to lit, which eats into shadows at silhouettes and on receivers that

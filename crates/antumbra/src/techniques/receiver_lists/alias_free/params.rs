@@ -50,6 +50,6 @@ params! {
     } kept {
         "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
         "The paper's stencil is a depth test, and its geometry shader the vertex stage, at each of a region's vertices.",
-        "Open meshes start segments a hair off their surface; the paper's casters are closed.",
+        "Open meshes start segments at the ray offset from their surface; the paper's casters are closed.",
     }
 }
