@@ -10,23 +10,23 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// A shader without branches that its constants exclude. `constants` are values of overridable constants by their names in the text;
-/// others have their defaults.
+/// Returns a shader without the branches that its constants exclude. `constants` are values of overridable constants by their names in
+/// the text; the others have their defaults.
 pub(super) fn without_excluded<'t>(wgsl: &'t str, constants: &[(impl AsRef<str>, f64)]) -> Cow<'t, str> {
     let mut known = Known::of(wgsl);
     known.0.extend(constants.iter().filter_map(|(name, value)| Some((name_in(wgsl, name.as_ref())?, *value))));
-    // Numbers that are not whole are of other bits in a shader than here.
+    // Fractions are rounded to single precision in the shader, and so may compare differently there.
     known.0.retain(|_, value| value.fract() == 0.0);
     let mut text = String::with_capacity(wgsl.len());
     let is_cut = copy(wgsl, &known, &mut text);
     if is_cut { text.into() } else { wgsl.into() }
 }
 
-/// Constants of a shader with their values: numbers, and 0 or 1.
+/// Values of a shader's constants: numbers, and 0 or 1 for booleans.
 struct Known<'t>(HashMap<&'t str, f64>);
 
 impl<'t> Known<'t> {
-    /// Those that are declared as literals.
+    /// Returns the constants that are declared as literals.
     fn of(wgsl: &'t str) -> Self {
         let declared = |line: &'t str| {
             let declaration = line.strip_prefix("override ").or_else(|| line.strip_prefix("const "))?;
@@ -37,12 +37,12 @@ impl<'t> Known<'t> {
         Self(wgsl.lines().filter_map(declared).collect())
     }
 
-    /// A name's or literal's value.
+    /// Returns the value of a name or a literal, if known.
     fn value(&self, term: &str) -> Option<f64> {
         self.0.get(term).copied().or_else(|| literal(term))
     }
 
-    /// Whether a condition holds; `None` where that is known only when the shader runs.
+    /// Whether a condition holds; `None` if only the running shader knows.
     fn holds(&self, condition: &str) -> Option<bool> {
         let condition = without_parentheses(condition.trim());
         let alternatives = split(condition, "||");
@@ -72,8 +72,8 @@ impl<'t> Known<'t> {
         self.value(condition).map(|value| value != 0.0)
     }
 
-    /// Value of terms joined by `||`, where a term that holds decides all, or by `&&`, where one that does not hold does: `decisive` is the
-    /// deciding value. A term that calls a function may write something, so it stays and so does what follows it.
+    /// Returns the value of terms joined by `||` or `&&`. A single term with the value `decisive` decides: true for `||`, false for `&&`.
+    /// A term that calls a function may have side effects, so it and the terms after it are kept.
     fn first_of(&self, terms: &[&str], decisive: bool) -> Option<bool> {
         let mut all = Some(!decisive);
         for term in terms {
@@ -88,13 +88,13 @@ impl<'t> Known<'t> {
     }
 }
 
-/// A constant's name as a part of the text.
+/// Returns a constant's name as a slice of the text.
 fn name_in<'t>(wgsl: &'t str, name: &str) -> Option<&'t str> {
     let start = wgsl.find(&format!("override {name}"))? + "override ".len();
     wgsl.get(start..start + name.len())
 }
 
-/// The value of a literal.
+/// Returns the value of a literal.
 fn literal(text: &str) -> Option<f64> {
     match text {
         "true" => Some(1.0),
@@ -112,7 +112,7 @@ fn is_name(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(is_of_name)
 }
 
-/// Where the bracket that opens at `start` closes.
+/// Returns the position at which the bracket that opens at `start` closes.
 fn close_of(text: &str, start: usize) -> usize {
     let bytes = text.as_bytes();
     let (open, close) = if bytes[start] == b'{' { (b'{', b'}') } else { (b'(', b')') };
@@ -130,7 +130,7 @@ fn close_of(text: &str, start: usize) -> usize {
     panic!("a bracket that does not close")
 }
 
-/// What a pair of parentheses around all of it holds.
+/// Removes the parentheses around a whole term.
 fn without_parentheses(text: &str) -> &str {
     if text.starts_with('(') && close_of(text, 0) == text.len() - 1 {
         return without_parentheses(text[1..text.len() - 1].trim());
@@ -138,7 +138,7 @@ fn without_parentheses(text: &str) -> &str {
     text
 }
 
-/// The terms that an operator of two characters joins outside of brackets.
+/// Splits a condition at an operator of two characters, outside of brackets.
 fn split<'t>(text: &'t str, operator: &str) -> Vec<&'t str> {
     let (mut terms, mut start, mut depth) = (Vec::new(), 0, 0);
     for (i, byte) in text.bytes().enumerate() {
@@ -156,22 +156,22 @@ fn split<'t>(text: &'t str, operator: &str) -> Vec<&'t str> {
     terms
 }
 
-/// A condition with what runs where it holds.
+/// Branch: condition and block.
 struct Arm<'t> {
     condition: &'t str,
     block: &'t str,
 }
 
-/// Branches of one `if`, and what runs where no condition holds.
+/// Branches of one `if` statement, with its `else` block.
 struct Branches<'t> {
     arms: Vec<Arm<'t>>,
     otherwise: Option<&'t str>,
-    /// Its length in the text.
+    /// Length of the statement in the text, bytes.
     length: usize,
 }
 
 impl<'t> Branches<'t> {
-    /// Those of a text that begins with `if`.
+    /// Parses the statement at the start of a text that begins with `if`.
     fn of(text: &'t str) -> Self {
         let (mut arms, mut otherwise, mut at) = (Vec::new(), None, 0);
         loop {
@@ -200,7 +200,7 @@ impl<'t> Branches<'t> {
     }
 }
 
-/// Copies a text without the branches that are excluded; whether there were some.
+/// Copies a text without the excluded branches. Returns whether there were any.
 fn copy(text: &str, known: &Known<'_>, out: &mut String) -> bool {
     let bytes = text.as_bytes();
     let (mut copied, mut at, mut is_cut) = (0, 0, false);
@@ -261,7 +261,7 @@ mod tests {
     const SHADER: &str =
         "override HAS_A: bool = true;\noverride COUNT: u32;\noverride HALF: f32 = 0.5;\nconst LARGE = 4u;\n";
 
-    /// What becomes of statements where `COUNT` is 3.
+    /// Returns the statements that remain if `COUNT` is 3.
     fn cut(statements: &str) -> String {
         let wgsl = format!("{SHADER}{statements}");
         let text = without_excluded(&wgsl, &[("COUNT", 3.0)]);
@@ -307,8 +307,8 @@ mod tests {
         }
     }
 
-    /// Every shader by its defaults, and with each flag and number changed, is valid; and no local variable has a constant's name, which
-    /// would be taken for it.
+    /// Every shader is valid with default constants and with each constant changed. No local variable has the name of a
+    /// constant, which would be mistaken for it.
     #[test]
     fn shaders_without_excluded_branches_are_valid() {
         use naga::valid::{Capabilities, ValidationFlags, Validator};

@@ -223,8 +223,8 @@ fn figures() -> Vec<(&'static str, Outcome)> {
     images.iter().map(|(name, image)| (*name, outcome(image))).collect()
 }
 
-/// Frames of masks in motion: the truth, which moves by a column a frame; nearly it; it under growing noise that is another one in each
-/// frame; a frame late; its hard edges; then what nothing may take for it: dark, lit and grey all over.
+/// Returns sequences of masks in motion: the truth, which moves by a column per frame; nearly the truth; the truth with growing noise that
+/// differs in each frame; the truth a frame late; its hard edges; then masks that no rule may accept: all dark, all lit, all grey.
 fn frames_in_motion() -> [(&'static str, Vec<Visibility>); 10] {
     const FRAMES: u32 = 6;
     let still = truth();
@@ -253,7 +253,7 @@ fn frames_in_motion() -> [(&'static str, Vec<Visibility>); 10] {
     ]
 }
 
-/// The flicker of each of them.
+/// Returns the flicker of each sequence.
 fn figures_in_motion() -> Vec<(&'static str, Outcome)> {
     let frames = frames_in_motion();
     let judged = vec![true; truth().size_px.element_product() as usize];
@@ -273,7 +273,7 @@ fn figures_in_motion() -> Vec<(&'static str, Outcome)> {
     frames.iter().map(|(name, masks)| (*name, outcome(masks))).collect()
 }
 
-/// Nothing that never changes flickers less than it, and noise flickers the more the more there is of it.
+/// Flicker is zero for the truth and grows with noise; masks that never change have all of the truth's change as flicker.
 #[test]
 fn masks_in_motion_are_what_they_are_called() {
     let flickers: Vec<(f64, f64)> = figures_in_motion()
@@ -297,7 +297,7 @@ fn assignments(places: usize, count: usize) -> impl Iterator<Item = Vec<usize>> 
     (0..count.pow(places as u32)).map(move |n| (0..places).map(|k| n / count.pow(k as u32) % count).collect())
 }
 
-/// No rule is of neither kind, which would be looked at by neither of the two tests below.
+/// Every rule is about images or about time, so that one of the two tests below covers it.
 #[test]
 fn every_rule_is_about_images_or_about_time() {
     for exhibit in PAPERS.iter().flat_map(|paper| paper.exhibits) {
@@ -308,8 +308,8 @@ fn every_rule_is_about_images_or_about_time() {
     }
 }
 
-/// Of things that meet a rule another one in the place of each of its rows is found that does not: no row is there for show. A rule
-/// that holds a ratio between two bounds has one on either side, the first row's figure too small and too large by `size_of`.
+/// Asserts that each row of a rule matters: some outcome in its place makes the rule fail. A rule that holds a ratio between two bounds
+/// must fail on either side, with the first row's figure (by `size_of`) too small and too large.
 fn assert_that_each_row_counts(
     what: &str,
     rule: &Rule,
@@ -340,8 +340,8 @@ fn assert_that_each_row_counts(
     }
 }
 
-/// For every rule about images: there are images that meet it; a constant in the place of what it finds good does not; where
-/// it finds something wanting, the exact image in that one's place does not; and none of its rows is there for show.
+/// Every rule about images is met by some images. It fails if a constant image replaces a praised one, or the exact image a criticised
+/// one, and each of its rows matters.
 #[test]
 fn every_rule_about_images_rejects_a_wrong_one() {
     let (of_images, in_motion) = (figures(), figures_in_motion());
@@ -396,8 +396,8 @@ fn every_rule_about_images_rejects_a_wrong_one() {
     assert!(looked_at > 60, "{looked_at}");
 }
 
-/// For every rule about time: there are times that meet it, and another time in the place of each of its rows that does not: where two
-/// bounds hold a ratio, one too short and one too long.
+/// Every rule about time is met by some times. It fails if a row's time is replaced by another: with two bounds, by one too
+/// short and by one too long.
 #[test]
 fn every_rule_about_time_rejects_a_wrong_one() {
     const MS: [f64; 11] = [8.0, 10.0, 11.2, 12.0, 14.0, 16.0, 21.0, 30.0, 45.0, 105.0, 1150.0];
