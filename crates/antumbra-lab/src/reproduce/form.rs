@@ -141,8 +141,8 @@ mod tests {
             for exhibit in paper.exhibits {
                 let rows: Vec<&Row> = exhibit.rows.iter().filter(|row| !row.technique.is_empty()).collect();
                 for (i, a) in rows.iter().enumerate() {
-                    let cpu_reference = rows[..i].iter().find(|b| are_one(paper, a, b)).map(|b| b.what);
-                    assert_eq!(cpu_reference, None, "{}/{}: `{}` runs the same", paper.id, exhibit.id, a.what);
+                    let equal_row = rows[..i].iter().find(|b| are_one(paper, a, b)).map(|b| b.what);
+                    assert_eq!(equal_row, None, "{}/{}: `{}` runs the same", paper.id, exhibit.id, a.what);
                 }
             }
         }

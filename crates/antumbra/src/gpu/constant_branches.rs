@@ -1,4 +1,4 @@
-//! Branches over overridable constants, decided before a driver compiles a shader.
+//! Removal of branches that a pipeline's constants exclude, before the driver compiles the shader.
 //!
 //! Drivers inline all functions of a shader before they drop branches that its constants exclude. `resolve` of the summed techniques has
 //! 950 statements, and 14 000 once inlined, most of which its constants exclude. Software Mesa 25 takes 1.3 s for such a pipeline, and

@@ -68,7 +68,7 @@ struct Programs {
     pipeline_layouts: DescriptorCache<Vec<Option<wgpu::BindGroupLayout>>, wgpu::PipelineLayout>,
     modules: DescriptorCache<LinkedText, wgpu::ShaderModule>,
     /// Modules without the branches that a pipeline's constants exclude, by whole module and constants.
-    decided_modules: DescriptorCache<(wgpu::ShaderModule, Constants), wgpu::ShaderModule>,
+    specialized_modules: DescriptorCache<(wgpu::ShaderModule, Constants), wgpu::ShaderModule>,
     compute_pipelines: DescriptorCache<ComputeKey, wgpu::ComputePipeline>,
     render_pipelines: DescriptorCache<RenderKey, wgpu::RenderPipeline>,
     /// By descriptor, as text, because it contains floats.
@@ -223,22 +223,22 @@ impl Device {
         })
     }
 
-    /// Returns the module of a linked shader without the branches that a pipeline's constants exclude. Listeners of `programs` are told
-    /// of the whole module only.
-    fn decided(
+    /// Returns the module of a linked shader without the branches that a pipeline's constants exclude. Listeners of `programs` receive
+    /// the whole module only.
+    fn specialize(
         &self,
         label: Option<&str>,
         module: &wgpu::ShaderModule,
         options: &wgpu::PipelineCompilationOptions<'_>,
     ) -> wgpu::ShaderModule {
-        let Programs { modules, decided_modules, counts, uniforms, .. } = &*self.programs;
+        let Programs { modules, specialized_modules, counts, uniforms, .. } = &*self.programs;
         let linked = {
             let known = modules.0.lock().unwrap_or_else(PoisonError::into_inner);
             known.iter().find(|(_, made)| *made == module).map(|(linked, _)| linked.0)
         };
         // A plan compiles nothing.
         let Some(linked) = linked.filter(|_| !self.is_planned()) else { return module.clone() };
-        decided_modules.get_or_make((module.clone(), constants_of(options)), &counts.programs, || {
+        specialized_modules.get_or_make((module.clone(), constants_of(options)), &counts.programs, || {
             let whole = uniforms.shader_text(crate::shaders::text_of(linked));
             match constant_branches::without_excluded(&whole, options.constants) {
                 Cow::Borrowed(_) => module.clone(),
@@ -263,7 +263,7 @@ impl Device {
             || {
                 programs::tell(programs::Made::Compute(descriptor));
                 let cache = pipeline_cache.as_ref();
-                let module = &self.decided(descriptor.label, descriptor.module, &descriptor.compilation_options);
+                let module = &self.specialize(descriptor.label, descriptor.module, &descriptor.compilation_options);
                 let descriptor = wgpu::ComputePipelineDescriptor { cache, module, ..descriptor.clone() };
                 self.device.create_compute_pipeline(&descriptor)
             },
@@ -280,9 +280,10 @@ impl Device {
             programs::tell(programs::Made::Render(descriptor));
             let (cache, label) = (pipeline_cache.as_ref(), descriptor.label);
             let wgpu::RenderPipelineDescriptor { vertex, fragment, .. } = descriptor.clone();
-            let vertex_module = self.decided(label, vertex.module, &vertex.compilation_options);
-            let fragment_module =
-                fragment.as_ref().map(|fragment| self.decided(label, fragment.module, &fragment.compilation_options));
+            let vertex_module = self.specialize(label, vertex.module, &vertex.compilation_options);
+            let fragment_module = fragment
+                .as_ref()
+                .map(|fragment| self.specialize(label, fragment.module, &fragment.compilation_options));
             let vertex = wgpu::VertexState { module: &vertex_module, ..vertex };
             let fragment = fragment
                 .zip(fragment_module.as_ref())

@@ -129,7 +129,7 @@ fn before(pixel: vec2u, layer: u32, receiver: inputs_Receiver, surface: surface_
         return NOTHING;
     }
     let at = pixel_before(pixel, receiver.pos_in_world) - 0.5;
-    if !finite_all_finite(vec3f(at, 0.0)) || any(at <= vec2f(-1.0)) || any(at >= vec2f(inputs_receiver_view.size_px)) {
+    if !finite_is_finite(at.x) || !finite_is_finite(at.y) || any(at <= vec2f(-1.0)) || any(at >= vec2f(inputs_receiver_view.size_px)) {
         return NOTHING;
     }
     let low = floor(at);
@@ -269,10 +269,6 @@ const finite_EXPONENT_BITS = 2139095040u;
 
 fn finite_is_finite(x: f32) -> bool {
     return (bitcast<u32>(x) & finite_EXPONENT_BITS) != finite_EXPONENT_BITS;
-}
-
-fn finite_all_finite(v: vec3f) -> bool {
-    return finite_is_finite(v.x) && finite_is_finite(v.y) && finite_is_finite(v.z);
 }
 
 struct inputs_ReceiverView {
