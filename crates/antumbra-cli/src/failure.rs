@@ -57,9 +57,9 @@ impl fmt::Display for Kept<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Nothing => f.write_str("nothing was written"),
-            Self::Alone(path) => write!(f, "what was measured is in {}", path.display()),
+            Self::Alone(path) => write!(f, "results so far are in {}", path.display()),
             Self::ToResume(path) => {
-                write!(f, "what was measured is in {}, and the same line with --resume continues", path.display())
+                write!(f, "results so far are in {}; run the same command with --resume to continue", path.display())
             }
         }
     }
@@ -74,7 +74,7 @@ impl Failure {
         if missing.len() > NAMED {
             names.push(&more);
         }
-        Self::Incomplete(format!("the deadline left out {} of {of}: {}; {kept}", missing.len(), names.join("; ")))
+        Self::Incomplete(format!("the deadline ended the run before {} of {of}: {}; {kept}", missing.len(), names.join("; ")))
     }
 }
 

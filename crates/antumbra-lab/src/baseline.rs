@@ -118,7 +118,7 @@ impl Baseline {
         let json: Value = read_json(path, source.wanted())?;
         let bad = |why: String| FileError::bad_content(path, why, source.wanted());
         if Source::of(&json) != Some(source) {
-            return Err(bad("it is none of this command".into()));
+            return Err(bad("it was not written by this command".into()));
         }
         let rows = match source {
             Source::Compare => of_metrics(&json),
@@ -142,9 +142,9 @@ impl Baseline {
         let Some((key, here)) = report.iter().find(|(key, here)| there(key) != here) else { return Ok(()) };
         // A setup is a page of text, so its values are not printed.
         let what = if *key == "setup" {
-            "its camera or lights differ from those here".to_owned()
+            "its camera or lights differ from those of this run".to_owned()
         } else {
-            format!("its {key} is {}, and here it is {here}", there(key))
+            format!("its {key} is {}, but this run has {here}", there(key))
         };
         Err(LabError::Request(format!("--baseline {}: {what}; give the metrics.json of the same view", path.display())))
     }
@@ -185,13 +185,13 @@ impl Against {
     /// Returns one line: the other run, the mean ratio of times, and missing rows.
     pub fn summary(&self) -> String {
         let mean = self.mean_ratio.map_or_else(String::new, |mean| {
-            format!("; here over there, geometric mean of {} times: {mean:.3}", self.timed())
+            format!("; ratio of times to the baseline's, geometric mean over {}: {mean:.3}", self.timed())
         });
         let lacking = match self.not_there.len() {
             0 => String::new(),
             count => format!("; {count} not in the baseline: {}", self.not_there.join(", ")),
         };
-        format!("Against {} (commit {}){mean}{lacking}", self.adapter, self.commit)
+        format!("Compared with {} (commit {}){mean}{lacking}", self.adapter, self.commit)
     }
 
     fn timed(&self) -> usize {
@@ -202,7 +202,7 @@ impl Against {
     pub fn table(&self) -> Vec<Vec<String>> {
         let has_errors = self.rows.iter().any(|row| !row.differences.is_empty());
         let keys: &[&str] = if has_errors { &DIFFERENCES } else { &[] };
-        let heading = ["NAME", "MS HERE", "MS THERE", "RATIO"].map(str::to_owned).into_iter();
+        let heading = ["NAME", "MS", "BASELINE MS", "RATIO"].map(str::to_owned).into_iter();
         let differences = keys.iter().map(|key| format!("{} DIFFERENCE", key.replace('_', " ").to_uppercase()));
         let mut rows = vec![heading.chain(differences).collect::<Vec<_>>()];
         let number = |value: Option<f64>, digits| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.digits$}"));
@@ -326,7 +326,7 @@ mod tests {
         assert!(
             against
                 .summary()
-                .contains("Against card (commit abc); here over there, geometric mean of 2 times: 1.414; 1 not in")
+                .contains("Compared with card (commit abc); ratio of times to the baseline's, geometric mean over 2: 1.414; 1 not in")
         );
         assert_eq!(against.table()[1][..5], ["hard", "1.000", "2.000", "0.500", "+0.2500"].map(str::to_owned));
     }
@@ -355,7 +355,7 @@ mod tests {
             (&json!({}), Source::Bench),
         ] {
             let error = read(json, source).unwrap_err();
-            assert!(error.contains("it is none of this command; give a") && error.contains("wrote"), "{error}");
+            assert!(error.contains("it was not written by this command; give a") && error.contains("wrote"), "{error}");
         }
         assert!(
             read(&json!({ "format": "antumbra-metrics", "rows": [] }), Source::Compare)
@@ -375,7 +375,7 @@ mod tests {
         let error = check("builtin:overlap", [128, 72], "[camera]").unwrap_err();
         assert_eq!(
             error,
-            "--baseline m.json: its size is [64,36], and here it is [128,72]; give the metrics.json of the same view"
+            "--baseline m.json: its size is [64,36], but this run has [128,72]; give the metrics.json of the same view"
         );
         assert!(check("builtin:tree", [64, 36], "[camera]").unwrap_err().contains("its name is \"builtin:overlap\""));
         assert!(check("builtin:overlap", [64, 36], "[camera] ").unwrap_err().contains("camera or lights"));

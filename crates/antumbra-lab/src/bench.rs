@@ -112,7 +112,7 @@ pub enum BenchOutcome {
 }
 
 /// Reason of rows for which no time was left.
-const NO_TIME: &str = "no time was left for it";
+const NO_TIME: &str = "no time was left";
 
 /// Rows of a run in progress.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -366,7 +366,7 @@ mod tests {
         assert_eq!(
             run(Duration::from_secs(2), some.rows.clone()).rows,
             some.rows,
-            "a shorter limit measures nothing again"
+            "a shorter limit repeats no measurement"
         );
     }
 }

@@ -216,7 +216,7 @@ fn moving_scene<'a>(
     options: &'a MotionOptions,
 ) -> Result<MovingScene<'a>, LabError> {
     if request.truth == Truth::Filtered {
-        let why = "--motion holds techniques against traced light; leave out `--truth filtered`";
+        let why = "--motion compares techniques with traced visibility; omit `--truth filtered`";
         return Err(LabError::Request(why.into()));
     }
     MovingScene::new(lab, request.scene, request.setup, request.light, request.size_px, options)

@@ -207,7 +207,7 @@ mod tests {
         let planned = Planned::new("pcss", SIZE_PX);
         assert_eq!(pace.measure(planned, |_| Err::<(), _>(cut(None))).unwrap(), None);
         let error = pace.measure(planned, |_| Err::<(), _>(cut(Some(Duration::from_millis(500))))).unwrap_err();
-        assert_eq!(error.to_string(), "pcss: cut short by the limit of 0.5 s for a technique, after 2 frames, 1.5 s");
+        assert_eq!(error.to_string(), "pcss: cut short by the limit of 0.5 s per technique, after 2 frames, 1.5 s");
         assert_eq!(pace.measure(planned, |end| Ok(end.is_some())).unwrap(), Some(true));
     }
 

@@ -10,7 +10,7 @@ pub enum ReferenceError {
     Light(#[from] LightError),
     /// A scene has an index that is out of range.
     #[error(
-        "reference: scene `{scene}`: {what} {index} is out of range: there are {count}; the scene's loader is at fault"
+        "reference: scene `{scene}`: {what} {index} is out of range: there are {count}; this is a fault of the scene's loader"
     )]
     OutOfRange {
         /// The scene's name.

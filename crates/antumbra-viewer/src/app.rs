@@ -40,7 +40,7 @@ const NARROW_WINDOW: f32 = 640.0;
 pub type Outcome = Arc<Mutex<Option<Ended>>>;
 
 /// Reason why a window has closed by itself.
-#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is not closed, but loaded anew"))]
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser page is reloaded, not closed"))]
 pub enum Ended {
     /// The task is complete, or it failed.
     Done(Result<(), String>),
@@ -49,7 +49,7 @@ pub enum Ended {
 }
 
 /// State that outlives a window and its device.
-#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is loaded anew"))]
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser page is reloaded"))]
 pub struct Kept {
     state: State,
     history: History,
@@ -159,7 +159,7 @@ impl App {
         if let (Some(scene), Some(open)) = (&scene, &state.scene) {
             app.renderer.open(scene, open.generation);
         }
-        app.say("the graphics device was lost, and made anew");
+        app.say("the graphics device was lost and has been recreated");
         Self { state, history, scene, poser, panels, ..app }
     }
 

@@ -175,7 +175,7 @@ fn finished(
 fn open_bytes(name: String, bytes: &[u8]) -> Outcome {
     let why = |error: antumbra_scene::SceneError| one_line(&error.to_string());
     if is_setup(&name) {
-        let text = std::str::from_utf8(bytes).map_err(|_| format!("{name}: is no text; a setup is a file in TOML"))?;
+        let text = std::str::from_utf8(bytes).map_err(|_| format!("{name}: is not UTF-8 text; a setup is a TOML file"))?;
         let setup = Setup::from_toml(text, Path::new(&name)).map_err(why)?;
         return Ok(Opened::Setup(name.into(), setup));
     }
@@ -216,7 +216,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
     written.map_err(|error| {
         // If this fails, too, there is nothing to remove.
         let _ = std::fs::remove_file(&part);
-        format!("{}: cannot be written: {error}; choose a folder that can be written to", path.display())
+        format!("{}: cannot be written: {error}; choose a writable folder", path.display())
     })
 }
 
@@ -226,7 +226,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
 /// Fails with one line.
 #[cfg(target_arch = "wasm32")]
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    crate::download::download(path, bytes).ok_or_else(|| format!("{}: the browser takes no download", path.display()))
+    crate::download::download(path, bytes).ok_or_else(|| format!("{}: the browser refused the download", path.display()))
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
         let made = Instant::now();
         match run_window(size, adapter.clone(), start)? {
             Some(Ended::Lost(why, kept)) if made.elapsed() >= MIN_LIFE => {
-                eprintln!("antumbra: the graphics device is lost ({why}); the window is opened again");
+                eprintln!("antumbra: the graphics device was lost ({why}); reopening the window");
                 start = Start::Kept(kept);
             }
             Some(Ended::Lost(why, _)) => return Err(ViewerError::Lost(why)),
@@ -67,7 +67,7 @@ fn run_window(size: glam::UVec2, adapter: Option<String>, start: Start) -> Resul
     let outcome = Outcome::default();
     let for_app = outcome.clone();
     let create = Box::new(move |creation: &eframe::CreationContext<'_>| {
-        let render_state = creation.wgpu_render_state.clone().ok_or("the window draws without wgpu")?;
+        let render_state = creation.wgpu_render_state.clone().ok_or("the window is not drawn by wgpu")?;
         let app = match start {
             Start::Options(options) => App::new(&creation.egui_ctx, render_state, *options, for_app),
             Start::Kept(kept) => App::kept(&creation.egui_ctx, render_state, *kept, for_app),
@@ -139,8 +139,8 @@ fn select<'a>(
     adapters.iter().filter(is_wanted).filter(fits).min_by_key(rank).ok_or_else(|| {
         let names: Vec<_> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
         match &wanted {
-            Some(wanted) => format!("no adapter called `{wanted}` can draw to it; there are: {}", names.join(", ")),
-            None => format!("no adapter can draw to it; there are: {}", names.join(", ")),
+            Some(wanted) => format!("no adapter named `{wanted}` can draw to the window; available: {}", names.join(", ")),
+            None => format!("no adapter can draw to the window; available: {}", names.join(", ")),
         }
     })
 }

@@ -78,7 +78,7 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
 /// Validates the options before anything is loaded. Returns the baseline, if any.
 fn check(args: &BenchArgs) -> Result<Option<Baseline>, Failure> {
     if args.run.resume && args.json.is_none() {
-        return Err(Failure::Input("--resume: bench resumes the file of --json; add --json times.json".into()));
+        return Err(Failure::Input("--resume: `bench` resumes the file given by --json; add --json times.json".into()));
     }
     for path in args.json.iter().chain(&args.share) {
         check_json_path(path)?;
@@ -188,8 +188,8 @@ fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
     let at_most = Duration::from_secs(60 * u64::from(args.minutes.unwrap_or(DEFAULT_MINUTES)));
     let plan = if args.parts.is_empty() { Plan::whole() } else { Plan::whole().only(&args.parts) };
     let Done { jobs, of } = run_slice(&lab, &plan, path, COMMIT, at_most, bars)?;
-    let again = if jobs < of { "the same line again goes on" } else { "`antumbra bench --tables` makes the page" };
-    say!("{jobs} of {of} measurements are in {}; {again}", path.display());
+    let again = if jobs < of { "run the same command again to continue" } else { "print the page with `antumbra bench --tables`" };
+    say!("{jobs} of {of} measurements are done, in {}; {again}", path.display());
     Ok(())
 }
 
@@ -201,7 +201,7 @@ fn plan(scenes: &[BenchScene], techniques: usize, sizes: &[UVec2], at_most: Dura
     let each_s = seconds / (scenes.len() * techniques * sizes.len()) as f64;
     let within = if seconds % 60.0 == 0.0 { counted(seconds as usize / 60, "minute") } else { format!("{seconds} s") };
     format!(
-        "{} of {} at {} on {adapter}: done within {within}, up to {each_s:.0} s for each and more where others take less",
+        "{} on {} at {} on {adapter}: takes at most {within}, on average up to {each_s:.0} s per measurement",
         counted(techniques, "technique"),
         counted(scenes.len(), "scene"),
         sizes_text.join(", "),
@@ -246,10 +246,10 @@ fn figures(row: &BenchRow) -> Vec<String> {
     let passes: Vec<_> = timings.passes.iter().map(|pass| format!("{} {:.3}", pass.label, pass.ms)).collect();
     let mut passes = match timings.clock {
         Clock::GpuTimestamps | Clock::SoftwareTimestamps => passes.join(", "),
-        Clock::SubmitToDone => "no timestamps here: from submission to completion".to_owned(),
+        Clock::SubmitToDone => "no timestamps on this adapter: measured from submission to completion".to_owned(),
     };
     if let Some(limit_s) = row.cut_short_s {
-        passes += &format!(" (cut short by the limit of {limit_s} s for a technique)");
+        passes += &format!(" (cut short by the limit of {limit_s} s per technique)");
     }
     let [compile, first] = [start_up.map(|start| start.compile_ms), start_up.map(|start| start.first_frame_ms)]
         .map(|ms| ms.map_or_else(none, |ms| format!("{ms:.1}")));

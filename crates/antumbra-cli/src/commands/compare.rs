@@ -220,7 +220,7 @@ fn motion_options(args: &MotionArgs, shadow_distance_m: Option<f32>) -> Result<O
     let Some(Motions(motions)) = &args.motion else { return Ok(None) };
     let needs = |option: &str, motion: Motion| {
         let name = motion.name();
-        Err(Failure::Input(format!("{option}: the {name} does not move; add `{name}` to --motion")))
+        Err(Failure::Input(format!("{option} needs the motion `{name}`; add `{name}` to --motion")))
     };
     if args.caster.is_some() && !motions.contains(&Motion::Caster) {
         return needs("--caster", Motion::Caster);
@@ -319,7 +319,7 @@ fn print(report: &Report) {
 fn print_motion(report: &Report, info: &MotionInfo) {
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.4}"));
     say!(
-        "\nIn motion, {} frames of {} m; flicker, its ratio to the truth's change, frames of lag:\n",
+        "\nMotion, {} frames of {} m each: flicker, its ratio to the truth's change, and lag in frames:\n",
         info.frames,
         info.step_m
     );

@@ -75,7 +75,7 @@ impl<'a> Bench<'a> {
         request: &'a AdviseRequest<'a>,
         progress: &'a dyn Progress,
     ) -> Result<Self, LabError> {
-        progress.begin("building the ray tracer's trees", 0);
+        progress.begin("building acceleration structures", 0);
         let uploaded = request.scenes.iter().map(|scene| Rc::new(GpuScene::upload(lab, scene))).collect();
         let tracers = request.scenes.iter().map(Tracer::new).collect::<Result<_, _>>()?;
         progress.end();

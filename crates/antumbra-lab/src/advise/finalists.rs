@@ -103,7 +103,7 @@ fn candidates(search: &Search<'_, '_>) -> Result<Vec<Candidate>, LabError> {
     // `pcf` is measured for the budget; it is a candidate only if it was requested.
     candidates.retain(|one| search.bench.request.kinds.contains(&one.config.kind));
     if candidates.is_empty() {
-        let why = "none of these techniques runs here; `antumbra doctor` says what each lacks";
+        let why = "none of these techniques runs on this adapter; `antumbra doctor` lists what each needs";
         return Err(LabError::Request(why.into()));
     }
     candidates.sort_by(|a, b| a.rmse.total_cmp(&b.rmse));
@@ -289,7 +289,7 @@ fn look_in_motion(lab: &LabDevice, search: &Search<'_, '_>, finalists: &mut [Can
         let size_px = search.bench.size_px(FULL - 1);
         let mut moving = MovingScene::new(lab, scene, &view.setup, view.light, size_px, &options)?;
         let truth = moving.trace(Motion::Camera, MOTION_SAMPLES.min(request.samples), search.progress)?;
-        search.progress.begin("the last few in motion", finalists.len() as u64);
+        search.progress.begin("finalists in motion", finalists.len() as u64);
         for (done, (one, square)) in (1..).zip(finalists.iter().zip(&mut squares)) {
             let figures = moving.run(&truth, &mut create(&lab.gpu(), &one.config.choice())?)?;
             *square += figures.flicker.unwrap_or(0.0).powi(2);

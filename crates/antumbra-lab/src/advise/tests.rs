@@ -103,7 +103,7 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
 
     let other = AdviseRequest { samples: 32, ..request };
     let why = advise(lab, &other, Some(dir.path()), &Silent).unwrap_err().to_string();
-    assert!(why.contains("its samples is 64, and here it is 32; name another folder"), "{why}");
+    assert!(why.contains("its samples is 64, but this run has 32; name another folder"), "{why}");
 
     let page_dir = tempfile::tempdir().unwrap();
     let preset = crate::report::write_advice(page_dir.path(), &advice).unwrap();

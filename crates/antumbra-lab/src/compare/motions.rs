@@ -79,7 +79,7 @@ fn run(
         Ok(figures) => {
             if figures.lacking_room > 0 {
                 row.warnings.push(format!(
-                    "While the {name} moved, {} of {frames} frames lacked room for their lists, which counts as flicker.",
+                    "While the {name} moved, lists exceeded their capacity in {} of {frames} frames, which counts as flicker.",
                     figures.lacking_room
                 ));
             }

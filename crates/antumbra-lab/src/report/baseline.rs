@@ -8,13 +8,13 @@ use crate::baseline::{Against, Beside, DIFFERENCES};
 /// Returns a section with ratios of time and differences of error.
 pub(super) fn baseline_section(against: &Against) -> String {
     let mut html = format!(
-        "<section id=\"baseline\" aria-labelledby=\"baseline-title\"><h2 id=\"baseline-title\">Against another run</h2><p \
-         class=\"note\">{}.</p><div class=\"scroll\" tabindex=\"0\" role=\"region\" \
+        "<section id=\"baseline\" aria-labelledby=\"baseline-title\"><h2 id=\"baseline-title\">Comparison with another \
+         run</h2><p class=\"note\">{}.</p><div class=\"scroll\" tabindex=\"0\" role=\"region\" \
          aria-labelledby=\"baseline-title\"><table class=\"numbers\"><thead><tr>",
         escape(&against.summary())
     );
-    let heads = ["technique", "ms here", "ms there", "ratio"].map(str::to_owned).into_iter();
-    for head in heads.chain(DIFFERENCES.map(|key| format!("{key}, here less there"))) {
+    let heads = ["technique", "ms", "baseline ms", "ratio"].map(str::to_owned).into_iter();
+    for head in heads.chain(DIFFERENCES.map(|key| format!("{key}, difference"))) {
         let _ = write!(html, "<th scope=\"col\">{head}</th>");
     }
     html += "</tr></thead><tbody>";

@@ -297,7 +297,7 @@ fn short(v: f64) -> String {
 mod tests {
     use super::*;
 
-    const AXES: Axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
+    const AXES: Axes = Axes { cost: "milliseconds per frame", cost_unit: "ms", error: "rmse" };
 
     fn point(name: &str, cost: f64, error: f64) -> Point {
         Point { name: name.into(), anchor: name.into(), cost, error }

@@ -33,8 +33,8 @@ pub use views::VIEWS;
 pub const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
 
 /// Source of the scene files.
-pub const SCENES_HINT: &str = "sponza.glb is the sample model Sponza of Khronos (github.com/KhronosGroup/glTF-Sample-Assets, \
-                               Models/Sponza) as one binary glTF file; all else is built in";
+pub const SCENES_HINT: &str = "sponza.glb is Khronos' sample model Sponza (github.com/KhronosGroup/glTF-Sample-Assets, \
+     Models/Sponza) as one binary glTF file; all other scenes are built in";
 
 /// Returns an exhibit's name, `marrs-2014/figure3`.
 fn exhibit_name(paper: &Paper, exhibit: &Exhibit) -> String {

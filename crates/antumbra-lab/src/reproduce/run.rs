@@ -277,7 +277,7 @@ impl Site<'_, '_> {
             cut_short_s = run.cut_short_s;
             let TechniqueRun { visibility, timings, memory_bytes, auto_map_sizes, .. } = run;
             let Some(ms) = time_of(&timings, row.measure)? else {
-                return Ok(Ran::without(Outcome::Skipped("it does not time single passes".to_owned())));
+                return Ok(Ran::without(Outcome::Skipped("the adapter does not time single passes".to_owned())));
             };
             (
                 Drawn { visibility, memory_bytes, auto_map_sizes },
@@ -331,7 +331,7 @@ impl Site<'_, '_> {
         let other = match self.row.measure {
             Measure::FilteredError => {
                 let why =
-                    || LabError::Request(format!("`{}` has no exact filtering to be held against", choice.name()));
+                    || LabError::Request(format!("`{}` has no exact filtering to compare with", choice.name()));
                 Some(choice.filtered_truth().ok_or_else(why)?)
             }
             Measure::Difference { from, settings } => Some(choice_with(from, self.form, settings)?),
@@ -377,7 +377,7 @@ fn time_of(timings: &Timings, measure: Measure) -> Result<Option<f64>, LabError>
     let meant: Vec<f64> = timings.passes.iter().filter(|pass| is_meant(&pass.label)).map(|pass| pass.ms).collect();
     if meant.is_empty() {
         let labels: Vec<&str> = timings.passes.iter().map(|pass| pass.label.as_str()).collect();
-        return Err(LabError::Request(format!("no pass is called `{passes}`: there are {}", labels.join(", "))));
+        return Err(LabError::Request(format!("there is no pass `{passes}`; available: {}", labels.join(", "))));
     }
     Ok(Some(meant.iter().sum()))
 }

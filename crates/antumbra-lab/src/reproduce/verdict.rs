@@ -196,18 +196,17 @@ impl Bench<'_> {
         }
         if !claim.on_any_adapter {
             return Some(
-                "it needs a GPU, since times of a software renderer say little about one: the same command on a GPU would show it",
+                "times of a software renderer say little about a GPU; run the same command on a GPU to decide",
             );
         }
         if values.iter().any(|ms| *ms < MIN_MS) {
             return Some(
-                "a time is too short for a software renderer's clock: a larger image (--size) or a GPU would show it",
+                "a time is too short for a software renderer's clock; use a larger image (--size) or a GPU to decide",
             );
         }
         let is_of_few_frames = rule.rows().iter().any(|row| self.is_of_few_frames(row, form));
         is_of_few_frames.then_some(
-            "a median of so few frames says little on a processor that others use: more of them (--frames) on an idle one would \
-             show it",
+            "a median of so few frames is unreliable on a CPU; use more frames (--frames) on an idle machine to decide",
         )
     }
 
@@ -216,11 +215,11 @@ impl Bench<'_> {
         let measured = self.measured(row, form)?;
         if let (Some(flicker), Some(still)) = (measured.flicker, measured.still_flicker) {
             return (flicker >= still).then(|| {
-                format!("‘{row}’ flickers no less than a mask that never changes ({flicker:.4} and {still:.4})")
+                format!("‘{row}’ flickers at least as much as a mask that never changes ({flicker:.4} and {still:.4})")
             });
         }
         let (rmse, flat) = (measured.rmse?, measured.flat_rmse?);
-        (rmse >= flat).then(|| format!("‘{row}’ errs no less than one grey (rmse {rmse:.4} and {flat:.4})"))
+        (rmse >= flat).then(|| format!("‘{row}’ has at least the error of a uniform grey (rmse {rmse:.4} and {flat:.4})"))
     }
 
     fn outcome(&self, row: &str, form: Form) -> Option<&Outcome> {
@@ -250,9 +249,9 @@ impl Bench<'_> {
             Some(Outcome::Measured(measured)) => match measured.figure(figure) {
                 // Software renderers' clocks report zero, for which ratios are meaningless.
                 Some(ms) if figure == Figure::Ms && ms <= 0.0 => {
-                    Err(format!("‘{row}’ was timed as nothing; a GPU would show it"))
+                    Err(format!("the time of ‘{row}’ was reported as zero; use a GPU to decide"))
                 }
-                found => found.ok_or_else(|| format!("‘{row}’ has no {figure} here; another size (--size) may have")),
+                found => found.ok_or_else(|| format!("‘{row}’ has no {figure} here; try another size (--size)")),
             },
             Some(other) => Err(format!("‘{row}’ is {other}")),
         }
@@ -352,10 +351,10 @@ fn met(rule: &Rule, of: &[Range]) -> Option<bool> {
 fn too_close(figure: Figure) -> String {
     match figure {
         Figure::Ms => {
-            "it is too close to tell: more frames (--frames) on a machine with nothing else to do would show it"
+            "the values are too close; use more frames (--frames) on an idle machine to decide"
                 .to_owned()
         }
-        _ => "it is too close to tell: more pixels and light points (--size, --samples) would show it".to_owned(),
+        _ => "the values are too close; use more pixels and light samples (--size, --samples) to decide".to_owned(),
     }
 }
 

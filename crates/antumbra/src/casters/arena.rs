@@ -103,11 +103,11 @@ mod tests {
         let mut arena = Arena::new(&[("test", 4)], wgpu::BufferUsages::empty());
         let max_bytes = 4 * 4096;
         let a = arena.take(1000, max_bytes).expect("room");
-        let b = arena.take(2000, max_bytes).expect("room after it has grown");
+        let b = arena.take(2000, max_bytes).expect("the arena has grown");
         assert!(a.end <= b.start || b.end <= a.start, "{a:?} {b:?}");
         assert_eq!(arena.take(4000, max_bytes), Err(4 * (4096 + 4000)));
         arena.give_back(&b);
-        assert!(arena.take(3000, max_bytes).is_ok(), "what was given back is taken again");
+        assert!(arena.take(3000, max_bytes).is_ok(), "a freed range is reused");
     }
 
     #[test]

@@ -37,7 +37,7 @@ impl Search<'_, '_> {
         let mut relevant: HashMap<TechniqueKind, Vec<&'static str>> = HashMap::new();
         for rung in 0..FULL {
             let what = ["small", "middling"][rung];
-            let stage = format!("round {}: {} techniques on {what} pictures", rung + 2, left.len());
+            let stage = format!("round {}: {} techniques on {what} images", rung + 2, left.len());
             self.progress.begin(&stage, left.len() as u64);
             for (place, kind) in left.clone().into_iter().enumerate() {
                 self.carry_over(kind, rung)?;

@@ -83,8 +83,8 @@ pub(crate) fn check_map_size(gpu: &Gpu, technique: &'static str, size: u32, reme
     }
     Err(Error::Unsupported {
         technique,
-        needed: format!("light maps of {size}² texels"),
-        had: format!("at most {limit}²"),
+        needed: format!("shadow maps of {size} × {size} texels"),
+        had: format!("at most {limit} × {limit}"),
         remedy,
     })
 }

@@ -179,8 +179,8 @@ impl Accumulation {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{needed} bytes to accumulate {pixels} pixels"),
-                had: format!("{limit} bytes a binding"),
-                remedy: "set `accumulate` to false, or render the mask in parts",
+                had: format!("at most {limit} bytes per binding"),
+                remedy: "set `accumulate` to false, or render the mask in several parts",
             });
         }
         write_uniform(

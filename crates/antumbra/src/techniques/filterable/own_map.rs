@@ -77,7 +77,7 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
     let is_core = matches!(sample_count, 1 | 4);
     let unsupported = || Error::Unsupported {
         technique,
-        needed: format!("a light map with {sample_count} samples a texel"),
+        needed: format!("a shadow map with {sample_count} samples per texel"),
         had: "1 and 4".into(),
         remedy: "set `msaa` to 1 or 4",
     };

@@ -72,8 +72,8 @@ impl FramePlan {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{listed_bytes} bytes for a list of {pixels} receivers"),
-                had: format!("{binding_limit} bytes a binding"),
-                remedy: "render the mask in parts",
+                had: format!("at most {binding_limit} bytes per binding"),
+                remedy: "render the mask in several parts",
             });
         }
 
@@ -92,7 +92,7 @@ impl FramePlan {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{} bytes for the bits of every pixel", pixels * u64::from(pixel_words) * 4),
-                had: format!("{binding_limit} bytes a binding"),
+                had: format!("at most {binding_limit} bytes per binding"),
                 remedy: "use fewer light points or a smaller mask, or set `keep_bits` to false",
             });
         }

@@ -292,9 +292,9 @@ impl Meshes {
         if let Some(mesh) = asked.iter().find(|mesh| mesh.triangle_count() > FIRST_MASK) {
             return Err(Error::Unsupported {
                 technique,
-                needed: format!("a tree over a mesh of {} triangles", mesh.triangle_count()),
-                had: format!("trees over at most {FIRST_MASK}"),
-                remedy: "cut the mesh into several",
+                needed: format!("a tree over a mesh with {} triangles", mesh.triangle_count()),
+                had: format!("a limit of {FIRST_MASK} per tree"),
+                remedy: "split the mesh",
             });
         }
         let is_first = self.nodes.buffer.is_none();
@@ -307,8 +307,8 @@ impl Meshes {
                 return Err(Error::Unsupported {
                     technique,
                     needed: format!("{} bytes for the trees of {count} triangles", needed * VECTOR_BYTES),
-                    had: format!("at most {max_bytes} bytes a binding"),
-                    remedy: "cast with fewer or coarser meshes, or ask for a larger max_storage_buffer_binding_size",
+                    had: format!("at most {max_bytes} bytes per binding"),
+                    remedy: "use fewer or coarser meshes, or request a larger max_storage_buffer_binding_size",
                 });
             }
             let with_more = if is_first { needed } else { needed + needed / 2 };
