@@ -82,7 +82,7 @@ pub fn check(root: &Path, run: &Run<'_>) -> Result<(), String> {
     println!("{}: {killed} of {} killed", run.command, run.judged.len());
     match &unexplained(&run.judged, &run.named, &Reasons::read(root)?)[..] {
         [] => Ok(()),
-        all => Err(format!("no test notices, and xtask/mutants/reasons.toml has no reason why: {}", all.join("; "))),
+        all => Err(format!("no test detects these, and xtask/mutants/reasons.toml has no reason for them: {}", all.join("; "))),
     }
 }
 

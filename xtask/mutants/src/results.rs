@@ -107,7 +107,7 @@ impl Results {
             .append(true)
             .open(&self.path)
             .and_then(|mut file| writeln!(file, "{line}"))
-            .map_err(|error| format!("{}: cannot write it: {error}", self.path.display()))?;
+            .map_err(|error| format!("cannot write {}: {error}", self.path.display()))?;
         self.put(entry);
         Ok(())
     }
@@ -137,7 +137,7 @@ mod tests {
         let mutant = Mutant::new("a.wesl", SOURCE, &change);
         let mut results = Results::read(&path).expect("none yet");
         for fate in [Fate::Survived(3), Fate::Killed("a test".to_owned())] {
-            results.add(Entry { mutant: mutant.clone(), fate, seconds: 1.0 }).expect("a folder for files");
+            results.add(Entry { mutant: mutant.clone(), fate, seconds: 1.0 }).expect("a temporary folder");
         }
         let read = Results::read(&path);
         std::fs::remove_file(&path).expect("ours");

@@ -41,7 +41,7 @@ impl Sources {
                     folders.push(path);
                 } else if path.extension().is_some_and(|ending| ending == "wesl") {
                     let text = std::fs::read_to_string(&path).map_err(unreadable)?;
-                    let name = path.strip_prefix(&root).expect("under the root").to_string_lossy().replace('\\', "/");
+                    let name = path.strip_prefix(&root).expect("below the root").to_string_lossy().replace('\\', "/");
                     texts.insert(name, text);
                 }
             }
@@ -144,7 +144,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
     path.parent()
         .map_or(Ok(()), std::fs::create_dir_all)
         .and_then(|()| std::fs::write(path, text))
-        .map_err(|error| format!("{}: cannot write it: {error}", path.display()))
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
 /// Returns the name of a shader in the library's feature `mutants` (`gpu/mutants.rs`): its path and its features.

@@ -133,7 +133,7 @@ impl Suite {
         let is_new = |test: &&Test| test.is_golden() && self.known(test).is_none();
         for test in self.tests.iter().filter(is_new) {
             if self.run(test, folder, false, Duration::from_secs(600))?.outcome != Outcome::Passed {
-                return Err(format!("`{}` fails with nothing changed", test.shown()));
+                return Err(format!("`{}` fails without a mutation; fix it first", test.shown()));
             }
         }
         Ok(())
@@ -205,9 +205,9 @@ fn build(root: &Path, is_wide: bool) -> Result<BTreeMap<String, Program>, String
         .current_dir(root)
         .stderr(Stdio::inherit())
         .output()
-        .map_err(|error| format!("cargo cannot be run: {error}"))?;
+        .map_err(|error| format!("cannot run cargo: {error}"))?;
     if !output.status.success() {
-        return Err("the tests do not build".to_owned());
+        return Err("the tests do not compile".to_owned());
     }
     let mut programs = BTreeMap::new();
     for line in String::from_utf8_lossy(&output.stdout).lines() {

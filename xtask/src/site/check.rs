@@ -39,7 +39,7 @@ fn check_in(program: &Path, site: &Path) -> Result<(), String> {
     let mut faults = Vec::new();
     browser::follow(&posts, &PATIENCE, |path, body| {
         if path != "/fault" {
-            return Err(format!("the page posts to {path}"));
+            return Err(format!("the page posted to an unknown path, {path}"));
         }
         let fault = String::from_utf8_lossy(body).into_owned();
         eprintln!("xtask: FAULT {fault}");
@@ -48,7 +48,7 @@ fn check_in(program: &Path, site: &Path) -> Result<(), String> {
     })?;
     drop(running);
     match faults.first() {
-        Some(first) => Err(format!("the site has {} faults, the first: {first}", faults.len())),
+        Some(first) => Err(format!("the site has {} faults; the first is: {first}", faults.len())),
         None => browser::clean_console(&log),
     }
 }

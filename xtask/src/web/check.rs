@@ -46,7 +46,7 @@ pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> 
         match outcome {
             Ok(()) => break browser::clean_console(&log)?,
             Err(why) if told.begun.is_some_and(|index| index >= from) => {
-                eprintln!("xtask: {why}; another browser goes on after that mask");
+                eprintln!("xtask: {why}; continuing after that mask in a new browser");
                 while posts.try_recv().is_ok() {}
             }
             Err(why) => return Err(why),
@@ -60,14 +60,14 @@ pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> 
         natives.insert(0, same);
     }
     compare::compare(&natives, &web, &told.adapter, &folder.join("masks.md"))?;
-    eprintln!("xtask: the page tried in {} s", began.elapsed().as_secs());
+    eprintln!("xtask: tested the page in {} s", began.elapsed().as_secs());
     Ok(())
 }
 
 /// Draws masks with the system's driver or another. The whole workspace is built, so that features are the same everywhere.
 fn draw_natively(folder: &Path, extent: Extent, driver: Option<&Path>) -> Result<(), String> {
     shell::run(cargo().args(["build", "--locked", "--workspace", "--example", "masks"]))?;
-    let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
+    let own = std::env::current_exe().map_err(|error| format!("cannot find the path of this program: {error}"))?;
     let program = own.with_file_name("examples").join(format!("masks{}", std::env::consts::EXE_SUFFIX));
     let extent = if extent == Extent::Variants { "all" } else { "techniques" };
     let mut command = Command::new(program);
@@ -95,7 +95,7 @@ fn follow(posts: &Posts, folder: &Path, told: &mut Told) -> Result<(), String> {
             "/begun" => told.begun = text().parse().ok(),
             _ => {
                 let index = path.strip_prefix("/mask/").and_then(|index| index.parse::<usize>().ok());
-                let index = index.ok_or_else(|| format!("the page posts to {path}"))?;
+                let index = index.ok_or_else(|| format!("the page posted to an unknown path, {path}"))?;
                 let file = folder.join(format!("{index}.f32"));
                 std::fs::write(&file, body).map_err(|error| format!("{}: {error}", file.display()))?;
             }

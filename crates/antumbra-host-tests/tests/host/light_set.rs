@@ -309,7 +309,7 @@ fn bad_lights_masks_and_budgets_are_refused() {
     for budget in [Budget::Lights(0), Budget::Texels(0)] {
         let frame = LightSetFrame { casters: &hall.casters.set, receivers: hall.picture.receivers(), budget };
         let error = hall.lights.prepare(&frame).expect_err("nothing").to_string();
-        assert!(error.contains("the budget") && error.contains("1 or more"), "{error}");
+        assert!(error.contains("the budget") && error.contains("at least 1"), "{error}");
     }
     hall.casters.set_matrix(1, Mat4::IDENTITY);
     let budget = Budget::Lights(1);
