@@ -20,7 +20,7 @@ pub fn check() -> Result<(), String> {
     for family in &families {
         let alone =
             ["check", "--quiet", "--locked", "--package", "antumbra", "--no-default-features", "--features", family];
-        shell::run(cargo().args(alone)).map_err(|problem| format!("antumbra with `{family}` alone: {problem}"))?;
+        shell::run(cargo().args(alone)).map_err(|problem| format!("antumbra with only `{family}`: {problem}"))?;
     }
     // Its dependencies are rebuilt for a short run, so nothing is optimised.
     let without_decoder =

@@ -42,7 +42,7 @@ Development commands of Antumbra. They install missing programs where possible, 
         Choose with --driver or ANTUMBRA_DRIVER; VK_DRIVER_FILES is respected.
 
     cargo xtask ci [--driver default|installed|newer]
-        Runs `test`, each family of techniques alone, that the program of `packages` compiles, `semver`, `wasm`, `web --shaders`,
+        Runs `test`, builds each family of techniques separately and the program of `packages`, runs `semver`, `wasm`, `web --shaders`,
         `portability` and `gpu-cost --check`. Fails where a check would be skipped, except in the last three, where a browser, a
         compiler or a driver may be missing.
 

@@ -33,7 +33,7 @@ pub enum ReferenceError {
         instance: usize,
     },
     /// The scene has more triangles than the tracer's indices can address.
-    #[error("reference: scene `{scene}` has {count} triangles as drawn; the tracer takes at most {most}")]
+    #[error("reference: scene `{scene}` has {count} triangles, counting instances; the tracer supports at most {most}")]
     TooManyTriangles {
         /// The scene's name.
         scene: String,

@@ -373,7 +373,7 @@ enum LightPasses<'a, P> {
 }
 
 /// Prepared frame of one light. It must be dropped before what it borrows: declare a list of them after their casters.
-#[must_use = "nothing is drawn before it is recorded"]
+#[must_use = "`prepare` draws nothing until its result is recorded"]
 pub struct Prepared<'a> {
     work: Box<dyn Work + 'a>,
 }

@@ -45,7 +45,7 @@ impl<T: Clone + Eq + std::hash::Hash> Listed<T> {
     /// # Panics
     /// If the object was not recorded.
     fn place_of(&self, thing: &T) -> usize {
-        *self.things.get(thing).expect("made by `antumbra::programs` as all is that a pipeline is made of")
+        *self.things.get(thing).expect("created by `antumbra::programs`, as all parts of a pipeline are")
     }
 }
 
@@ -124,7 +124,7 @@ impl Programs {
     }
 
     fn layout(&self, layout: Option<&wgpu::PipelineLayout>) -> usize {
-        self.pipeline_layouts.place_of(layout.expect("our pipelines have layouts of our own"))
+        self.pipeline_layouts.place_of(layout.expect("all pipelines have explicit layouts"))
     }
 
     fn stage(

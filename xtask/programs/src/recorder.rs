@@ -101,7 +101,7 @@ impl Recorder {
         entry: Option<&str>,
         options: &wgpu::PipelineCompilationOptions<'_>,
     ) -> Program {
-        let (module, wgsl) = self.modules.get(module).cloned().expect("made by `antumbra::programs`");
+        let (module, wgsl) = self.modules.get(module).cloned().expect("created by `antumbra::programs`");
         let entry = entry.map_or_else(|| only_entry(&wgsl, stage), str::to_owned);
         let constants = options.constants.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
         Program { stage, module, wgsl, entry, constants }

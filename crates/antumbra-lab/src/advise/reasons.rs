@@ -275,7 +275,7 @@ mod tests {
                 _ => None,
             };
             for config in QUALITIES.map(|quality| Config::of_quality(kind, quality)) {
-                let assumes = Assumes::of(&config).unwrap_or_else(|| panic!("nothing is known of {kind}"));
+                let assumes = Assumes::of(&config).unwrap_or_else(|| panic!("{kind} has no assumption in the list"));
                 let is_fixed = matches!(assumes, Assumes::NoWidth | Assumes::OneWidth);
                 assert_eq!(is_fixed.then_some(assumes), declared, "{config}: {}", kind.facts().penumbra);
             }

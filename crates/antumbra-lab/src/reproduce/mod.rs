@@ -142,7 +142,7 @@ mod tests {
                 for rule in claim.rules {
                     for what in rule.rows() {
                         let row = exhibit.rows.iter().find(|row| row.what == what);
-                        let row = row.unwrap_or_else(|| panic!("{name}: a rule speaks of {what}"));
+                        let row = row.unwrap_or_else(|| panic!("{name}: a rule refers to {what}, which is no row"));
                         let is_measured = match rule.figure() {
                             Figure::Flicker => matches!(row.measure, Measure::Motion(_)),
                             Figure::Ms => row.measure.is_timed() || matches!(row.measure, Measure::SceneMs { .. }),
@@ -154,7 +154,7 @@ mod tests {
             }
             assert!(
                 exhibit.rows.is_empty() || !exhibit.claims.is_empty() || !exhibit.note.is_empty(),
-                "{name} claims nothing and says not why"
+                "{name} has neither claims nor a note why"
             );
         }
     }

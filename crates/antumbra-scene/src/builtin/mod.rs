@@ -363,7 +363,7 @@ pub const NAMES: &[BuiltinInfo] = &[
     },
     BuiltinInfo {
         name: "lamp-room",
-        summary: "a lamp hangs in the middle of a furnished room: receivers all around the light",
+        summary: "a lamp in the middle of a furnished room: receivers in all directions around the light",
         source: "a test case for lights that shine in all directions",
         triangles: 5388,
         make: rooms::lamp_room,

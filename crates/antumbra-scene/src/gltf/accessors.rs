@@ -168,8 +168,8 @@ impl Source<'_> {
         let too_many = |have: usize| {
             Fault::new(
                 own.clone(),
-                format!("claims {} elements, more than its data of {have} bytes holds", accessor.count.0),
-                "`count`, `byteOffset` and the view's stride must stay inside the buffer view",
+                format!("states {} elements, more than fit into its {have} bytes of data", accessor.count.0),
+                "`count`, `byteOffset` and the stride must not exceed the buffer view",
             )
         };
         let offset = accessor.byte_offset.map_or(0, |o| o.0);
@@ -229,7 +229,7 @@ impl Source<'_> {
             Fault::new(
                 place.clone(),
                 format!("{} {what} are beyond the end of their buffer view", sparse.count.0),
-                "`count` and `byteOffset` must stay inside the view",
+                "`count` and `byteOffset` must not exceed the buffer view",
             )
         };
         let Checked::Valid(index_type) = sparse.indices.component_type else {
@@ -258,7 +258,7 @@ impl Source<'_> {
                 return Err(Fault::new(
                     place,
                     format!("replaces element {i} of {}", layout.count),
-                    "sparse indices must lie inside the accessor",
+                    "sparse indices must be less than the accessor's `count`",
                 ));
             }
             replace(i, value);

@@ -52,7 +52,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root> {
             let place = format!("JSON line {}, column {}", first.line(), first.column());
             let message = first.to_string();
             let problem = message.rsplit_once(" at line ").map_or(message.as_str(), |(problem, _)| problem);
-            Fault::new(place, problem.replace('\n', " "), "the file must hold a glTF 2.0 document")
+            Fault::new(place, problem.replace('\n', " "), "the file must contain a glTF 2.0 document")
         })?,
     };
     check_version(&root)?;

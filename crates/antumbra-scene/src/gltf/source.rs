@@ -145,7 +145,7 @@ impl<'a> Source<'a> {
             None => Err(Fault::new(
                 place,
                 format!("bytes {offset} + {length} are beyond the end of buffers[{buffer}] ({} bytes)", bytes.len()),
-                "the range must lie inside the buffer",
+                "the range must be inside the buffer",
             )),
         }
     }

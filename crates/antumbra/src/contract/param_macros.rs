@@ -41,7 +41,7 @@ macro_rules! params_in_full {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Evaluation of every other pixel in both directions, with interpolation.
             sub: bool = false,
-                more "true evaluates as few as a quarter of the pixels, but blurs shadows that are a pixel wide.";
+                more "true evaluates as few as a quarter of the pixels, but blurs shadows as narrow as a pixel.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared edge_goes_on; $($body:tt)*) => {

@@ -193,7 +193,7 @@ impl Device {
         &self,
         descriptor: &wgpu::PipelineLayoutDescriptor<'_>,
     ) -> wgpu::PipelineLayout {
-        debug_assert_eq!(descriptor.immediate_size, 0, "layouts are told apart by their bind groups alone");
+        debug_assert_eq!(descriptor.immediate_size, 0, "the cache key of a layout has only its bind groups");
         let key: Vec<_> = descriptor.bind_group_layouts.iter().map(|layout| layout.cloned()).collect();
         debug_assert!(
             self.is_within_defaults(&key),

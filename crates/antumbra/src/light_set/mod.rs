@@ -161,7 +161,7 @@ struct Entry {
 type Drawing = (Light, Option<CastersKey>);
 
 /// Prepared frame of a light set.
-#[must_use = "nothing is drawn before it is recorded"]
+#[must_use = "`prepare` draws nothing until its result is recorded"]
 #[derive(Debug)]
 pub struct PreparedLights<'a> {
     works: Vec<(LightId, Prepared<'a>)>,

@@ -135,7 +135,7 @@ fn antumbra_image(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u3
         {
             self.made = Some(SplitImages::new(&self.gpu, receivers.size_px, normal_format));
         }
-        let made = self.made.as_ref().expect("made above where it was missing");
+        let made = self.made.as_ref().expect("created above if missing");
         let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep), None);
         let uniform = stage.uniform(
             "antumbra split receivers",
@@ -175,7 +175,7 @@ fn antumbra_image(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u3
     /// # Panics
     /// If nothing was recorded.
     pub fn images<'a>(&'a self, receivers: &Receivers<'a>) -> [Receivers<'a>; 2] {
-        let made = self.made.as_ref().expect("`record` comes before");
+        let made = self.made.as_ref().expect("`record` is called first");
         [0, 1].map(|picture: usize| Receivers {
             size_px: made.size_px,
             origin_px: UVec2::ZERO,

@@ -45,7 +45,7 @@ impl<P: GpuStruct> Filterable<P> {
             self.own_map =
                 Some(OwnMap { view: depth_texture(stage, technique, size, sample_count)?, size, sample_count });
         }
-        let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
+        let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("created above if missing");
         // Kernels of receivers at the window's edge reach beyond it.
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
@@ -99,6 +99,6 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
     if gpu.validation_error(|| made = Some(gpu.device.create_texture(&descriptor))).is_some() {
         return Err(unsupported());
     }
-    let texture = made.expect("made on trial");
+    let texture = made.expect("the trial texture was created");
     Ok(gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()))
 }

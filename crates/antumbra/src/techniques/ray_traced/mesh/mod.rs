@@ -240,7 +240,7 @@ impl Meshes {
         let mut to_fit: Vec<&Asked<'_, '_>> = Vec::new();
         for mesh in &asked {
             let vertices = mesh.caster.version.map(|version| version.vertices);
-            let kept = self.kept.get_mut(&mesh.key).expect("made room for above");
+            let kept = self.kept.get_mut(&mesh.key).expect("inserted above");
             if !made.contains(&mesh.key) && (vertices.is_none() || kept.vertices != vertices) {
                 to_fit.push(mesh);
             }

@@ -291,7 +291,7 @@ impl Forest {
     }
 
     fn made(&self) -> &Made {
-        self.prepared().made.as_ref().expect("prepared to be made")
+        self.prepared().made.as_ref().expect("`prepare` scheduled the build")
     }
 
     /// Sorts items by their boxes within each segment; the result is the order.
