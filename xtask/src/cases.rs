@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_those_of_the_printed_table() {
+    fn errors_are_parsed_from_the_printed_table() {
         let expected = [("hard", Some(0.01)), ("essm", Some(0.98)), ("ray_traced", None)];
         assert_eq!(errors_in(PRINTED), expected.map(|(name, error)| (name.to_owned(), error)));
     }

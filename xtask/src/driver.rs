@@ -25,7 +25,7 @@ const BACKPORTS: &str = "bookworm-backports";
 
 /// Requested driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wanted {
+pub enum DriverChoice {
     /// The driver of a graphics card, or one chosen by the loader's own variables; else the newer one if available; else the installed
     /// one.
     Default,
@@ -39,7 +39,7 @@ pub enum Wanted {
 ///
 /// # Errors
 /// If there is no such driver.
-pub fn option(args: &[String]) -> Result<(Wanted, Vec<String>), String> {
+pub fn option(args: &[String]) -> Result<(DriverChoice, Vec<String>), String> {
     let (mut value, mut rest) = (std::env::var(VARIABLE).ok().filter(|value| !value.is_empty()), Vec::new());
     let mut args = args.iter();
     while let Some(arg) = args.next() {
@@ -50,9 +50,9 @@ pub fn option(args: &[String]) -> Result<(Wanted, Vec<String>), String> {
         }
     }
     let wanted = match value.as_deref() {
-        None | Some("default") => Wanted::Default,
-        Some("installed") => Wanted::Installed,
-        Some("newer") => Wanted::Newer,
+        None | Some("default") => DriverChoice::Default,
+        Some("installed") => DriverChoice::Installed,
+        Some("newer") => DriverChoice::Newer,
         Some(other) => return Err(format!("there is no driver `{other}`; {OPTION} must be default, installed or newer")),
     };
     Ok((wanted, rest))
@@ -68,15 +68,15 @@ impl Driver {
     ///
     /// # Errors
     /// If the newer driver is requested and unavailable, with the reason.
-    pub fn choose(wanted: Wanted) -> Result<Self, String> {
+    pub fn choose(wanted: DriverChoice) -> Result<Self, String> {
         let chosen = DRIVER_VARIABLES.iter().find(|name| std::env::var_os(name).is_some());
         let why = match (wanted, chosen) {
-            (Wanted::Newer, _) => return Self::newer(),
+            (DriverChoice::Newer, _) => return Self::newer(),
             (_, Some(name)) => format!("chosen by {name}"),
-            (Wanted::Installed, None) => "as requested".to_owned(),
-            (Wanted::Default, None) if !cfg!(target_os = "linux") => "the system's driver".to_owned(),
-            (Wanted::Default, None) if machine::has_card() => "for a graphics card".to_owned(),
-            (Wanted::Default, None) => match Self::newer() {
+            (DriverChoice::Installed, None) => "as requested".to_owned(),
+            (DriverChoice::Default, None) if !cfg!(target_os = "linux") => "the system's driver".to_owned(),
+            (DriverChoice::Default, None) if machine::has_card() => "for a graphics card".to_owned(),
+            (DriverChoice::Default, None) => match Self::newer() {
                 Ok(newer) => return Ok(newer),
                 Err(reason) => format!("because {reason}"),
             },
@@ -321,8 +321,8 @@ mod tests {
 
     #[test]
     fn the_option_is_taken_from_anywhere() {
-        assert_eq!(option(&words("pcss --driver newer kept")), Ok((Wanted::Newer, words("pcss kept"))));
-        assert_eq!(option(&words("--driver=installed")), Ok((Wanted::Installed, Vec::new())));
+        assert_eq!(option(&words("pcss --driver newer kept")), Ok((DriverChoice::Newer, words("pcss kept"))));
+        assert_eq!(option(&words("--driver=installed")), Ok((DriverChoice::Installed, Vec::new())));
     }
 
     #[test]

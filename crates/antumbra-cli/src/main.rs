@@ -21,7 +21,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 use args::{Cli, Command};
-use failure::{Failure, Kept};
+use failure::{Failure, SavedResults};
 use progress::Bars;
 
 fn main() -> ExitCode {
@@ -75,7 +75,7 @@ fn keep_wayland_quiet() {
 fn stop() {
     antumbra_lab::output_files::remove_unfinished();
     match &*KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
-        Some(path) => tell(&format_args!("interrupted; {}", Kept::ToResume(path))),
+        Some(path) => tell(&format_args!("interrupted; {}", SavedResults::Resumable(path))),
         None => tell(&"interrupted; no unfinished file was left"),
     }
     leave_at_once(INTERRUPTED);

@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn presets_are_of_papers_and_print_something() {
+    fn every_preset_has_techniques_as_published() {
         assert!(preset("shen-2014").unwrap_err().contains("did you mean `shen-2013`?"));
         for chosen in PRESETS {
             assert!(antumbra_lab::reproduce::PAPERS.iter().any(|paper| paper.id == chosen.paper), "{}", chosen.paper);

@@ -367,7 +367,7 @@ fn a_baseline_gives_ratios_and_differences() {
 
 /// A shared file contains the device's description and times, and nothing about the user.
 #[test]
-fn a_shared_file_is_of_the_card_and_of_nobody() {
+fn a_shared_file_has_no_personal_data() {
     let home = tempfile::tempdir().unwrap();
     if adapter().is_none() {
         return;

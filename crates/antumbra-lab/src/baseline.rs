@@ -74,13 +74,13 @@ pub struct Baseline {
 
 /// Comparison of a run with another.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Against {
+pub struct BaselineComparison {
     /// Adapter of the other run.
     pub adapter: String,
     /// Commit of the other run.
     pub commit: String,
     /// Rows that both runs have.
-    pub rows: Vec<Beside>,
+    pub rows: Vec<PairedRow>,
     /// Geometric mean of the time ratios.
     pub mean_ratio: Option<f64>,
     /// Names of rows that the other run lacks.
@@ -89,7 +89,7 @@ pub struct Against {
 
 /// A row paired with the other run's.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Beside {
+pub struct PairedRow {
     /// Name of the row.
     pub name: String,
     /// Time of this run, milliseconds.
@@ -102,7 +102,7 @@ pub struct Beside {
     pub differences: Map<String, Value>,
 }
 
-impl Beside {
+impl PairedRow {
     /// Returns the difference of one error; `None` unless both runs have it.
     pub fn difference(&self, key: &str) -> Option<f64> {
         self.differences.get(key).and_then(Value::as_f64)
@@ -150,11 +150,11 @@ impl Baseline {
     }
 
     /// Pairs rows with those of the same name.
-    pub fn against(&self, rows: &[Figures]) -> Against {
-        let mut against = Against { adapter: self.adapter.clone(), commit: self.commit.clone(), ..Against::default() };
+    pub fn against(&self, rows: &[Figures]) -> BaselineComparison {
+        let mut against = BaselineComparison { adapter: self.adapter.clone(), commit: self.commit.clone(), ..BaselineComparison::default() };
         for row in rows {
             match self.rows.iter().find(|other| other.name == row.name) {
-                Some(other) => against.rows.push(beside(row, other)),
+                Some(other) => against.rows.push(paired(row, other)),
                 None => against.not_there.push(row.name.clone()),
             }
         }
@@ -165,14 +165,14 @@ impl Baseline {
     }
 }
 
-fn beside(row: &Figures, other: &Figures) -> Beside {
+fn paired(row: &Figures, other: &Figures) -> PairedRow {
     let ratio =
         row.ms.zip(other.ms).filter(|(here, there)| *here > 0.0 && *there > 0.0).map(|(here, there)| here / there);
     let difference = |(key, here): (&String, &Value)| {
         let there = other.errors.get(key)?.as_f64()?;
         Some((key.clone(), Value::from(here.as_f64()? - there)))
     };
-    Beside {
+    PairedRow {
         name: row.name.clone(),
         ms: row.ms,
         baseline_ms: other.ms,
@@ -181,7 +181,7 @@ fn beside(row: &Figures, other: &Figures) -> Beside {
     }
 }
 
-impl Against {
+impl BaselineComparison {
     /// Returns one line: the other run, the mean ratio of times, and missing rows.
     pub fn summary(&self) -> String {
         let mean = self.mean_ratio.map_or_else(String::new, |mean| {

@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn what_there_is_no_time_for_is_said_and_measured_when_resumed() {
+    fn rows_without_time_are_reported_and_measured_on_resume() {
         let Some(lab) = lab_or_skip() else { return };
         let scenes = scenes();
         let choices = [TechniqueKind::Hard, TechniqueKind::Pcf].map(TechniqueChoice::default_of);

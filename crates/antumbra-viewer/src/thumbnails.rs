@@ -23,7 +23,7 @@ const BACKGROUND: [u8; 3] = [150, 158, 168];
 /// State of a thumbnail.
 enum Thumbnail {
     /// Requested, not started.
-    Wanted,
+    Requested,
     Traced(egui::TextureHandle),
     /// Unavailable; the scene's name is shown alone.
     Missing,
@@ -47,8 +47,8 @@ impl Thumbnails {
     /// Returns a scene's thumbnail once it is traced. `wake` is called when asking again is worthwhile.
     pub fn of(&mut self, ctx: &egui::Context, name: &'static str, wake: &Wake) -> Option<&egui::TextureHandle> {
         self.take(ctx);
-        let known = self.known.entry(name).or_insert(Thumbnail::Wanted);
-        if matches!(known, Thumbnail::Wanted) && self.pending.is_none() {
+        let known = self.known.entry(name).or_insert(Thumbnail::Requested);
+        if matches!(known, Thumbnail::Requested) && self.pending.is_none() {
             let (sender, traced) = channel();
             let wake = wake.clone();
             run_in_background(move || {

@@ -19,7 +19,7 @@ pub struct Sources {
 }
 
 /// Effect of a change on the shaders.
-pub enum Made {
+pub enum MutationEffect {
     /// New texts, by the library's names of the changed shaders: see [`changed_name`].
     Shaders(BTreeMap<String, String>),
     /// Not a mutant: one of the shaders does not compile, or none changes.
@@ -55,7 +55,7 @@ impl Sources {
     ///
     /// # Errors
     /// If the folder cannot be written.
-    pub fn make(&self, folder: &Folder, file: &str, change: &Change) -> Result<Made, String> {
+    pub fn make(&self, folder: &Folder, file: &str, change: &Change) -> Result<MutationEffect, String> {
         let mut text = self.texts[file].clone();
         text.replace_range(change.start..change.end, &change.to);
         folder.write(file, &text)?;
@@ -64,19 +64,19 @@ impl Sources {
         Ok(made)
     }
 
-    fn link_changed(&self, folder: &Folder, file: &str) -> Made {
+    fn link_changed(&self, folder: &Folder, file: &str) -> MutationEffect {
         let mut shaders = BTreeMap::new();
         for (i, shader) in SHADERS.iter().enumerate().filter(|(i, _)| self.parts[*i].contains(file)) {
-            let Ok(text) = link(&folder.sources, shader) else { return Made::Nothing("does not link") };
+            let Ok(text) = link(&folder.sources, shader) else { return MutationEffect::Nothing("does not link") };
             if text == self.linked[i] {
                 continue;
             }
             if !is_valid(&text) {
-                return Made::Nothing("does not compile");
+                return MutationEffect::Nothing("does not compile");
             }
             shaders.insert(changed_name(shader), text);
         }
-        if shaders.is_empty() { Made::Nothing("changes no shader") } else { Made::Shaders(shaders) }
+        if shaders.is_empty() { MutationEffect::Nothing("changes no shader") } else { MutationEffect::Shaders(shaders) }
     }
 }
 

@@ -60,7 +60,7 @@ pub enum Outcome {
 
 /// Run of a test.
 #[derive(Debug)]
-pub struct Ran {
+pub struct TestRun {
     pub outcome: Outcome,
     /// Shaders that it used until it ended.
     pub shaders: BTreeSet<String>,
@@ -155,7 +155,7 @@ impl Suite {
     ///
     /// # Errors
     /// If its program cannot be run.
-    pub fn run(&self, test: &Test, folder: &Folder, is_changed: bool, limit: Duration) -> Result<Ran, String> {
+    pub fn run(&self, test: &Test, folder: &Folder, is_changed: bool, limit: Duration) -> Result<TestRun, String> {
         let program = &self.programs[&test.program];
         let unable = |error: std::io::Error| format!("{}: {error}", program.path.display());
         folder.clear_seen()?;
@@ -173,7 +173,7 @@ impl Suite {
         if outcome == Outcome::Passed && self.known(test).is_none() {
             self.keep(test, Measured { seconds: begun.elapsed().as_secs_f64(), shaders: shaders.clone() })?;
         }
-        Ok(Ran { outcome, shaders })
+        Ok(TestRun { outcome, shaders })
     }
 }
 
@@ -230,7 +230,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_runs_on_is_ended() {
+    fn tests_are_stopped_at_the_time_limit() {
         let end = |program: &str, args: &[&str], limit_ms| {
             end_of(Command::new(program).args(args), Duration::from_millis(limit_ms)).expect("every system has it")
         };

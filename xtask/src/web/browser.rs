@@ -127,7 +127,7 @@ pub fn make_anew(folder: &Path) -> Result<(), String> {
 }
 
 /// Time limits of a page.
-pub struct Patience {
+pub struct PageTimeouts {
     /// Maximum time between two posts of the page.
     pub silence: Duration,
     /// Maximum total time.
@@ -140,16 +140,16 @@ pub struct Patience {
 /// The failure that the page reports, or a time limit.
 pub fn follow(
     posts: &Posts,
-    patience: &Patience,
+    timeouts: &PageTimeouts,
     mut take: impl FnMut(&str, &[u8]) -> Result<(), String>,
 ) -> Result<(), String> {
     let began = Instant::now();
     let mut last = "nothing yet".to_owned();
-    while began.elapsed() < patience.all {
-        let (path, body) = match posts.recv_timeout(patience.silence) {
+    while began.elapsed() < timeouts.all {
+        let (path, body) = match posts.recv_timeout(timeouts.silence) {
             Ok(post) => post,
             Err(RecvTimeoutError::Timeout) => {
-                return Err(format!("the page reported nothing for {} s; last report: {last}", patience.silence.as_secs()));
+                return Err(format!("the page reported nothing for {} s; last report: {last}", timeouts.silence.as_secs()));
             }
             Err(RecvTimeoutError::Disconnected) => return Err("the server has ended".into()),
         };
@@ -164,7 +164,7 @@ pub fn follow(
             _ => take(&path, &body)?,
         }
     }
-    Err(format!("the page is not finished after {} s; last report: {last}", patience.all.as_secs()))
+    Err(format!("the page is not finished after {} s; last report: {last}", timeouts.all.as_secs()))
 }
 
 /// Checks that the page's console is empty.

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn masks_that_hold_nothing_are_no_agreement() {
+    fn masks_without_shadow_are_not_compared() {
         assert_eq!(difference(&[0.0, 1.0], &[0.5, 1.0]), Ok(0.25));
         assert!(difference(&[1.0, 1.0], &[1.0, 1.0]).is_err());
         assert!(difference(&[0.0, 1.0], &[0.0]).is_err());

@@ -6,14 +6,14 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use super::browser::{self, Patience};
+use super::browser::{self, PageTimeouts};
 use crate::shell;
 
 /// Files of the page, from `xtask/programs/page`.
 const PAGE: [&str; 2] = ["index.html", "make.js"];
 
 /// Time limits. The page itself waits at most twenty seconds for a pipeline.
-const PATIENCE: Patience = Patience { silence: Duration::from_secs(300), all: Duration::from_secs(1800) };
+const TIMEOUTS: PageTimeouts = PageTimeouts { silence: Duration::from_secs(300), all: Duration::from_secs(1800) };
 
 /// Extent of what the browser creates.
 #[derive(Clone, Copy, PartialEq)]
@@ -57,7 +57,7 @@ fn check_in(browser: &Path, extent: Extent) -> Result<(), String> {
     let address = if extent == Extent::Pipelines { format!("{address}?pipelines") } else { address };
     let mut adapter = String::new();
     let running = browser::launch(browser, &profile, &log, &address)?;
-    browser::follow(&posts, &PATIENCE, |path, body| {
+    browser::follow(&posts, &TIMEOUTS, |path, body| {
         if path != "/adapter" {
             return Err(format!("the page posted to an unknown path, {path}"));
         }

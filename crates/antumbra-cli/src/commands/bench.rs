@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use antumbra_lab::baseline::{Against, Baseline, Source, of_bench};
+use antumbra_lab::baseline::{BaselineComparison, Baseline, Source, of_bench};
 use antumbra_lab::bench::{
     BenchOutcome, BenchRequest, BenchRow, BenchRows, BenchScene, Frames, bench as measure, file_json, rows_to_resume,
 };
@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 
 use crate::args::BenchArgs;
 use crate::commands::{COMMIT, LoadedScene, choices, light_index, load_scene, narrowest, open_device, put_json};
-use crate::failure::{Failure, Kept};
+use crate::failure::{Failure, SavedResults};
 use crate::keep;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -67,8 +67,8 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
     }
     match limits.deadline {
         Some(_) if !rows.missing.is_empty() => {
-            let shared = args.share.as_deref().map_or(Kept::Nothing, Kept::Alone);
-            let kept = args.json.as_deref().map_or(shared, Kept::ToResume);
+            let shared = args.share.as_deref().map_or(SavedResults::Nothing, SavedResults::NotResumable);
+            let kept = args.json.as_deref().map_or(shared, SavedResults::Resumable);
             Err(Failure::incomplete(&rows.missing_names(), rows.all().len(), &kept))
         }
         _ => Ok(()),
@@ -125,7 +125,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn measure(&self, limits: Limits, bars: &Bars) -> Result<(BenchRows, Option<Against>), Failure> {
+    fn measure(&self, limits: Limits, bars: &Bars) -> Result<(BenchRows, Option<BaselineComparison>), Failure> {
         let Self { args, lab, scenes, choices, ref sizes, ref baseline } = *self;
         let minutes = args.minutes.map(|minutes| Duration::from_secs(60 * u64::from(minutes)));
         let until = args.run.deadline;

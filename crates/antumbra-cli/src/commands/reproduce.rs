@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use crate::args::ReproduceArgs;
 use crate::commands::{COMMIT, check_folder, open_device, put_json, quoted};
-use crate::failure::{Failure, Kept};
+use crate::failure::{Failure, SavedResults};
 use crate::keep;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -43,7 +43,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     say!("Adapter: {}", lab.adapter.name);
     let mut options = RunOptions { size_px: args.size, ..RunOptions::for_device(&lab, args.frames) };
     options.samples = args.samples.unwrap_or(options.samples);
-    options.dear |= args.dear;
+    options.runs_slow |= args.dear;
     let mut session = Session::open(&lab, options, limits, dir.as_deref(), COMMIT)?;
     let info = ReproductionInfo {
         adapter: AdapterInfo::of(&lab.adapter),
@@ -92,8 +92,8 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     if session.missing().is_empty() {
         return Ok(());
     }
-    let alone = args.json.as_deref().map_or(Kept::Nothing, Kept::Alone);
-    Err(Failure::incomplete(session.missing(), all, &dir.as_deref().map_or(alone, Kept::ToResume)))
+    let alone = args.json.as_deref().map_or(SavedResults::Nothing, SavedResults::NotResumable);
+    Err(Failure::incomplete(session.missing(), all, &dir.as_deref().map_or(alone, SavedResults::Resumable)))
 }
 
 /// Validates the options before the long work. Returns the baseline, if any.

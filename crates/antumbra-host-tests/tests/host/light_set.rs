@@ -256,7 +256,7 @@ fn texels_are_counted_by_what_lights_draw() {
 
 /// Dropped work leaves masks to be redrawn, and an error in one light's frame does not affect the others.
 #[test]
-fn frames_that_come_to_nothing_are_made_up_for() {
+fn dropped_and_failed_frames_are_redrawn() {
     let device = Device::idle();
     let shadows = (0..4).map(|_| small_shadow(&device, kind_of("hard"))).collect();
     let mut hall = Hall::new(&device, UVec2::new(16, 9), shadows);

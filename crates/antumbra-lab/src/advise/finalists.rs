@@ -6,7 +6,7 @@ use super::reasons::reasons;
 use super::search::Search;
 use super::simplify::{simplest_candidate, simplified};
 use super::turns::in_turns;
-use super::{Advice, Candidate, Config, Prefer, Spent};
+use super::{Advice, Candidate, Config, Prefer, SearchCost};
 use crate::adapter_info::AdapterInfo;
 use crate::color_maps::signed_error_map;
 use crate::date::utc_now;
@@ -59,7 +59,7 @@ pub(super) fn choose(
     let front = plain_front(search, &best, others)?;
     let (true_picture, picture, error_picture) = pictures(search, &best.config)?;
     let facts = search.bench.facts()?.into_iter().map(|(_, facts)| facts).collect();
-    let spent = Spent {
+    let spent = SearchCost {
         measurements: search.store.rows().count(),
         seconds: search.store.rows().map(|row| row.spent_s).sum(),
         left_out,
@@ -255,12 +255,12 @@ fn surest<'c>(fitting: &[&'c Candidate]) -> Option<&'c Candidate> {
 
 /// Measures at full size the cheapest configuration that, on smaller images, errs clearly less than those within the budget.
 fn look_above(search: &mut Search<'_, '_>) -> Result<(), LabError> {
-    for rung in (0..FULL).rev() {
-        let known: Vec<(Config, f64, f64)> = search.tried[rung]
+    for size_index in (0..FULL).rev() {
+        let known: Vec<(Config, f64, f64)> = search.tried[size_index]
             .iter()
             .filter_map(|config| {
-                let measured = search.known(config, rung)?;
-                Some((config.clone(), measured.error(), search.load(config.kind, rung, measured)))
+                let measured = search.known(config, size_index)?;
+                Some((config.clone(), measured.error(), search.load(config.kind, size_index, measured)))
             })
             .collect();
         let within = known.iter().filter(|one| one.2 <= 1.0).map(|one| one.1).fold(f64::INFINITY, f64::min);
@@ -340,7 +340,7 @@ mod tests {
 
     /// A candidate that keeps the budget in every turn is preferred unless its error is much larger.
     #[test]
-    fn what_surely_fits_is_taken_where_it_is_nearly_as_good() {
+    fn a_sure_candidate_is_preferred_at_similar_error() {
         let (noisy, near, far) = (timed(0.100, 1.1), timed(0.104, 0.9), timed(0.2, 0.5));
         let chosen = |among: &[&Candidate]| surest(among).map(|one| one.rmse);
         assert_eq!(chosen(&[&noisy, &near, &far]), Some(0.104));

@@ -216,7 +216,7 @@ impl Candidate {
 
 /// Cost of the advice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spent {
+pub struct SearchCost {
     /// Number of measured configurations at any size, in this run and in those that it resumes.
     pub measurements: usize,
     /// Run time of techniques, seconds, without the ground truth.
@@ -271,7 +271,7 @@ pub struct Advice {
     /// Pareto front of error and time among all candidates measured at full size.
     pub front: Vec<Candidate>,
     /// Cost of the search.
-    pub spent: Spent,
+    pub spent: SearchCost,
     /// First view, shaded with the ground truth.
     #[serde(skip)]
     pub true_picture: RgbImage,

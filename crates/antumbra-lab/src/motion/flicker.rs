@@ -210,7 +210,7 @@ mod tests {
 
     /// Masks that lag some frames behind, as ghosting does.
     #[test]
-    fn a_mask_that_lags_is_seen_to() {
+    fn lag_is_measured_by_the_distance_to_the_settled_mask() {
         const STOP: u32 = 10;
         let truths: Vec<_> = (0..=STOP).map(truth).collect();
         let touched = touched_pixels(&truths);

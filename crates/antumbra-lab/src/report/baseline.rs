@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use super::html::{escape, three_figures};
-use crate::baseline::{Against, Beside, DIFFERENCES};
+use crate::baseline::{BaselineComparison, PairedRow, DIFFERENCES};
 
 /// Returns a section with ratios of time and differences of error.
-pub(super) fn baseline_section(against: &Against) -> String {
+pub(super) fn baseline_section(against: &BaselineComparison) -> String {
     let mut html = format!(
         "<section id=\"baseline\" aria-labelledby=\"baseline-title\"><h2 id=\"baseline-title\">Comparison with another \
          run</h2><p class=\"note\">{}.</p><div class=\"scroll\" tabindex=\"0\" role=\"region\" \
@@ -22,7 +22,7 @@ pub(super) fn baseline_section(against: &Against) -> String {
     html + "</tbody></table></div></section>"
 }
 
-fn line(row: &Beside) -> String {
+fn line(row: &PairedRow) -> String {
     let ms = |value: Option<f64>| value.map_or_else(|| "–".into(), three_figures);
     let mut cells = vec![ms(row.ms), ms(row.baseline_ms), ms(row.ratio)];
     cells.extend(DIFFERENCES.map(|key| row.difference(key).map_or_else(|| "–".into(), |v| format!("{v:+.4}"))));

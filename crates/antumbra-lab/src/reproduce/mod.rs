@@ -24,7 +24,7 @@ pub use form::Form;
 pub use outcome::{Measured, Outcome};
 pub use papers::PAPERS;
 pub use preset::{PRESETS, Preset};
-pub use run::{Bench, Pictures, Ran, RunOptions};
+pub use run::{Bench, Pictures, RunResult, RunOptions};
 pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Session, VerdictCount};
 pub use verdict::{Judged, Outcomes, Ruling, Verdict, judge};
 pub use views::VIEWS;
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_against_exact_filtering_has_it() {
+    fn rows_with_filtered_errors_have_exact_filtering() {
         let mut held = 0;
         for (name, _, exhibit) in exhibits() {
             for row in exhibit.rows.iter().filter(|row| matches!(row.measure, Measure::FilteredError)) {
@@ -132,7 +132,7 @@ mod tests {
 
     /// Rules name existing rows, and figures that these rows measure.
     #[test]
-    fn rules_speak_of_what_is_measured() {
+    fn rules_refer_to_measured_rows() {
         for (name, _, exhibit) in exhibits() {
             for (i, row) in exhibit.rows.iter().enumerate() {
                 assert!(exhibit.rows[..i].iter().all(|other| other.what != row.what), "{name}: {} twice", row.what);

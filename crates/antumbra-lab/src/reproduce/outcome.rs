@@ -22,7 +22,7 @@ pub enum Outcome {
     /// The scene is a file that is not available.
     NotReady(String),
     /// The row takes a software renderer too long to run by default.
-    TooDear,
+    TooSlow,
     /// The device cannot run the row, for the given reason.
     Skipped(String),
     /// The row failed with the given message. Other rows continue.
@@ -126,7 +126,7 @@ impl fmt::Display for Outcome {
             Self::NotReady(scene) => {
                 write!(f, "not ready: set {SCENES_VARIABLE} to a folder that contains {scene} ({SCENES_HINT})")
             }
-            Self::TooDear => write!(f, "too slow for a software renderer; use --dear to run it anyway"),
+            Self::TooSlow => write!(f, "too slow for a software renderer; use --dear to run it anyway"),
             Self::Skipped(reason) => write!(f, "not possible on this device: {reason}"),
             Self::Failed(reason) => write!(f, "failed: {reason}"),
         }

@@ -109,7 +109,7 @@ struct Bench<'a> {
 
 /// Result of a rule.
 #[derive(Clone, Debug, PartialEq)]
-enum Met {
+enum RuleOutcome {
     Yes,
     No,
     /// Undecided, with the reason and what would show it.
@@ -143,15 +143,15 @@ impl Bench<'_> {
     }
 
     fn rule_on(&self, claim: &Claim, form: Form) -> Ruling {
-        let found: Vec<(String, Met)> = claim.rules.iter().map(|rule| self.look(claim, rule, form)).collect();
+        let found: Vec<(String, RuleOutcome)> = claim.rules.iter().map(|rule| self.look(claim, rule, form)).collect();
         let unknown = found.iter().find_map(|(_, met)| match met {
-            Met::Unknown(why) => Some(why.clone()),
+            RuleOutcome::Unknown(why) => Some(why.clone()),
             _ => None,
         });
         let verdict = match unknown {
             _ if !claim.needs.is_empty() => Verdict::Undecided(claim.needs.to_owned()),
             // A single rule that is not met contradicts the claim.
-            _ if found.iter().any(|(_, met)| *met == Met::No) => Verdict::Contradicted,
+            _ if found.iter().any(|(_, met)| *met == RuleOutcome::No) => Verdict::Contradicted,
             Some(why) => Verdict::Undecided(why),
             None => Verdict::Holds,
         };
@@ -163,12 +163,12 @@ impl Bench<'_> {
     }
 
     /// Judges a rule by the measured values.
-    fn look(&self, claim: &Claim, rule: &Rule, form: Form) -> (String, Met) {
+    fn look(&self, claim: &Claim, rule: &Rule, form: Form) -> (String, RuleOutcome) {
         let values: Result<Vec<f64>, String> =
             rule.rows().iter().map(|row| self.value(rule.figure(), row, form)).collect();
         let values = match values {
             Ok(values) => values,
-            Err(why) => return (rule.text(), Met::Unknown(why)),
+            Err(why) => return (rule.text(), RuleOutcome::Unknown(why)),
         };
         let all = values.iter().map(|v| rule.figure().text(*v)).collect::<Vec<_>>().join(", ");
         let here = match rule {
@@ -176,16 +176,16 @@ impl Bench<'_> {
             _ => all,
         };
         if let Some(doubt) = self.doubt_of_times(claim, rule, &values, form) {
-            return (format!("{}: here {here}", rule.text()), Met::Unknown(doubt.to_owned()));
+            return (format!("{}: here {here}", rule.text()), RuleOutcome::Unknown(doubt.to_owned()));
         }
         if let Some(why) = rule.favored().iter().find_map(|row| self.is_flat(row, form)) {
-            return (format!("{}: here {here}, but {why}", rule.text()), Met::No);
+            return (format!("{}: here {here}, but {why}", rule.text()), RuleOutcome::No);
         }
         let ranges: Vec<Range> =
             rule.rows().iter().zip(&values).map(|(row, v)| self.range(rule.figure(), row, *v, form)).collect();
         let met = met(rule, &ranges);
         let met = met
-            .map_or_else(|| Met::Unknown(too_close(rule.figure())), |is_met| if is_met { Met::Yes } else { Met::No });
+            .map_or_else(|| RuleOutcome::Unknown(too_close(rule.figure())), |is_met| if is_met { RuleOutcome::Yes } else { RuleOutcome::No });
         (format!("{}: here {here}", rule.text()), met)
     }
 

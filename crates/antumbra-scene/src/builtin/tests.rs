@@ -152,7 +152,7 @@ fn the_camera_sees_the_scene() {
 const AROUND_THEIR_LIGHT: [&str; 3] = ["lamp-room", "hall", "staircase"];
 
 #[test]
-fn the_light_is_before_the_scene() {
+fn scenes_are_in_front_of_their_light() {
     for (info, scene) in scenes().filter(|(info, _)| !AROUND_THEIR_LIGHT.contains(&info.name)) {
         assert!(!scene.lights.is_empty(), "{}", info.name);
         for light in &scene.lights {

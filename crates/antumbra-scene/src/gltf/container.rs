@@ -20,6 +20,8 @@ const CHUNK_BIN: u32 = u32::from_le_bytes(*b"BIN\0");
 /// Remedy for files of other formats.
 const CONVERT: &str = "give a .glb or .gltf file of version 2.0; convert .obj, .fbx, .usd or .blend with Blender: File > Import, then \
     File > Export > glTF 2.0";
+/// Remedy for files that end early.
+const TRUNCATED: &str = "the file seems to be truncated: download or export it again";
 const UTF8_BYTE_ORDER_MARK: &[u8] = &[0xEF, 0xBB, 0xBF];
 
 /// Splits a file. Its first bytes determine the format, not its name.
@@ -37,8 +39,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>> {
 
 fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
     let truncated = |at: usize, what: &str| {
-        Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), "the file seems to be truncated: download or \
-             export it again")
+        Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), TRUNCATED)
     };
     let u32_at = |at: usize, what: &str| match bytes.get(at..at + 4) {
         Some(&[a, b, c, d]) => Ok(u32::from_le_bytes([a, b, c, d])),
@@ -53,7 +54,7 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
         return Err(Fault::new(
             "byte 8",
             format!("the header states {length} bytes, but the file has {}", bytes.len()),
-            "the file seems to be truncated: download or export it again",
+            TRUNCATED,
         ));
     };
     let chunk_at = |at: usize, what: &str| -> Result<(u32, &[u8])> {
@@ -74,7 +75,7 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
             None => Err(Fault::new(
                 format!("byte {at}"),
                 format!("a chunk states {chunk_bytes} bytes, but only {} remain", bytes.len() - start),
-                "the file seems to be truncated: download or export it again",
+                TRUNCATED,
             )),
         }
     };

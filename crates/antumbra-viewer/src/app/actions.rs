@@ -1,7 +1,7 @@
 //! Actions that keys, panels and dialogs request.
 
 use super::App;
-use crate::loader::{Wanted, read_setup, write_setup};
+use crate::loader::{SceneRequest, read_setup, write_setup};
 use crate::state::command_line;
 use crate::ui::Action;
 
@@ -23,7 +23,7 @@ impl App {
         match action {
             Action::Open(spec) => {
                 self.say(format!("loading {spec}"));
-                self.loader.load(Wanted::plain(spec), self.wake.clone());
+                self.loader.load(SceneRequest::plain(spec), self.wake.clone());
             }
             Action::Choose(purpose, name) => self.file_dialog.open(purpose, &name, self.wake.clone()),
             Action::Undo => {

@@ -315,7 +315,7 @@ fn a_scene_at_another_time_is_what_it_is_when_opened_then() {
 }
 
 #[test]
-fn what_comes_and_goes_is_made_anew() {
+fn an_instance_that_disappears_and_returns_restores_the_image() {
     let Some((mut renderer, state)) = fixture("builtin:overlap") else { return };
     settle(&mut renderer, &state);
     let (all, mut fewer) = (flapping(0.0), flapping(0.0));

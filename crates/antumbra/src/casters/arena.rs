@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_a_range_too() {
+    fn empty_ranges_are_allocated_and_freed() {
         let mut arena = Arena::new(&[("test", 4)], wgpu::BufferUsages::empty());
         let none = arena.take(0, 4096).expect("room");
         assert!(none.is_empty());

@@ -163,7 +163,7 @@ mod tests {
 
     /// Each rank occurs once. The tile, and each thresholding of it, has almost no low frequencies.
     #[test]
-    fn what_is_next_is_far_and_nothing_is_low() {
+    fn blue_noise_has_no_low_frequencies() {
         let mut sorted = RANKS.clone();
         sorted.sort_unstable();
         assert!((0..TEXELS as u16).eq(sorted), "each rank once");

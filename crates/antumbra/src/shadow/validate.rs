@@ -6,7 +6,7 @@
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec3};
 
-use super::frame::Asked;
+use super::frame::FrameRequest;
 use super::{Casters, Frame, PointFrame};
 use crate::contract::{Denoise, DepthMapCaster, Error, MeshCaster, Opacity};
 use crate::gpu::{Gpu, ViewKind};
@@ -15,13 +15,13 @@ mod on_trial;
 mod pixels;
 mod points;
 
-use on_trial::Good;
+use on_trial::BindableCache;
 
 /// Validator of frames. It remembers which views and buffers could be bound.
 #[derive(Debug, Default)]
 pub(super) struct Validator {
-    views: Good<(wgpu::TextureView, ViewKind)>,
-    buffers: Good<wgpu::Buffer>,
+    views: BindableCache<(wgpu::TextureView, ViewKind)>,
+    buffers: BindableCache<wgpu::Buffer>,
 }
 
 /// Frame to validate, with the technique's name for errors.
@@ -37,14 +37,14 @@ impl Validator {
         &mut self,
         technique: &'static str,
         gpu: &Gpu,
-        asked: &Asked<'_>,
+        request: &FrameRequest<'_>,
         denoise: Option<&Denoise>,
     ) -> Result<(), Error> {
         self.views.begin_frame();
         self.buffers.begin_frame();
-        match asked {
-            Asked::Mask(frame) => self.check_mask(&Check { technique, gpu, frame }, denoise),
-            Asked::Points(frame) => self.check_points(&Check { technique, gpu, frame }, denoise),
+        match request {
+            FrameRequest::Mask(frame) => self.check_mask(&Check { technique, gpu, frame }, denoise),
+            FrameRequest::Points(frame) => self.check_points(&Check { technique, gpu, frame }, denoise),
         }
     }
 

@@ -55,7 +55,7 @@ macro_rules! figure9 {
     ($($size:literal),+) => {
         &[$(
             timed(concat!("VSM, ", $size, "²"), "vsm", &[("map_size", $size)])
-                .dear_where(is_large($size, "1")),
+                .slow_if(is_large($size, "1")),
             figure9!(layers $size, "2"),
             figure9!(layers $size, "4"),
             figure9!(layers $size, "8"),
@@ -68,7 +68,7 @@ macro_rules! figure9 {
             "lvsm",
             &[("map_size", $size), ("layers", $layers)],
         )
-        .dear_where(is_large($size, $layers))
+        .slow_if(is_large($size, $layers))
     };
 }
 

@@ -466,19 +466,19 @@ pub const PAPER: Paper = Paper {
                 ms("Sponza: multi-layer, 2048²", SPONZA, "multi_layer", "", Number(45.0))
                     .seen(HALL)
                     .with(ALL_2048)
-                    .dear(),
+                    .slow(),
                 ms("Sponza: multi-layer, 512²", SPONZA, "multi_layer", "", Number(5.7)).seen(HALL).with(ALL_512),
-                ms("Sponza: ray tracing", SPONZA, "ray_traced", "", Number(2100.0)).seen(HALL).with(&[("samples", "128")]).dear(),
+                ms("Sponza: ray tracing", SPONZA, "ray_traced", "", Number(2100.0)).seen(HALL).with(&[("samples", "128")]).slow(),
                 ms("tree: ESSM", TREE, "essm", "", Number(5.5)),
                 ms("tree: multi-layer", TREE, "multi_layer", "", Number(6.1)).with(ALL),
                 ms("tree: multi-layer, 2048²", TREE, "multi_layer", "", Number(28.0)).with(ALL_2048),
                 ms("tree: multi-layer, 512²", TREE, "multi_layer", "", Number(4.4)).with(ALL_512),
-                ms("tree: ray tracing", TREE, "ray_traced", "", Number(1800.0)).with(&[("samples", "128")]).dear(),
+                ms("tree: ray tracing", TREE, "ray_traced", "", Number(1800.0)).with(&[("samples", "128")]).slow(),
                 ms("street: ESSM", STREET, "essm", "", Number(6.7)),
                 ms("street: multi-layer", STREET, "multi_layer", "", Number(9.5)).with(ALL),
-                ms("street: multi-layer, 2048²", STREET, "multi_layer", "", Number(38.0)).with(ALL_2048).dear(),
+                ms("street: multi-layer, 2048²", STREET, "multi_layer", "", Number(38.0)).with(ALL_2048).slow(),
                 ms("street: multi-layer, 512²", STREET, "multi_layer", "", Number(8.5)).with(ALL_512),
-                ms("street: ray tracing", STREET, "ray_traced", "", Number(1600.0)).with(&[("samples", "128")]).dear(),
+                ms("street: ray tracing", STREET, "ray_traced", "", Number(1600.0)).with(&[("samples", "128")]).slow(),
             ],
             claims: &[
                 claim(

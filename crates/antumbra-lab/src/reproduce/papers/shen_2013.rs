@@ -25,15 +25,15 @@ const R_AND_MU: &str = "R and μ contradict each other. With 20 bits, the larges
 /// A row of Table 1: the host's G-buffer, the paper's three stages, and the total.
 macro_rules! table1 {
     ($(
-        $name:literal, $scene:ident, $settings:expr, $is_dear:literal:
+        $name:literal, $scene:ident, $settings:expr, $is_slow:literal:
         $gb:literal, $eb:literal, $stg:literal, $shadow:literal, $fps:literal;
     )+) => {
         &[$(
             scene_ms(concat!($name, ": G-buffer"), $scene, $gb).at(1280, 960),
-            stage(concat!($name, ": basis"), $scene, $settings, $is_dear, "basis", $eb),
-            stage(concat!($name, ": tile grids"), $scene, $settings, $is_dear, "table", $stg),
-            stage(concat!($name, ": shadow"), $scene, $settings, $is_dear, "resolve", $shadow),
-            fps(concat!($name, ": total"), $scene, "essm", $fps).with($settings).at(1280, 960).dear_where($is_dear).alone(),
+            stage(concat!($name, ": basis"), $scene, $settings, $is_slow, "basis", $eb),
+            stage(concat!($name, ": tile grids"), $scene, $settings, $is_slow, "table", $stg),
+            stage(concat!($name, ": shadow"), $scene, $settings, $is_slow, "resolve", $shadow),
+            fps(concat!($name, ": total"), $scene, "essm", $fps).with($settings).at(1280, 960).slow_if($is_slow).alone(),
         )+]
     };
 }
@@ -51,11 +51,11 @@ const fn stage(
     what: &'static str,
     scene: &'static str,
     settings: Settings,
-    is_dear: bool,
+    is_slow: bool,
     passes: &'static str,
     paper_ms: f64,
 ) -> Row {
-    ms(what, scene, "essm", passes, Number(paper_ms)).with(settings).at(1280, 960).dear_where(is_dear).alone()
+    ms(what, scene, "essm", passes, Number(paper_ms)).with(settings).at(1280, 960).slow_if(is_slow).alone()
 }
 
 /// Errors over the exponent c, each with several numbers of bits μ, for the published form only.
@@ -92,7 +92,7 @@ macro_rules! table2 {
     (row $size:literal, $what:literal, $table:literal, $scan:literal, $passes:literal, $paper:literal) => {
         ms(concat!($what, ", ", $size, "²"), TRAFFIC, "essm", $passes, Number($paper))
             .with(&[("table", $table), ("scan", $scan), ("map_size", $size)])
-            .dear_where($size.as_bytes()[0] == b'4')
+            .slow_if($size.as_bytes()[0] == b'4')
             .at(1280, 960)
     };
 }

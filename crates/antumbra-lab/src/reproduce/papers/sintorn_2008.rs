@@ -179,7 +179,7 @@ pub const PAPER: Paper = Paper {
                 fps("sample-based, 256", "sponza.glb", "sample_based", 2.6).seen(ATRIUM).with(SAMPLES_256).at(512, 512),
                 ms("shadow maps, 256", "sponza.glb", "multi_view", "", Drawn)
                     .seen(ATRIUM)
-                    .dear()
+                    .slow()
                     .with(MAPS_256)
                     .at(512, 512),
             ],
@@ -221,7 +221,7 @@ pub const PAPER: Paper = Paper {
                 ms("1 000 000 triangles", "builtin:knot?triangles=1000000", "sample_based", "", Drawn)
                     .with(SAMPLES_128)
                     .at(512, 512)
-                    .dear(),
+                    .slow(),
             ],
             claims: &[claim(
                 "Time is mostly linear in the number of triangles.",
@@ -274,8 +274,8 @@ pub const PAPER: Paper = Paper {
             rows: &[
                 ms("shadow maps, 128", "builtin:columns", "multi_view", "", Drawn).with(MAPS_128).at(512, 512),
                 ms("shadow maps, 256", "builtin:columns", "multi_view", "", Drawn).with(MAPS_256).at(512, 512),
-                ms("shadow maps, 512", "builtin:columns", "multi_view", "", Drawn).with(MAPS_512).at(512, 512).dear(),
-                ms("shadow maps, 1024", "builtin:columns", "multi_view", "", Drawn).with(MAPS_1024).at(512, 512).dear(),
+                ms("shadow maps, 512", "builtin:columns", "multi_view", "", Drawn).with(MAPS_512).at(512, 512).slow(),
+                ms("shadow maps, 1024", "builtin:columns", "multi_view", "", Drawn).with(MAPS_1024).at(512, 512).slow(),
                 ms("sample-based, 128", "builtin:columns", "sample_based", "", Drawn).with(SAMPLES_128).at(512, 512),
                 ms("sample-based, 256", "builtin:columns", "sample_based", "", Drawn).with(SAMPLES_256).at(512, 512),
                 ms("sample-based, 128, by the table", "builtin:columns", "sample_based", "", Drawn)
@@ -352,7 +352,7 @@ pub const PAPER: Paper = Paper {
                 ms("ring in grass: shadow maps, 256", "builtin:ring-in-grass", "multi_view", "", Drawn)
                     .with(MAPS_256)
                     .at(512, 512)
-                    .dear(),
+                    .slow(),
             ],
             claims: &[
                 claim(

@@ -198,7 +198,7 @@ fn points_where_pixels_are_have_the_pixels_visibilities() {
 
 #[test]
 #[ignore = "long"]
-fn so_they_have_under_a_sun_and_a_lamp_in_parts() {
+fn points_have_the_pixels_visibilities_under_partitioned_lights() {
     hold_to_pixels(&lights()[1..]);
 }
 

@@ -29,8 +29,11 @@ impl Check<'_, PointFrame<'_>> {
 
     pub(super) fn buffers(&self, validator: &mut Validator) -> Result<(), Error> {
         let PointFrame { receivers, visibilities, channels, .. } = self.frame;
-        let read = [("the buffer of the points' positions", 3), ("the buffer of the points' normals", 3), ("the buffer of the \
-             points' widths", 1)];
+        let read = [
+            ("the buffer of the points' positions", 3),
+            ("the buffer of the points' normals", 3),
+            ("the buffer of the points' widths", 1),
+        ];
         for ((what, floats), buffer) in read.into_iter().zip(receivers.buffers()) {
             if let Some(buffer) = buffer {
                 self.point_buffer(validator, what, &buffer, floats)?;

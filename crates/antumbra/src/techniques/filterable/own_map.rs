@@ -10,7 +10,7 @@ use crate::gpu::{Gpu, GpuStruct, Stage};
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
 use crate::light_map::map_texels::map_texels;
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 use crate::light_map::stable_fit::{corners_to_hold, in_whole_texels};
 use crate::receivers::inputs::PreparedInputs;
 
@@ -36,7 +36,7 @@ impl<P: GpuStruct> Filterable<P> {
         let sample_count = settings.msaa.count();
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let receivers = corners_to_hold(stage, &frame.receivers);
-        let between = Between::new(frame.light, &bounds, &receivers);
+        let between = OccludingBounds::new(frame.light, &bounds, &receivers);
         let mut view = fit_light_view(frame.light, &bounds, &receivers);
         let bytes_of = |size: u32| bytes_of(size, sample_count);
         let size = map_texels(stage, frame, settings.map_size, bytes_of, &view, &bounds);
