@@ -79,5 +79,9 @@ fn mdbook() -> Result<PathBuf, String> {
     let features = ["--no-default-features", "--features", "search"];
     let install = ["install", "--quiet", "--locked", "--force", "mdbook", "--version", MDBOOK, "--root"];
     shell::run(cargo().args(install).arg(&tools).args(features))?;
-    if is_right(&own) { Ok(own) } else { Err(format!("installed mdbook {MDBOOK}, but {} has another version", own.display())) }
+    if is_right(&own) {
+        Ok(own)
+    } else {
+        Err(format!("installed mdbook {MDBOOK}, but {} has another version", own.display()))
+    }
 }

@@ -76,10 +76,9 @@ fn folder() -> Result<PathBuf, String> {
         Some(root.join("shared/scenes")),
     ];
     let cases = candidates.into_iter().flatten().filter_map(|scenes| Some(scenes.parent()?.join("cases")));
-    cases
-        .into_iter()
-        .find(|folder| folder.is_dir())
-        .ok_or_else(|| format!("set {SCENES} to the folder of test scenes, next to which there is a folder named cases"))
+    cases.into_iter().find(|folder| folder.is_dir()).ok_or_else(|| {
+        format!("set {SCENES} to the folder of test scenes, next to which there is a folder named cases")
+    })
 }
 
 /// Returns the scenes in a folder, sorted by name.

@@ -53,7 +53,9 @@ pub fn option(args: &[String]) -> Result<(DriverChoice, Vec<String>), String> {
         None | Some("default") => DriverChoice::Default,
         Some("installed") => DriverChoice::Installed,
         Some("newer") => DriverChoice::Newer,
-        Some(other) => return Err(format!("there is no driver `{other}`; {OPTION} must be default, installed or newer")),
+        Some(other) => {
+            return Err(format!("there is no driver `{other}`; {OPTION} must be default, installed or newer"));
+        }
     };
     Ok((wanted, rest))
 }
@@ -209,8 +211,8 @@ fn bring_from(mirror: &str, folder: &Path, unfinished: &Path) -> Result<(), Stri
     shell::run(apt_get().arg("update"))?;
     shell::run(apt_get().arg("download").args(PACKAGES))?;
     for package in PACKAGES {
-        let archive =
-            the_file(folder, &format!("{package}_"), ".deb").ok_or_else(|| format!("apt-get did not download {package}"))?;
+        let archive = the_file(folder, &format!("{package}_"), ".deb")
+            .ok_or_else(|| format!("apt-get did not download {package}"))?;
         shell::run(Command::new("dpkg").arg("-x").arg(archive).arg(unfinished))?;
     }
     // The rename is atomic. If another process was faster, its result is equivalent.

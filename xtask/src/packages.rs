@@ -138,7 +138,9 @@ fn run_program(folder: &Path) -> Result<(), String> {
     cargo.args(["run", "--quiet"]);
     let techniques = shell::output(&mut cargo)?;
     if !techniques.lines().any(|name| name == "pcss") {
-        return Err(format!("the program outside the repository should print the techniques' names, but printed `{techniques}`"));
+        return Err(format!(
+            "the program outside the repository should print the techniques' names, but printed `{techniques}`"
+        ));
     }
     let count = techniques.lines().count();
     let seconds = began.elapsed().as_secs();

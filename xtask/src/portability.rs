@@ -61,7 +61,11 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
 /// Returns DXC's library: the one named by the variable, else a copy in `target/tools`, downloaded if necessary.
 fn dxc() -> Result<PathBuf, String> {
     if let Some(named) = std::env::var_os(VARIABLE).map(PathBuf::from) {
-        return if named.is_file() { Ok(named) } else { Err(format!("{VARIABLE} does not name a file: {}", named.display())) };
+        return if named.is_file() {
+            Ok(named)
+        } else {
+            Err(format!("{VARIABLE} does not name a file: {}", named.display()))
+        };
     }
     let folder = crate::root().join("target/tools/dxc");
     let library = folder.join(LIBRARY);

@@ -62,7 +62,9 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             // the tests find its dependencies.
             timed("built", || run_locked(&["build", "--workspace", "--exclude", "xtask"], &[]))?;
             shell::run(std::process::Command::new(shell::built_binary()?).arg("doctor").envs(driver.variables()))
-                .map_err(|problem| format!("no graphics adapter works on this machine, but most tests need one: {problem}"))?;
+                .map_err(|problem| {
+                    format!("no graphics adapter works on this machine, but most tests need one: {problem}")
+                })?;
         }
         let lint = || {
             if component("clippy", "clippy", missing)? {

@@ -74,7 +74,11 @@ impl Failure {
         if missing.len() > NAMED {
             names.push(&more);
         }
-        Self::Incomplete(format!("the deadline ended the run before {} of {of}: {}; {kept}", missing.len(), names.join("; ")))
+        Self::Incomplete(format!(
+            "the deadline ended the run before {} of {of}: {}; {kept}",
+            missing.len(),
+            names.join("; ")
+        ))
     }
 }
 

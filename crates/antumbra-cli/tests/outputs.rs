@@ -407,7 +407,10 @@ fn what_is_assumed_of_a_scene_is_said() {
         "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
     fs::write(dir.path().join("t.gltf"), triangle).unwrap();
     let plain = told("reference t.gltf --samples 4 --size 32x18 -o a.png --visibility a.exr --time 3");
-    assert!(plain.contains("t has no camera, so one that frames it was added; no lights, so a square one of"), "{plain}");
+    assert!(
+        plain.contains("t has no camera, so one that frames it was added; no lights, so a square one of"),
+        "{plain}"
+    );
     assert!(plain.contains("t has no ground, so a ground plane was added; --ground=no omits it"), "{plain}");
     let quiet = told("reference t.gltf --samples 4 --size 32x18 -o a.png --time 3 --quiet");
     assert!(quiet.is_empty(), "{quiet}");

@@ -151,7 +151,11 @@ impl Baseline {
 
     /// Pairs rows with those of the same name.
     pub fn against(&self, rows: &[Figures]) -> BaselineComparison {
-        let mut against = BaselineComparison { adapter: self.adapter.clone(), commit: self.commit.clone(), ..BaselineComparison::default() };
+        let mut against = BaselineComparison {
+            adapter: self.adapter.clone(),
+            commit: self.commit.clone(),
+            ..BaselineComparison::default()
+        };
         for row in rows {
             match self.rows.iter().find(|other| other.name == row.name) {
                 Some(other) => against.rows.push(paired(row, other)),
@@ -323,11 +327,9 @@ mod tests {
         assert_eq!(against.rows[0].difference("flip"), None, "the baseline has none");
         assert_eq!((against.not_there.as_slice(), against.rows.len()), (&["vsm".to_owned()][..], 3));
         assert!((against.mean_ratio.unwrap() - 2.0_f64.sqrt()).abs() < 1e-12);
-        assert!(
-            against
-                .summary()
-                .contains("Compared with card (commit abc); ratio of times to the baseline's, geometric mean over 2: 1.414; 1 not in")
-        );
+        assert!(against.summary().contains(
+            "Compared with card (commit abc); ratio of times to the baseline's, geometric mean over 2: 1.414; 1 not in"
+        ));
         assert_eq!(against.table()[1][..5], ["hard", "1.000", "2.000", "0.500", "+0.2500"].map(str::to_owned));
     }
 

@@ -77,7 +77,9 @@ pub struct Metrics {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MetricsError {
     /// The images differ in size.
-    #[error("the images differ in size: the reference has {reference}, the tested image {tested}; render both at the same size")]
+    #[error(
+        "the images differ in size: the reference has {reference}, the tested image {tested}; render both at the same size"
+    )]
     Sizes {
         /// Size of the reference, pixels.
         reference: UVec2,

@@ -62,7 +62,8 @@ fn parse(text: &str) -> Result<TechniqueChoice, String> {
         None => {}
         Some(Value::Table(parameters)) => {
             for (key, value) in parameters {
-                let value = text_of(value).ok_or_else(|| format!("`{key}` is not a number, Boolean, string or list"))?;
+                let value =
+                    text_of(value).ok_or_else(|| format!("`{key}` is not a number, Boolean, string or list"))?;
                 let (spec, value) = kind.read(key, &value).map_err(|error| error.to_string())?;
                 choice.settings.push((spec.key.to_owned(), value.to_string()));
             }

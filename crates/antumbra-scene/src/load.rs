@@ -113,7 +113,9 @@ mod tests {
         let error = error_of(&format!("builtin:{file}"));
         assert_eq!(
             error,
-            format!("builtin:{file}: this is a file, not a built-in scene; give its path without `builtin:`, as `{file}`")
+            format!(
+                "builtin:{file}: this is a file, not a built-in scene; give its path without `builtin:`, as `{file}`"
+            )
         );
         assert!(error_of("builtin:overlapp").contains("nearest: overlap"));
     }

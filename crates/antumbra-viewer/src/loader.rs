@@ -175,7 +175,8 @@ fn finished(
 fn open_bytes(name: String, bytes: &[u8]) -> Outcome {
     let why = |error: antumbra_scene::SceneError| one_line(&error.to_string());
     if is_setup(&name) {
-        let text = std::str::from_utf8(bytes).map_err(|_| format!("{name}: is not UTF-8 text; a setup is a TOML file"))?;
+        let text =
+            std::str::from_utf8(bytes).map_err(|_| format!("{name}: is not UTF-8 text; a setup is a TOML file"))?;
         let setup = Setup::from_toml(text, Path::new(&name)).map_err(why)?;
         return Ok(Opened::Setup(name.into(), setup));
     }
@@ -226,7 +227,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
 /// Fails with one line.
 #[cfg(target_arch = "wasm32")]
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    crate::download::download(path, bytes).ok_or_else(|| format!("{}: the browser refused the download", path.display()))
+    crate::download::download(path, bytes)
+        .ok_or_else(|| format!("{}: the browser refused the download", path.display()))
 }
 
 #[cfg(test)]

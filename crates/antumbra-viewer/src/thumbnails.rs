@@ -145,7 +145,10 @@ mod tests {
             picture.pixels.iter().map(|c| u32::from(c.r()) + u32::from(c.g()) + u32::from(c.b())).collect::<Vec<_>>()
         };
         let of = levels(&overlap);
-        assert!(of.iter().max() > of.iter().min().map(|least| least + 200).as_ref(), "the thumbnail has no light and no shadow");
+        assert!(
+            of.iter().max() > of.iter().min().map(|least| least + 200).as_ref(),
+            "the thumbnail has no light and no shadow"
+        );
         assert_ne!(of, levels(&traced_picture("stained-glass").unwrap()));
         assert!(traced_picture("nothing").is_none());
     }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use antumbra_scene::{LoadOptions, builtin, load};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
-use crate::app::{App, Ended, PersistentState, Outcome};
+use crate::app::{App, Ended, Outcome, PersistentState};
 use crate::device::device_descriptor;
 use crate::loader::read_setup;
 use crate::message::one_line;
@@ -139,7 +139,9 @@ fn select<'a>(
     adapters.iter().filter(is_wanted).filter(fits).min_by_key(rank).ok_or_else(|| {
         let names: Vec<_> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
         match &wanted {
-            Some(wanted) => format!("no adapter named `{wanted}` can draw to the window; available: {}", names.join(", ")),
+            Some(wanted) => {
+                format!("no adapter named `{wanted}` can draw to the window; available: {}", names.join(", "))
+            }
             None => format!("no adapter can draw to the window; available: {}", names.join(", ")),
         }
     })

@@ -31,7 +31,7 @@ mod warm_up;
 
 use anchored::{Anchored, anchor_of};
 use conversions::{Conversions, RetainedConversions};
-use frame::{FrameRequest, FrameCasters, prepared};
+use frame::{FrameCasters, FrameRequest, prepared};
 use frame_key::FrameKey;
 use partitioned::{PartitionedPasses, PartitionedState};
 use shader_function::ShaderFunctions;

@@ -98,7 +98,9 @@ pub fn link(sources: &Path, shader: &Shader) -> Result<String, String> {
     let mut linked = compiler.compile(&module).map_err(|error| format!("src/{path}.wesl does not link:\n{error}"))?;
     order(&mut linked);
     if let Some(name) = first_twice(&linked) {
-        return Err(format!("src/{path}.wesl does not link: two files with the same name both declare `{name}`; rename one of the files"));
+        return Err(format!(
+            "src/{path}.wesl does not link: two files with the same name both declare `{name}`; rename one of the files"
+        ));
     }
     let with = if features.is_empty() { String::new() } else { format!(" with {features}") };
     Ok(format!("// Linked from src/{path}.wesl{with} by `{COMMAND}`: edit that, not this.\n\n{linked}"))

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::results::{MutantOutcome, Mutant};
+use crate::results::{Mutant, MutantOutcome};
 use crate::sources::Sources;
 
 /// First line of the page's part that is written by other programs and kept.
@@ -82,12 +82,19 @@ pub fn check(root: &Path, run: &Run<'_>) -> Result<(), String> {
     println!("{}: {killed} of {} killed", run.command, run.judged.len());
     match &unexplained(&run.judged, &run.named, &Reasons::read(root)?)[..] {
         [] => Ok(()),
-        all => Err(format!("no test detects these, and xtask/mutants/reasons.toml has no reason for them: {}", all.join("; "))),
+        all => Err(format!(
+            "no test detects these, and xtask/mutants/reasons.toml has no reason for them: {}",
+            all.join("; ")
+        )),
     }
 }
 
 /// Returns the survivors without a reason, and the named changes that no test detects.
-fn unexplained(judged: &[(&Mutant, &MutantOutcome)], named: &[(String, Option<MutantOutcome>)], reasons: &Reasons) -> Vec<String> {
+fn unexplained(
+    judged: &[(&Mutant, &MutantOutcome)],
+    named: &[(String, Option<MutantOutcome>)],
+    reasons: &Reasons,
+) -> Vec<String> {
     let survivors = judged.iter().filter(|(mutant, fate)| !is_killed(fate) && reasons.of(mutant).is_none());
     let named = named.iter().filter(|(_, fate)| !fate.as_ref().is_some_and(is_killed));
     survivors

@@ -12,7 +12,7 @@ use crate::judge::{Record, Verdict, judge};
 use crate::named;
 use crate::places::{Change, changes_of};
 use crate::report;
-use crate::results::{Entry, MutantOutcome, Mutant, Results};
+use crate::results::{Entry, Mutant, MutantOutcome, Results};
 use crate::sources::{Folder, MutationEffect, Sources};
 use crate::suite::Suite;
 
@@ -167,7 +167,13 @@ impl Work<'_> {
         }
     }
 
-    fn fate(&self, suite: &Suite, record: &Record, folder: &Folder, candidate: &Candidate) -> Result<MutantOutcome, String> {
+    fn fate(
+        &self,
+        suite: &Suite,
+        record: &Record,
+        folder: &Folder,
+        candidate: &Candidate,
+    ) -> Result<MutantOutcome, String> {
         let file = &candidate.mutant.file;
         let shaders = match self.sources.make(folder, file, &candidate.change)? {
             MutationEffect::Nothing(why) => return Ok(MutantOutcome::Invalid(why.to_owned())),

@@ -149,7 +149,10 @@ pub fn follow(
         let (path, body) = match posts.recv_timeout(timeouts.silence) {
             Ok(post) => post,
             Err(RecvTimeoutError::Timeout) => {
-                return Err(format!("the page reported nothing for {} s; last report: {last}", timeouts.silence.as_secs()));
+                return Err(format!(
+                    "the page reported nothing for {} s; last report: {last}",
+                    timeouts.silence.as_secs()
+                ));
             }
             Err(RecvTimeoutError::Disconnected) => return Err("the server has ended".into()),
         };

@@ -88,7 +88,10 @@ fn bindgen() -> Result<PathBuf, String> {
     if let Some(right) = find("wasm-bindgen").into_iter().chain([own.clone()]).find(is_right) {
         return Ok(right);
     }
-    eprintln!("xtask: installing wasm-bindgen-cli {version} in {} with cargo, which takes a few minutes", tools.display());
+    eprintln!(
+        "xtask: installing wasm-bindgen-cli {version} in {} with cargo, which takes a few minutes",
+        tools.display()
+    );
     let install = ["install", "--quiet", "--force", "wasm-bindgen-cli", "--version", version, "--root"];
     shell::run(cargo().args(install).arg(&tools))?;
     if is_right(&own) {

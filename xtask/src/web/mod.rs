@@ -37,10 +37,10 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
         ["--pipelines"] => check_programs(Programs::Pipelines),
         ["--check"] => check(Extent::Techniques),
         ["--check-all"] => check(Extent::Variants),
-        _ => {
-            Err("`cargo xtask web` takes only one of `--serve`, `--shaders`, `--pipelines`, `--check` and `--check-all`"
-                .into())
-        }
+        _ => Err(
+            "`cargo xtask web` takes only one of `--serve`, `--shaders`, `--pipelines`, `--check` and `--check-all`"
+                .into(),
+        ),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use antumbra_lab::baseline::{BaselineComparison, Baseline, Source, of_bench};
+use antumbra_lab::baseline::{Baseline, BaselineComparison, Source, of_bench};
 use antumbra_lab::bench::{
     BenchOutcome, BenchRequest, BenchRow, BenchRows, BenchScene, Frames, bench as measure, file_json, rows_to_resume,
 };
@@ -188,7 +188,11 @@ fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
     let at_most = Duration::from_secs(60 * u64::from(args.minutes.unwrap_or(DEFAULT_MINUTES)));
     let plan = if args.parts.is_empty() { Plan::whole() } else { Plan::whole().only(&args.parts) };
     let Done { jobs, of } = run_slice(&lab, &plan, path, COMMIT, at_most, bars)?;
-    let again = if jobs < of { "run the same command again to continue" } else { "print the page with `antumbra bench --tables`" };
+    let again = if jobs < of {
+        "run the same command again to continue"
+    } else {
+        "print the page with `antumbra bench --tables`"
+    };
     say!("{jobs} of {of} measurements are done, in {}; {again}", path.display());
     Ok(())
 }

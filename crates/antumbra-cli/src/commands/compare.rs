@@ -75,7 +75,11 @@ pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
     say!("{}", dir.join("index.html").display());
     let motions = motion.as_ref().map_or(0, |options| options.motions.len());
     let planned = args.scenes.len() * choices.len() * (1 + motions);
-    if missing.is_empty() { Ok(()) } else { Err(Failure::incomplete(&missing, planned, &SavedResults::Resumable(&args.output))) }
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::incomplete(&missing, planned, &SavedResults::Resumable(&args.output)))
+    }
 }
 
 /// Name of a missing result, prefixed by its folder if there are several.

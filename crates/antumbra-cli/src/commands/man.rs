@@ -13,7 +13,8 @@ use crate::stdout::say;
 /// Writes a manual page for the program and one per command.
 pub fn man(args: &ManArgs) -> Result<(), Failure> {
     let folder = &args.output;
-    fs::create_dir_all(folder).map_err(|error| Failure::Input(format!("cannot create {}: {error}", folder.display())))?;
+    fs::create_dir_all(folder)
+        .map_err(|error| Failure::Input(format!("cannot create {}: {error}", folder.display())))?;
     let mut program = Cli::command();
     program.build();
     let mut commands = vec![program];

@@ -129,7 +129,13 @@ fn arguments(args: &ReproduceArgs, dir: Option<&Path>) -> String {
 
 fn print(result: &ExhibitResult) {
     let ExhibitResult { name, paper, exhibit, rows, judged } = result;
-    say!("\n{name}: {}\n{}; measured on {}, {} GB/s\n", exhibit.shows, paper.citation, paper.hardware, paper.bandwidth_gb_s);
+    say!(
+        "\n{name}: {}\n{}; measured on {}, {} GB/s\n",
+        exhibit.shows,
+        paper.citation,
+        paper.hardware,
+        paper.bandwidth_gb_s
+    );
     if !exhibit.note.is_empty() {
         say!("  not covered: {}", exhibit.note);
     } else if rows.is_empty() {

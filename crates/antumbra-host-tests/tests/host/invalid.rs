@@ -197,7 +197,12 @@ fn masks_in_textures() {
         (&fits, MaskPlace { layer: 2, ..place }, MaskChannels::One, &["last layer is 2", "number of layers, 2"]),
         (&fits, place, MaskChannels::Three, &["last layer is 2", "number of layers, 2"]),
         (&fits, MaskPlace { origin_px: UVec2::new(1, 0), ..place }, MaskChannels::One, &["far corner", "[17, 9]"]),
-        (&four, MaskPlace { component: 4, ..whole(&four) }, MaskChannels::One, &["component is 4", "number of components, 4"]),
+        (
+            &four,
+            MaskPlace { component: 4, ..whole(&four) },
+            MaskChannels::One,
+            &["component is 4", "number of components, 4"],
+        ),
     ];
     for (texture, place, channels, words) in bad {
         let message = Mask::within(texture, place, channels).expect_err("no mask").to_string();
@@ -285,7 +290,10 @@ fn casters_of_a_set() {
     for (mesh, words) in [
         (LibraryMesh { topology: Topology::TriangleList, ..mesh }, ["the number of indices is 4", "multiple of three"]),
         (LibraryMesh { topology: Topology::PointList, ..mesh }, ["PointList", "TriangleList or TriangleStrip"]),
-        (LibraryMesh { bounds: Aabb::EMPTY, ..mesh }, ["the mesh's bounding box is empty", "first corner is the minimum"]),
+        (
+            LibraryMesh { bounds: Aabb::EMPTY, ..mesh },
+            ["the mesh's bounding box is empty", "first corner is the minimum"],
+        ),
         (LibraryMesh { bounds: Aabb { min: Vec3::NAN, max: Vec3::ONE }, ..mesh }, ["not a number", "infinite bounds"]),
     ] {
         expect(set.add_mesh(&mesh).map(drop), &words);

@@ -101,7 +101,8 @@ impl<'a> Bench<'a> {
 
     fn scenes(&self, size_index: usize) -> Result<&[Scene<'a>], LabError> {
         if self.scenes_by_size[size_index].get().is_none() {
-            let made = self.request.views.iter().map(|view| self.scene(view, size_index)).collect::<Result<Vec<_>, _>>()?;
+            let made =
+                self.request.views.iter().map(|view| self.scene(view, size_index)).collect::<Result<Vec<_>, _>>()?;
             let _ = self.scenes_by_size[size_index].set(made);
         }
         Ok(self.scenes_by_size[size_index].get().map_or(&[], Vec::as_slice))

@@ -303,7 +303,9 @@ pub fn advise(
         Search::new(&bench, &mut store, progress, vec![f64::INFINITY; request.views.len()], Limits::default());
     let base = warm.measure_base()?;
     if let (Some(why), Budget::TimesPcf(_)) = (&base.refused, request.budget) {
-        return Err(LabError::Request(format!("--budget: pcf does not run on this adapter ({why}); give the budget in milliseconds")));
+        return Err(LabError::Request(format!(
+            "--budget: pcf does not run on this adapter ({why}); give the budget in milliseconds"
+        )));
     }
     let budget_ms: Vec<f64> = match request.budget {
         Budget::Ms(ms) => vec![ms; request.views.len()],

@@ -56,7 +56,12 @@ fn without_idle(search: &mut Search<'_, '_>, config: &Config, size_indices: &[us
     }
 }
 
-fn draws_the_same(search: &mut Search<'_, '_>, a: &Config, b: &Config, size_indices: &[usize]) -> Result<bool, LabError> {
+fn draws_the_same(
+    search: &mut Search<'_, '_>,
+    a: &Config,
+    b: &Config,
+    size_indices: &[usize],
+) -> Result<bool, LabError> {
     for size_index in size_indices {
         let [a, b] = [search.measure(a, *size_index)?, search.measure(b, *size_index)?];
         let has_room = search.limits.memory_bytes.is_none_or(|most| b.memory_bytes <= most.max(a.memory_bytes));

@@ -280,7 +280,10 @@ mod tests {
         make(&foreign, "into-an-empty-folder.png").unwrap();
         fs::write(foreign.join("images/notes.txt"), "mine").unwrap();
         let error = make(&foreign, "a.png").unwrap_err().to_string();
-        assert!(error.contains("it contains images/notes.txt, which this command did not write; name a new"), "{error}");
+        assert!(
+            error.contains("it contains images/notes.txt, which this command did not write; name a new"),
+            "{error}"
+        );
 
         let home = root.path().join("home");
         fs::create_dir_all(home.join("pictures")).unwrap();

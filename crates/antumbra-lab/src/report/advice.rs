@@ -49,7 +49,9 @@ fn page(advice: &Advice) -> String {
     let name = format!("<b>{}</b>", escape(&best.name));
     let answer = match (advice.keeps_budget, advice.is_too_noisy_to_tell) {
         (false, _) => format!("No configuration keeps the budget. {name} is closest."),
-        (true, true) => format!("Use {name}. Some of its times exceed the budget: repeat the search on an idle machine."),
+        (true, true) => {
+            format!("Use {name}. Some of its times exceed the budget: repeat the search on an idle machine.")
+        }
         (true, false) => format!("Use {name}."),
     };
     let scene_facts = advice

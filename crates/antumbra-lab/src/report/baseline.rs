@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::html::{escape, three_figures};
-use crate::baseline::{BaselineComparison, PairedRow, DIFFERENCES};
+use crate::baseline::{BaselineComparison, DIFFERENCES, PairedRow};
 
 /// Returns a section with ratios of time and differences of error.
 pub(super) fn baseline_section(against: &BaselineComparison) -> String {

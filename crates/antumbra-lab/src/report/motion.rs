@@ -83,7 +83,8 @@ fn table(report: &Report, info: &MotionInfo) -> String {
             name_of(truth)
         );
     }
-    html += "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\">Reference<small>change of the truth</small></th>";
+    html +=
+        "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\">Reference<small>change of the truth</small></th>";
     for truth in &info.truths {
         let _ = write!(html, "<td>{}</td><td></td><td></td>", figure(truth.change));
     }

@@ -274,9 +274,9 @@ fn ratio(paper: &Paper, row: &crate::reproduce::Row, measured: &Measured, info: 
         return "–".to_owned();
     }
     let ratio = here / there;
-    let with_bandwidths = info
-        .bandwidth_gb_s
-        .map(|own| format!("<br><small>{} at equal bandwidth</small>", three_figures(ratio * own / paper.bandwidth_gb_s)));
+    let with_bandwidths = info.bandwidth_gb_s.map(|own| {
+        format!("<br><small>{} at equal bandwidth</small>", three_figures(ratio * own / paper.bandwidth_gb_s))
+    });
     three_figures(ratio) + &with_bandwidths.unwrap_or_default()
 }
 

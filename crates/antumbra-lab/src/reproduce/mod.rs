@@ -24,7 +24,7 @@ pub use form::Form;
 pub use outcome::{Measured, Outcome};
 pub use papers::PAPERS;
 pub use preset::{PRESETS, Preset};
-pub use run::{Bench, Pictures, RunResult, RunOptions};
+pub use run::{Bench, Pictures, RunOptions, RunResult};
 pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Session, VerdictCount};
 pub use verdict::{Judged, Outcomes, Ruling, Verdict, judge};
 pub use views::VIEWS;

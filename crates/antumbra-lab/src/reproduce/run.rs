@@ -196,7 +196,9 @@ impl<'a> Bench<'a> {
         let site = Site { bench: self, row, form, loaded: &loaded, setup: &setup, view: &view };
         match site.run(about, with_pictures) {
             Err(error) if !error.is_deadline() => match error.why_skipped() {
-                Some(why) => Ok(RunResult { cut_short_s: error.limit_s(), ..RunResult::without(Outcome::Skipped(why)) }),
+                Some(why) => {
+                    Ok(RunResult { cut_short_s: error.limit_s(), ..RunResult::without(Outcome::Skipped(why)) })
+                }
                 None => Err(error),
             },
             ran => ran,
@@ -330,8 +332,7 @@ impl Site<'_, '_> {
     fn reference(&mut self, choice: &TechniqueChoice) -> Result<(Visibility, Vec<bool>), LabError> {
         let other = match self.row.measure {
             Measure::FilteredError => {
-                let why =
-                    || LabError::Request(format!("`{}` has no exact filtering to compare with", choice.name()));
+                let why = || LabError::Request(format!("`{}` has no exact filtering to compare with", choice.name()));
                 Some(choice.filtered_truth().ok_or_else(why)?)
             }
             Measure::Difference { from, settings } => Some(choice_with(from, self.form, settings)?),

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::exhibit::{Exhibit, Measure, Paper, Row};
 use super::form::Form;
 use super::outcome::Outcome;
-use super::run::{Bench, Pictures, RunResult, RunOptions};
+use super::run::{Bench, Pictures, RunOptions, RunResult};
 use super::verdict::{Judged, Outcomes, Ruling, Verdict, judge};
 use super::{PAPERS, exhibit_name, views};
 use crate::device::LabDevice;
@@ -216,7 +216,9 @@ impl<'a> Session<'a> {
                 }
                 // The device is lost for all rows.
                 Err(error @ LabError::Device(_)) => return Err(error),
-                Err(error) => RunResult { outcome: Outcome::Failed(error.to_string()), pictures: None, cut_short_s: None },
+                Err(error) => {
+                    RunResult { outcome: Outcome::Failed(error.to_string()), pictures: None, cut_short_s: None }
+                }
                 Ok(Some(ran)) => ran,
             };
             let pictures = match (&self.dir, ran.pictures) {

@@ -184,8 +184,10 @@ impl Bench<'_> {
         let ranges: Vec<Range> =
             rule.rows().iter().zip(&values).map(|(row, v)| self.range(rule.figure(), row, *v, form)).collect();
         let met = met(rule, &ranges);
-        let met = met
-            .map_or_else(|| RuleOutcome::Unknown(too_close(rule.figure())), |is_met| if is_met { RuleOutcome::Yes } else { RuleOutcome::No });
+        let met = met.map_or_else(
+            || RuleOutcome::Unknown(too_close(rule.figure())),
+            |is_met| if is_met { RuleOutcome::Yes } else { RuleOutcome::No },
+        );
         (format!("{}: here {here}", rule.text()), met)
     }
 
@@ -219,7 +221,8 @@ impl Bench<'_> {
             });
         }
         let (rmse, flat) = (measured.rmse?, measured.flat_rmse?);
-        (rmse >= flat).then(|| format!("‘{row}’ has at least the error of a uniform grey (rmse {rmse:.4} and {flat:.4})"))
+        (rmse >= flat)
+            .then(|| format!("‘{row}’ has at least the error of a uniform grey (rmse {rmse:.4} and {flat:.4})"))
     }
 
     fn outcome(&self, row: &str, form: Form) -> Option<&Outcome> {
@@ -350,10 +353,7 @@ fn met(rule: &Rule, of: &[Range]) -> Option<bool> {
 
 fn too_close(figure: Figure) -> String {
     match figure {
-        Figure::Ms => {
-            "the values are too close; use more frames (--frames) on an idle machine to decide"
-                .to_owned()
-        }
+        Figure::Ms => "the values are too close; use more frames (--frames) on an idle machine to decide".to_owned(),
         _ => "the values are too close; use more pixels and light samples (--size, --samples) to decide".to_owned(),
     }
 }

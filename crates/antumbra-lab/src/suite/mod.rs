@@ -357,7 +357,10 @@ mod tests {
         ] {
             let text = std::fs::read_to_string(root.join(page)).unwrap();
             let of_file = markdown(&Results::read(&root.join(file)).unwrap());
-            assert!(text.trim_end() == of_file.trim_end(), "regenerate the page: antumbra bench --tables {file} > {page}");
+            assert!(
+                text.trim_end() == of_file.trim_end(),
+                "regenerate the page: antumbra bench --tables {file} > {page}"
+            );
         }
     }
 }

@@ -49,7 +49,10 @@ pub fn run_shard(
     let here = Origin::here(lab, commit);
     let refuse = |what: &str, there: &str, here: &str| {
         let name = dir.join(PLAN_NAME);
-        LabError::Request(format!("{}: its {what} is {there}, but this run has {here}; create a new plan", name.display()))
+        LabError::Request(format!(
+            "{}: its {what} is {there}, but this run has {here}; create a new plan",
+            name.display()
+        ))
     };
     if plan.commit != commit {
         return Err(refuse("commit", &plan.commit, commit));
@@ -118,7 +121,10 @@ impl<'a> Bench<'a> {
         scene.count_from(anchor);
         let setup = setup.relative_to(anchor);
         let Some(light) = setup.lights.iter().position(|light| light.name == planned.light) else {
-            return Err(LabError::Request(format!("{PLAN_NAME}: there is no light `{}`; create a new plan", planned.light)));
+            return Err(LabError::Request(format!(
+                "{PLAN_NAME}: there is no light `{}`; create a new plan",
+                planned.light
+            )));
         };
         let size_px = UVec2::from_array(job.size);
         let options = VisibilityOptions { samples: plan.samples, ..VisibilityOptions::default() };

@@ -194,7 +194,11 @@ impl Shading {
         targets: &PictureTargets,
     ) {
         assert_eq!(self.lights.len(), visibilities.len(), "each light needs a visibility");
-        assert_eq!((self.size_px, self.view_from_world), (images.size_px, images.view_from_world), "the view must be the prepared one");
+        assert_eq!(
+            (self.size_px, self.view_from_world),
+            (images.size_px, images.view_from_world),
+            "the view must be the prepared one"
+        );
         // Normals of the layer behind translucent surfaces are not bent.
         let nothing_bent = upload(gpu, &Visibility::one(UVec2::ONE, vec![1.0]));
         let light_groups: Vec<_> = self

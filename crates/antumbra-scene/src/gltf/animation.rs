@@ -72,10 +72,9 @@ fn beyond(time_s: f32, ends: Option<[f32; 2]>) -> Option<String> {
     match ends {
         _ if time_s == 0.0 => None,
         None => taken("nothing in the scene is animated, so the time is ignored".into()),
-        Some([first, last]) if time_s < first || time_s > last => taken(format!(
-            "the animations run from {first} s to {last} s; {} s is used",
-            time_s.clamp(first, last)
-        )),
+        Some([first, last]) if time_s < first || time_s > last => {
+            taken(format!("the animations run from {first} s to {last} s; {} s is used", time_s.clamp(first, last)))
+        }
         Some(_) => None,
     }
 }

@@ -38,9 +38,8 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>> {
 }
 
 fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
-    let truncated = |at: usize, what: &str| {
-        Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), TRUNCATED)
-    };
+    let truncated =
+        |at: usize, what: &str| Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), TRUNCATED);
     let u32_at = |at: usize, what: &str| match bytes.get(at..at + 4) {
         Some(&[a, b, c, d]) => Ok(u32::from_le_bytes([a, b, c, d])),
         _ => Err(truncated(bytes.len(), what)),

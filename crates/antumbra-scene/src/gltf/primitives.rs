@@ -134,8 +134,10 @@ fn triangles(source: &Source, primitive: &Primitive, mode: Mode, vertices: usize
         }
         _ => {
             if !corners.len().is_multiple_of(3) {
-                source
-                    .warn(format!("{place}: the number of corners, {}, is not a multiple of 3; the rest is ignored", corners.len()));
+                source.warn(format!(
+                    "{place}: the number of corners, {}, is not a multiple of 3; the rest is ignored",
+                    corners.len()
+                ));
             }
             corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect()
         }
@@ -168,8 +170,7 @@ fn colors(source: &Source, primitive: &Primitive, count: usize, place: &str) -> 
 
 fn uvs(source: &Source, primitive: &Primitive, uv: UvSource, count: usize, place: &str) -> Result<Vec<Vec2>> {
     let Some(accessor) = attribute(primitive, Semantic::TexCoords(uv.set)) else {
-        source
-            .warn(format!("{place}: lacks TEXCOORD_{}, which its material needs; the texture is ignored", uv.set));
+        source.warn(format!("{place}: lacks TEXCOORD_{}, which its material needs; the texture is ignored", uv.set));
         return Ok(Vec::new());
     };
     let place = format!("{place}.attributes.TEXCOORD_{}", uv.set);

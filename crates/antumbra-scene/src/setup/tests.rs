@@ -253,7 +253,10 @@ fn rooms_are_seen_from_inside_and_solids_from_outside() {
     super::check_camera(&room.camera).unwrap();
     assert!(room.camera.eye.y > 1.0 && room.camera.target.distance(room.camera.eye) > 2.0, "{:?}", room.camera);
     let line = line.unwrap();
-    assert!(line.contains("inside the room") && line.contains("below the ceiling") && line.contains("--setup"), "{line}");
+    assert!(
+        line.contains("inside the room") && line.contains("below the ceiling") && line.contains("--setup"),
+        "{line}"
+    );
 
     let Assumed { setup: solid, line, framing: frames_solid } = Setup::assumed(&hollow(size, false));
     assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("that frames it") && frames_solid.is_some());

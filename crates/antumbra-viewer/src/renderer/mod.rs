@@ -39,7 +39,7 @@ pub use crate::background::Wake;
 use crate::state::{Side, State};
 use crate::truth::Estimate;
 use antialiasing::{Antialiasing, Smoothed};
-use inspector::{ReadingKey, PixelReader};
+use inspector::{PixelReader, ReadingKey};
 use light_map::LightMapPass;
 use lists::ListsPass;
 use loaded_scene::LoadedScene;

@@ -289,7 +289,9 @@ impl SideWork {
         let Some(compiling) = &self.compiling else { return false };
         let outcome = match compiling.result.try_recv() {
             Err(TryRecvError::Empty) => return false,
-            Err(TryRecvError::Disconnected) => Err(format!("{}: the compilation ended without a result", compiling.kind)),
+            Err(TryRecvError::Disconnected) => {
+                Err(format!("{}: the compilation ended without a result", compiling.kind))
+            }
             Ok(outcome) => outcome,
         };
         let kind = compiling.kind;

@@ -479,7 +479,10 @@ fn every_receiver_is_in_a_list() {
         // The tolerance is for pixels where a ray hits an edge and the rasteriser does not.
         assert!(seen > 1000 && sum.abs_diff(seen) <= 8, "{seen} receivers are seen; {line}");
         assert!(longest > 1 && line.contains("32 × 32 lists of receivers"), "{line}");
-        assert!(!line.contains("level") && line.contains(&format!("the longest list, in yellow, has {longest}")), "{line}");
+        assert!(
+            !line.contains("level") && line.contains(&format!("the longest list, in yellow, has {longest}")),
+            "{line}"
+        );
         let bytes = picture(&mut renderer);
         assert!(share_of(&bytes, MOST) > 0.0 && share_of(&bytes, LEAST) > 0.0, "{line}");
     }

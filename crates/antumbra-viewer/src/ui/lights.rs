@@ -121,14 +121,14 @@ fn pose(ui: &mut egui::Ui, light: &mut Light, anchor: Vec3, speed_m: f32) {
         }
         ui.end_row();
     };
+    angle(ui, "Azimuth", "Horizontal direction towards the light, from +z to +x", &mut angles.azimuth_rad, 180.0);
     angle(
         ui,
-        "Azimuth",
-        "Horizontal direction towards the light, from +z to +x",
-        &mut angles.azimuth_rad,
-        180.0,
+        "Elevation",
+        "Angle of the direction towards the light above the horizon",
+        &mut angles.elevation_rad,
+        90.0,
     );
-    angle(ui, "Elevation", "Angle of the direction towards the light above the horizon", &mut angles.elevation_rad, 90.0);
     if angles != before {
         angles.give_to(light);
     }
@@ -181,10 +181,13 @@ const DEFAULT_GIVEN: f32 = 100.0;
 
 fn emission(ui: &mut egui::Ui, light: &mut Light) {
     let (unit, tip) = match light.shape {
-        LightShape::Sun { .. } => (" lx", "Illuminance on a surface that faces the sun; if off, the same as other suns"),
+        LightShape::Sun { .. } => {
+            (" lx", "Illuminance on a surface that faces the sun; if off, the same as other suns")
+        }
         _ => (" cd", "Luminous intensity along the axis; if off, the same as other lights of this kind"),
     };
-    ui.label("Emits").on_hover_text(format!("{tip}. It determines the ratios between lights; the exposure adapts to all of them"));
+    ui.label("Emits")
+        .on_hover_text(format!("{tip}. It determines the ratios between lights; the exposure adapts to all of them"));
     ui.horizontal(|ui| {
         let mut is_given = light.candela_or_lux.is_some();
         ui.checkbox(&mut is_given, "");

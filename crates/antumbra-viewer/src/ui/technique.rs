@@ -36,7 +36,10 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>, fea
             side.set_quality(quality);
         }
         let is_changed = !side.settings().is_empty();
-        if ui.add_enabled(is_changed, egui::Button::new("Reset")).on_hover_text("Reset all parameters to their defaults").clicked()
+        if ui
+            .add_enabled(is_changed, egui::Button::new("Reset"))
+            .on_hover_text("Reset all parameters to their defaults")
+            .clicked()
         {
             side.reset();
         }
@@ -219,7 +222,10 @@ mod tests {
     fn the_list_says_what_a_technique_lacks_here() {
         let core = wgpu::Features::empty();
         let lacking = |kind: TechniqueKind| lacks(kind, core).join("; ");
-        assert_eq!(lacking(TechniqueKind::Vsm), "msaa cannot be 2 or 8: this device supports maps with 1 and 4 samples per texel");
+        assert_eq!(
+            lacking(TechniqueKind::Vsm),
+            "msaa cannot be 2 or 8: this device supports maps with 1 and 4 samples per texel"
+        );
         assert!(lacking(TechniqueKind::AliasFree).contains("stencil"));
         assert!(about(TechniqueKind::Vsm, core).contains("On this device: msaa"));
         for kind in [TechniqueKind::Hard, TechniqueKind::Pcss, TechniqueKind::Essm, TechniqueKind::MultiLayer] {

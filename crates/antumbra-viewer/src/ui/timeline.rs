@@ -9,8 +9,7 @@ pub fn show(ui: &mut egui::Ui, state: &mut State) {
     ui.horizontal(|ui| {
         let name = if play.is_playing { "Pause" } else { "Play" };
         let size = egui::vec2(76.0, ui.spacing().interact_size.y);
-        if ui.add_sized(size, egui::Button::new(name)).on_hover_text("Play or pause the animation (Space)").clicked()
-        {
+        if ui.add_sized(size, egui::Button::new(name)).on_hover_text("Play or pause the animation (Space)").clicked() {
             play.is_playing = !play.is_playing;
         }
         let speed = egui::DragValue::new(&mut play.speed).range(SPEEDS).speed(0.01).max_decimals(2).prefix("× ");

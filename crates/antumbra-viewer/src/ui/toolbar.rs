@@ -64,13 +64,7 @@ pub fn show(
             &mut state.layer,
             "Depth layer of casters: 1 is the nearest to the light; the others are behind it",
         );
-        one_of(
-            ui,
-            "map",
-            choices.points,
-            &mut state.layer,
-            "Map of one light sample, of the last batch",
-        );
+        one_of(ui, "map", choices.points, &mut state.layer, "Map of one light sample, of the last batch");
         ui.separator();
         ui.toggle_value(&mut state.is_split, "Compare")
             .on_hover_text("Show two techniques with a divider between them. Drag it to move it");
@@ -134,7 +128,11 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
         state.camera_turn_rad_s = if turns { TURN_RAD_S } else { 0.0 };
     }
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Store this view").on_hover_text("Store the camera (B). Return to it by its button or its digit").clicked() {
+        if ui
+            .button("Store this view")
+            .on_hover_text("Store the camera (B). Return to it by its button or its digit")
+            .clicked()
+        {
             state.add_bookmark();
         }
         for index in 0..state.bookmarks.len() {
@@ -153,7 +151,9 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
                 actions.push(action(PathBuf::from(path.trim())));
             }
             // A browser has a folder for downloads, and opens files in the scene window.
-            if !cfg!(target_arch = "wasm32") && ui.button("…").on_hover_text("Choose in the system's file dialog").clicked() {
+            if !cfg!(target_arch = "wasm32")
+                && ui.button("…").on_hover_text("Choose in the system's file dialog").clicked()
+            {
                 actions.push(Action::Choose(purpose, path.trim().to_owned()));
             }
         });

@@ -398,7 +398,11 @@ fn is_closed(mesh: &Mesh<'_>) -> bool {
 fn check_box(what: &'static str, bounds: Aabb, holds_any: bool) -> Result<(), Error> {
     let problem = bounds.problem().filter(|_| holds_any);
     problem.map_or(Ok(()), |problem| {
-        Err(bad(what, problem.into(), "a box whose first corner is the minimum; use infinite bounds if they are unknown".into()))
+        Err(bad(
+            what,
+            problem.into(),
+            "a box whose first corner is the minimum; use infinite bounds if they are unknown".into(),
+        ))
     })
 }
 

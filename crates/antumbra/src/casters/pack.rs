@@ -173,7 +173,8 @@ impl MeshSource {
             PositionFormat::Snorm16x4 { scale, offset } => (SNORM_16, scale, offset),
             PositionFormat::Unorm16x4 { scale, offset } => (UNORM_16, scale, offset),
         };
-        let of_positions = Words::of_items("the position data", buffer, [offset, stride, format.bytes()], vertex_count)?;
+        let of_positions =
+            Words::of_items("the position data", buffer, [offset, stride, format.bytes()], vertex_count)?;
         let of_uvs = uvs
             .map(|uvs| {
                 let layout = [uvs.offset, uvs.stride, uvs.format.bytes()];

@@ -138,7 +138,11 @@ impl Mask {
         }
         let components = u32::from(format.components());
         if place.component >= components {
-            return bad("the mask's component", place.component.to_string(), format!("below the number of components, {components}"));
+            return bad(
+                "the mask's component",
+                place.component.to_string(),
+                format!("below the number of components, {components}"),
+            );
         }
         Ok(Self::at(texture, place, channels))
     }

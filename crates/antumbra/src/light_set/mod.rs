@@ -311,7 +311,11 @@ impl LightSet {
 
     fn check_mask(&self, of: Option<LightId>, mask: &Mask) -> Result<(), Error> {
         let is_taken = self.lights.iter().any(|(id, entry)| Some(id) != of && entry.mask.overlaps(mask));
-        if is_taken { bad("a light's mask", "in use: it overlaps the mask of another light", "used by one light only") } else { Ok(()) }
+        if is_taken {
+            bad("a light's mask", "in use: it overlaps the mask of another light", "used by one light only")
+        } else {
+            Ok(())
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Conversions at both ends of a frame's data: textures that techniques read and write in place of the host's receivers and mask,
 //! if they need other formats.
 
-use super::frame::{FrameRequest, Frame, PointFrame};
+use super::frame::{Frame, FrameRequest, PointFrame};
 use crate::contract::{Mask, PreparedReceivers};
 use crate::gpu::{Recorder, Stage};
 use crate::mask::format::NarrowMask;

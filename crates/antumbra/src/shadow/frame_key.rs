@@ -89,7 +89,9 @@ impl<P: Params> FrameKey<P> {
             casters?,
             match request {
                 FrameRequest::Mask(Frame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
-                FrameRequest::Points(PointFrame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
+                FrameRequest::Points(PointFrame { receivers, .. }) => {
+                    (receivers.version?, [receivers.hull, receivers.seen])
+                }
             },
         );
         Some(Self {

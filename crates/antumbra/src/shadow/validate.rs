@@ -72,7 +72,11 @@ impl Validator {
         check.casters(&frame.casters)?;
         check.host_map(self, &frame.casters)?;
         let Some(Denoise { max_frames, .. }) = denoise else { return Ok(()) };
-        check.bad("`denoise`", format!("set, with {max_frames} frames"), "`None`, because points have no neighbouring pixels")
+        check.bad(
+            "`denoise`",
+            format!("set, with {max_frames} frames"),
+            "`None`, because points have no neighbouring pixels",
+        )
     }
 }
 
@@ -145,15 +149,21 @@ impl<F> Check<'_, F> {
         }
         for (what, buffer, usage, end) in [
             ("a caster's position buffer", mesh.positions, vertex, 0),
-            ("a caster's index buffer", mesh.indices, wgpu::BufferUsages::INDEX, end_of(mesh.first_triangle, triangles, 12)),
-            ("a caster's instance buffer", mesh.instances, vertex, end_of(mesh.first_instance, mesh.instance_count, 64)),
+            (
+                "a caster's index buffer",
+                mesh.indices,
+                wgpu::BufferUsages::INDEX,
+                end_of(mesh.first_triangle, triangles, 12),
+            ),
+            (
+                "a caster's instance buffer",
+                mesh.instances,
+                vertex,
+                end_of(mesh.first_instance, mesh.instance_count, 64),
+            ),
         ] {
             if !buffer.usage().contains(usage) {
-                return self.bad(
-                    what,
-                    format!("created without the usage {usage:?} (caster {i})"),
-                    "created with it",
-                );
+                return self.bad(what, format!("created without the usage {usage:?} (caster {i})"), "created with it");
             }
             if end > buffer.size() {
                 let had = format!("{} bytes long (caster {i})", buffer.size());
@@ -187,13 +197,7 @@ impl<F> Check<'_, F> {
                 format!("the size of the texture, {}, or of one of its mip levels", size_of(texture)),
             );
         }
-        self.bindable(
-            validator,
-            WHAT,
-            map.view,
-            ViewKind::Depth,
-            "a 2D view of one layer and only the depth aspect",
-        )
+        self.bindable(validator, WHAT, map.view, ViewKind::Depth, "a 2D view of one layer and only the depth aspect")
     }
 
     fn host_map(&self, validator: &mut Validator, casters: &Casters<'_>) -> Result<(), Error> {

@@ -62,7 +62,12 @@ pub fn run(options: &Options) -> Result<(), String> {
     for (_, log) in &logs {
         let file = options.folder.join(format!("{}.tsv", log.table.family.to_lowercase()));
         write(&file, &log.table.to_text())?;
-        eprintln!("programs: counted {} programs for {}, in {}", log.table.rows.len(), log.table.family, file.display());
+        eprintln!(
+            "programs: counted {} programs for {}, in {}",
+            log.table.rows.len(),
+            log.table.family,
+            file.display()
+        );
         if let Some(earlier) = earlier.as_ref().filter(|earlier| earlier.family == log.table.family) {
             print!("{}", log.table.difference(earlier));
         }

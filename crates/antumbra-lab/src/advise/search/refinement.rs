@@ -80,11 +80,12 @@ impl Search<'_, '_> {
                 return Ok(());
             }
             let specs: Vec<&'static ParamSpec> = set_by_qualities(kind).into_iter().map(|(spec, _)| spec).collect();
-            let moves =
-                self.moves(&centre, size_index, &specs, StepSize::Whole, |value, next| match (value.parse(), next.parse()) {
+            let moves = self.moves(&centre, size_index, &specs, StepSize::Whole, |value, next| {
+                match (value.parse(), next.parse()) {
                     (Ok::<f64, _>(value), Ok::<f64, _>(next)) => next < value,
                     _ => false,
-                })?;
+                }
+            })?;
             for chosen in combinations(&moves, load) {
                 let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
                 self.measure(&config, size_index)?;

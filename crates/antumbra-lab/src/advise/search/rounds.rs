@@ -134,8 +134,9 @@ impl Search<'_, '_> {
             if self.first_that_fits(kinds, FULL, 1.0).is_some() {
                 return Ok(());
             }
-            let on_small =
-                |kind: &TechniqueKind| (0..FULL).rev().find_map(|size_index| self.best_that_fits(*kind, size_index, 1.0));
+            let on_small = |kind: &TechniqueKind| {
+                (0..FULL).rev().find_map(|size_index| self.best_that_fits(*kind, size_index, 1.0))
+            };
             let others = kinds.iter().filter_map(on_small).filter(|(config, _)| !self.tried[FULL].contains(config));
             let Some((config, _)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
             self.measure(&config, FULL)?;

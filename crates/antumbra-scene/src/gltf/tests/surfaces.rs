@@ -255,7 +255,10 @@ fn animation_pointers_are_said_to_be_unread() {
     doc.json["extensionsUsed"] = json!(["KHR_node_visibility", "KHR_animation_pointer"]);
     let scene = doc.load();
     assert_eq!(scene.instances.len(), 1);
-    assert_eq!(scene.warnings, ["KHR_animation_pointer is not supported; properties that it animates keep their values"]);
+    assert_eq!(
+        scene.warnings,
+        ["KHR_animation_pointer is not supported; properties that it animates keep their values"]
+    );
     doc.json["extensionsRequired"] = json!(["KHR_animation_pointer"]);
     let why = doc.load_at(0.0).unwrap_err();
     assert!(why.contains("requires \"KHR_animation_pointer\", which is not supported"), "{why}");

@@ -286,7 +286,15 @@ fn windows_are_judged_by_their_texels() {
         WindowShape::Warped { along: Vec2::from_angle(2.1), strength: 0.7 },
     ];
     for fit in [
-        ViewFit::perspective(light.frame(), FollowedLight::Whole, 0.25, 0.0, None, &OccludingBounds::of_known(&casters), &[]),
+        ViewFit::perspective(
+            light.frame(),
+            FollowedLight::Whole,
+            0.25,
+            0.0,
+            None,
+            &OccludingBounds::of_known(&casters),
+            &[],
+        ),
         ViewFit::orthographic(light.frame(), 0.0, &OccludingBounds::of_known(&casters), &[]),
     ] {
         let in_plane = fit.in_plane(&seen);

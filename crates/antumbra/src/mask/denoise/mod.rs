@@ -196,7 +196,8 @@ impl Denoiser {
         if kept.is_none() {
             self.before = None;
         }
-        let kept = kept.unwrap_or_else(|| [FrameHistory::new(stage, size, channels), FrameHistory::new(stage, size, channels)]);
+        let kept = kept
+            .unwrap_or_else(|| [FrameHistory::new(stage, size, channels), FrameHistory::new(stage, size, channels)]);
         let [before, now] = if self.frames.is_multiple_of(2) { [&kept[0], &kept[1]] } else { [&kept[1], &kept[0]] };
         let max_frames = settings.max_frames as f32;
         let uniform = DenoiseFrame {

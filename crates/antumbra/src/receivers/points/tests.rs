@@ -534,7 +534,10 @@ fn bad_points_are_refused() {
         PointReceivers { normals: Some(PointBuffer { offset: 2, ..good.positions }), ..good },
         &["normals", "multiples of 4"],
     );
-    bad(PointReceivers { positions: PointBuffer { stride: 8, ..good.positions }, ..good }, &["positions", "stride of at least 12"]);
+    bad(
+        PointReceivers { positions: PointBuffer { stride: 8, ..good.positions }, ..good },
+        &["positions", "stride of at least 12"],
+    );
     bad(PointReceivers { positions: PointBuffer::packed(&visibilities), count: 1, ..good }, &["another buffer"]);
     bad(PointReceivers { widths: PointWidths::Same(-1.0), ..good }, &["width", "at least 0"]);
     bad(PointReceivers { widths: PointWidths::Same(f32::NAN), ..good }, &["width", "at least 0"]);

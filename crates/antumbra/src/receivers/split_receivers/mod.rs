@@ -211,11 +211,19 @@ fn check(receivers: &Receivers<'_>) -> Result<(), Error> {
         let Some(texture) = view.map(wgpu::TextureView::texture) else { continue };
         if texture.sample_count() != SAMPLES {
             let had = format!("a texture with {} samples per pixel", texture.sample_count());
-            return bad(what, had, format!("a texture with {SAMPLES} samples; one with a single sample needs no splitting"));
+            return bad(
+                what,
+                had,
+                format!("a texture with {SAMPLES} samples; one with a single sample needs no splitting"),
+            );
         }
         let size_px = UVec2::new(texture.width(), texture.height());
         if end_px.cmpgt(size_px).any() {
-            return bad(what, format!("{size_px} pixels large"), format!("at least {end_px}, to contain the receivers' rectangle"));
+            return bad(
+                what,
+                format!("{size_px} pixels large"),
+                format!("at least {end_px}, to contain the receivers' rectangle"),
+            );
         }
     }
     Ok(())

@@ -20,14 +20,22 @@ impl Check<'_, Frame<'_>> {
             return self.bad("the receivers' size", format!("{size_px}"), "at least 1 × 1 pixel");
         }
         if mask.size_px() != size_px {
-            return self.bad("the mask's size", format!("{}", mask.size_px()), format!("the size of the receivers, {size_px}"));
+            return self.bad(
+                "the mask's size",
+                format!("{}", mask.size_px()),
+                format!("the size of the receivers, {size_px}"),
+            );
         }
         let depth = receivers.depth.texture();
         let end_px = receivers.origin_px.saturating_add(size_px);
         if end_px.cmpgt(size_of(depth)).any() {
             return self.bad(
                 "the receivers' rectangle",
-                format!("outside of the depth buffer: it ends at pixel {end_px} of {} × {}", depth.width(), depth.height()),
+                format!(
+                    "outside of the depth buffer: it ends at pixel {end_px} of {} × {}",
+                    depth.width(),
+                    depth.height()
+                ),
                 "within the depth buffer",
             );
         }
@@ -38,7 +46,11 @@ impl Check<'_, Frame<'_>> {
         let Receivers { view_from_world, clip_from_view, depth_convention, .. } = self.frame.receivers;
         if !view_from_world.is_finite() || !is_rigid(&view_from_world) {
             let had = if view_from_world.is_finite() { "not rigid" } else { "not finite" };
-            return self.bad("the camera's pose", had, "a rotation and a translation; to scale, scale the scene instead");
+            return self.bad(
+                "the camera's pose",
+                had,
+                "a rotation and a translation; to scale, scale the scene instead",
+            );
         }
         let world_from_view = view_from_world.as_dmat4().inverse().as_mat4();
         if !(clip_from_view.is_finite()
@@ -64,7 +76,11 @@ impl Check<'_, Frame<'_>> {
         let Receivers { bounds, hull, seen, shadow_distance, .. } = self.frame.receivers;
         // An empty box is valid: there are no receivers.
         if let Some(problem) = bounds.filter(|bounds| *bounds != Aabb::EMPTY).and_then(|bounds| bounds.problem()) {
-            return self.bad("the receivers' bounding box", problem, "a box whose first corner is the minimum, or `None`");
+            return self.bad(
+                "the receivers' bounding box",
+                problem,
+                "a box whose first corner is the minimum, or `None`",
+            );
         }
         self.finite("the receivers' `hull`", hull)?;
         self.finite("the receivers' `seen`", seen)?;
@@ -109,7 +125,11 @@ impl Check<'_, Frame<'_>> {
         let texture = normals.texture();
         self.as_large_as_depth(WHAT, texture)?;
         if texture.sample_count() != 1 {
-            return self.bad(WHAT, format!("multisampled with {} samples per pixel", texture.sample_count()), "one sample per pixel");
+            return self.bad(
+                WHAT,
+                format!("multisampled with {} samples per pixel", texture.sample_count()),
+                "one sample per pixel",
+            );
         }
         if !holds_directions(texture.format()) {
             return self.bad(

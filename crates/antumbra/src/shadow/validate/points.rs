@@ -80,11 +80,7 @@ impl Check<'_, PointFrame<'_>> {
         let validation_error =
             validator.buffers.validation_error(buffer.clone(), |buffer| storage_validation_error(self.gpu, buffer));
         let refuse = |validation_error| {
-            self.bad(
-                what,
-                format!("one that cannot be bound ({validation_error})"),
-                "a buffer of the light's device",
-            )
+            self.bad(what, format!("one that cannot be bound ({validation_error})"), "a buffer of the light's device")
         };
         validation_error.map_or(Ok(()), refuse)
     }
@@ -102,7 +98,11 @@ impl Check<'_, PointFrame<'_>> {
     pub(super) fn point_places(&self) -> Result<(), Error> {
         let receivers = &self.frame.receivers;
         if let Some(problem) = receivers.bounds.problem() {
-            return self.bad("the points' bounding box", problem, "a box of all points whose first corner is the minimum");
+            return self.bad(
+                "the points' bounding box",
+                problem,
+                "a box of all points whose first corner is the minimum",
+            );
         }
         self.finite("the points' `hull`", receivers.hull)?;
         self.finite("the points' `seen`", receivers.seen)

@@ -46,9 +46,9 @@ params! {
                  of one size.";
         /// Comparison of texels with a receiver.
         compare: MultiViewCompare = MultiViewCompare::Triangles,
-            more "triangles finds exact edges and takes 32 bytes per pixel and at least 48 per triangle; sharp interpolates \
-                 edges between the views and takes 24 bytes per pixel; gather takes no memory; hardware, the papers' form, \
-                 detaches contacts at grazing angles.";
+            more "triangles finds exact edges and takes 32 bytes per pixel and at least 48 per triangle; sharp estimates edges \
+                 from the texels of all views and takes 24 bytes per pixel; gather takes no memory; hardware, the papers' \
+                 form, detaches contacts at grazing angles.";
         shared seed;
         shared bias_scale;
     }

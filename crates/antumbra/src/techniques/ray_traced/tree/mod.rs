@@ -242,7 +242,10 @@ impl Forest {
                 starts: here(&scratch.starts),
                 nodes,
             };
-            BuildGroups { digits: (0..CODE_DIGITS).map(digit).collect(), links: links.group(stage, &programs.links_layout) }
+            BuildGroups {
+                digits: (0..CODE_DIGITS).map(digit).collect(),
+                links: links.group(stage, &programs.links_layout),
+            }
         });
         if makes {
             self.count_scan.prepare(stage, here(&scratch.counts), DIGITS * block_count);
