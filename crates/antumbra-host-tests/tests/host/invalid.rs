@@ -87,7 +87,7 @@ fn lights_and_cameras() {
         it.view_from_world = Mat4::from_scale(Vec3::splat(2.0)) * it.view_from_world;
     });
     seen_by(&mut good, &["the camera's matrix", "singular"], |it| it.clip_from_view = Mat4::ZERO);
-    seen_by(&mut good, &["the depth convention", "Reversed, as the projection"], |it| {
+    seen_by(&mut good, &["the depth convention", "Reversed, as in the projection"], |it| {
         it.depth_convention = DepthConvention::Standard;
     });
     seen_by(&mut good, &["the receivers' bounding box", "not a number"], |it| {
@@ -240,8 +240,8 @@ fn casters_of_a_frame() {
         (of(buffer, buffer, 4), &["`index_count`", "a multiple of three"]),
         (mesh.with_first_triangle(12), &["index buffer", "144 bytes long", "at least 156"]),
         (mesh.with_instances(2..3), &["instance buffer", "144 bytes long", "at least 192"]),
-        (of(unusable, buffer, 3), &["positions", "VERTEX", "caster 1"]),
-        (of(buffer, unusable, 3), &["indices", "INDEX", "caster 1"]),
+        (of(unusable, buffer, 3), &["position buffer", "VERTEX", "caster 1"]),
+        (of(buffer, unusable, 3), &["index buffer", "INDEX", "caster 1"]),
     ];
     for (caster, words) in bad {
         let casters: &'static [MeshCaster<'static>] = Box::leak(Box::new([mesh, caster]));

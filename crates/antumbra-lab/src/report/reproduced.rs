@@ -461,8 +461,8 @@ mod tests {
         for raw in ["<b>first", "<i>what", "=<value", "<card>"] {
             assert!(!html.contains(raw), "{raw}");
         }
-        assert!(page(None, false).contains("--bandwidth") && !page(None, false).contains("at equal bandwidth"));
+        assert!(page(None, false).contains("--bandwidth") && !page(None, false).contains("at equal bandwidth</small>"));
         // Times of a CPU are not compared with those of a graphics card.
-        assert!(!page(Some(50.0), true).contains("at equal bandwidth"));
+        assert!(!page(Some(50.0), true).contains("at equal bandwidth</small>"));
     }
 }
