@@ -253,7 +253,7 @@ fn set_parameters_to_both_ends(gpu: &Gpu) {
                 assert_eq!(state.sides[0].refusal(spec.key), None, "{kind}: {} = {text}", spec.key);
                 if let Err(why) = renderer.record_only(&state) {
                     assert!(
-                        why.contains("no memory") || why.contains(kind.name()),
+                        why.contains("out of memory") || why.contains(kind.name()),
                         "{kind}: {} = {text}: {why}",
                         spec.key
                     );

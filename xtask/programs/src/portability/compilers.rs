@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(outcomes[0], None);
         assert_eq!(outcomes[1].as_deref(), Some("1:2: error: no"));
         assert!(outcomes[2].as_ref().is_some_and(|error| error.contains('3')), "{outcomes:?}");
-        assert!(outcomes[3].as_ref().is_some_and(|error| error.contains("died")), "{outcomes:?}");
+        assert!(outcomes[3].as_ref().is_some_and(|error| error.contains("crashed")), "{outcomes:?}");
         assert!(run(&mut Command::new("no-such-compiler"), &log).is_some_and(|error| error.contains("cannot run")));
         let _ = fs::remove_file(&log);
     }

@@ -138,7 +138,9 @@ fn what_was_not_measured_decides_nothing() {
     assert!(matches!(verdicts(&[], false)[0], Verdict::Undecided(_)));
     let found = verdicts(&[measured(0.1, 0.0), measured(0.25, 0.0)], false);
     assert!(
-        found[1..].iter().all(|one| matches!(one, Verdict::Undecided(why) if why.contains("the time of ‘b’ was reported as zero")))
+        found[1..]
+            .iter()
+            .all(|one| matches!(one, Verdict::Undecided(why) if why.contains("the time of ‘b’ was reported as zero")))
     );
     // A single rule that is not met is enough.
     const TWO: &[Claim] = &[claim("", &[Rule::AtMost(Figure::Rmse, "b", 0.1), Rule::AtMost(Figure::Rmse, "a", 0.1)])];
