@@ -27,9 +27,9 @@ pub fn bind_masks(
         let samples = msaa.samples();
         let has_masks = has_depth && matches!(samples, 1 | 4);
         if !has_masks {
-            let what = if has_depth { "2 or 8 samples a pixel" } else { "no DepthPrepass" };
+            let what = if has_depth { "2 or 8 samples per pixel" } else { "no DepthPrepass" };
             let remedy = if has_depth { "Msaa::Sample4 or Msaa::Off" } else { "one" };
-            warnings.say(format!("a camera has {what} and so no soft shadows: give it {remedy}"));
+            warnings.say(format!("a camera has {what} and therefore no soft shadows: give it {remedy}"));
         }
         let size_px = glam::UVec2::new(view.viewport.z, view.viewport.w);
         // Without a prepass the shader reads no masks. With an unsupported sample count it must find the marker for none.
@@ -57,7 +57,8 @@ pub fn bind_masks(
         let shape = masks.shape;
         if shape.map_count + shape.slot_count() * shape.tiles().element_product() > shape.max_layers {
             warnings.say(format!(
-                "the device has {} layers, too few for the masks of all lights beside Bevy's own maps: larger maps (DirectionalLightShadowMap) take fewer layers",
+                "the device has {} texture array layers, too few for the masks of all lights besides Bevy's own maps; larger \
+                 maps (DirectionalLightShadowMap) take fewer layers",
                 shape.max_layers
             ));
         }

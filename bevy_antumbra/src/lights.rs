@@ -259,7 +259,7 @@ fn give_layers(lights: &ShadowLights, colored: &ColoredLights, layers: &mut Mask
         if layers.count + count > MAX_LAYERS {
             layers.with_maps.extend(light.own_bias.map(|bias| (light.entity, bias)));
             if !std::mem::replace(has_warned, true) {
-                warn!("bevy_antumbra: masks have {MAX_LAYERS} layers; lights beyond have no soft shadows");
+                warn!("bevy_antumbra: masks have {MAX_LAYERS} layers; further lights have no soft shadows");
             }
             continue;
         }
@@ -289,7 +289,7 @@ mod tests {
         let endless = numbered(f32::INFINITY, 5);
         assert!(
             endless.is_normal() && endless > 1e38 && endless.to_bits() & 0xff == 5,
-            "a rectangle may shine without end"
+            "a rectangle may have an infinite range"
         );
     }
 

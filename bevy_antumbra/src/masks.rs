@@ -347,7 +347,7 @@ mod tests {
         let at = |x, y| glam::UVec2::new(x, y);
         assert_eq!(of_slot(0), [(12, at(0, 0)), (11, at(1024, 0)), (10, at(0, 1024)), (9, at(1024, 1024))]);
         assert_eq!(of_slot(1).iter().map(|(layer, _)| *layer).collect::<Vec<_>>(), [8, 7, 6, 5]);
-        assert_eq!(of_slot(2), [], "there the maps lie");
+        assert_eq!(of_slot(2), [], "these layers contain the maps");
     }
 
     #[test]

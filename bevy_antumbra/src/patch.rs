@@ -45,7 +45,7 @@ pub fn apply(mut patch: ResMut<Patch>, mut shaders: ResMut<Assets<Shader>>) {
         }
         Err(error) => {
             warn!(
-                "bevy_antumbra: {PATH} is not that of Bevy 0.20, so that soft shadows stay off and Bevy's own on: {error}"
+                "bevy_antumbra: {PATH} differs from that of Bevy 0.20, so soft shadows are off and Bevy's own shadows on: {error}"
             );
             Patch::Refused
         }

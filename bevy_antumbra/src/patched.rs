@@ -15,7 +15,7 @@ const FUNCTIONS: &str = include_str!("patch.wesl");
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PatchError {
     /// The number of times that a line occurs is not the expected one.
-    #[error("`{line}` is there {had} times, and {needed} were expected")]
+    #[error("`{line}` occurs {had} times, expected {needed}")]
     Count {
         /// The line.
         line: &'static str,

@@ -445,20 +445,20 @@ impl Held {
 }
 
 #[test]
-fn what_comes_and_goes_at_random() {
+fn lights_and_casters_added_and_removed_at_random() {
     come_and_go(150, true);
 }
 
 #[test]
 #[ignore = "takes many minutes"]
-fn what_comes_and_goes_for_long() {
+fn lights_and_casters_added_and_removed_for_long() {
     come_and_go(2000, true);
 }
 
 /// Measures how much of the process's growth is due to Bevy and the driver.
 #[test]
 #[ignore = "takes many minutes; to compare with"]
-fn what_comes_and_goes_for_long_without_the_plugin() {
+fn lights_and_casters_added_and_removed_without_the_plugin() {
     come_and_go(2000, false);
 }
 

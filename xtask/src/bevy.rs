@@ -23,7 +23,7 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
         return Ok(());
     };
     eprintln!(
-        "xtask: the plugin for Bevy by toolchain `{toolchain}`; its first build takes a quarter of an hour and more"
+        "xtask: building the plugin for Bevy with toolchain `{toolchain}`; the first build takes at least a quarter of an hour"
     );
     let cargo = |words: &[&str]| {
         let mut command = Command::new("rustup");
@@ -49,7 +49,7 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     // Checks the plugin as users build it: the tests enable more features of Bevy.
     shell::run(cargo(&["check"]).args(LOCKED))?;
     shell::run(cargo(&["test"]).args(LOCKED).args(WINDOW).args(arguments))?;
-    eprintln!("xtask: the plugin for Bevy checked in {} s", began.elapsed().as_secs());
+    eprintln!("xtask: checked the plugin for Bevy in {} s", began.elapsed().as_secs());
     Ok(())
 }
 

@@ -21,7 +21,7 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     let is_served = match words[..] {
         [] => false,
         ["--serve"] => true,
-        _ => return Err("`cargo xtask book` takes `--serve` or nothing".into()),
+        _ => return Err("`cargo xtask book` takes only `--serve`".into()),
     };
     let folder = crate::root().join("target/book");
     build(&folder, None)?;
@@ -74,10 +74,14 @@ fn mdbook() -> Result<PathBuf, String> {
     if let Some(right) = find("mdbook").into_iter().chain([own.clone()]).find(is_right) {
         return Ok(right);
     }
-    eprintln!("xtask: installing mdbook {MDBOOK} in {}, by cargo: a few minutes", tools.display());
+    eprintln!("xtask: installing mdbook {MDBOOK} in {} with cargo, which takes a few minutes", tools.display());
     // Without its server, which would need an asynchronous runtime; xtask has its own.
     let features = ["--no-default-features", "--features", "search"];
     let install = ["install", "--quiet", "--locked", "--force", "mdbook", "--version", MDBOOK, "--root"];
     shell::run(cargo().args(install).arg(&tools).args(features))?;
-    if is_right(&own) { Ok(own) } else { Err(format!("installed mdbook {MDBOOK}, and {} is not it", own.display())) }
+    if is_right(&own) {
+        Ok(own)
+    } else {
+        Err(format!("installed mdbook {MDBOOK}, but {} has another version", own.display()))
+    }
 }

@@ -76,10 +76,9 @@ fn folder() -> Result<PathBuf, String> {
         Some(root.join("shared/scenes")),
     ];
     let cases = candidates.into_iter().flatten().filter_map(|scenes| Some(scenes.parent()?.join("cases")));
-    cases
-        .into_iter()
-        .find(|folder| folder.is_dir())
-        .ok_or_else(|| format!("set {SCENES} to the folder of test scenes, beside which there is one named cases"))
+    cases.into_iter().find(|folder| folder.is_dir()).ok_or_else(|| {
+        format!("set {SCENES} to the folder of test scenes, next to which there is a folder named cases")
+    })
 }
 
 /// Returns the scenes in a folder, sorted by name.
@@ -105,7 +104,7 @@ fn measure(binary: &Path, scene: &Path) -> Result<Case, String> {
     compare.args(["--size", "240x135", "--samples", "144", "--frames", "1", "-o"]);
     compare.arg(crate::root().join("out/cases").join(&name));
     let printed = shell::output(&mut compare)?;
-    let adapter = adapter_in(&printed).ok_or_else(|| format!("{name}: `antumbra compare` names no adapter"))?;
+    let adapter = adapter_in(&printed).ok_or_else(|| format!("{name}: `antumbra compare` printed no adapter"))?;
     Ok(Case { errors: errors_in(&printed), adapter, name })
 }
 
@@ -118,7 +117,7 @@ fn adapter_in(printed: &str) -> Option<String> {
 /// Returns the origin of the figures: adapter and commit, from `antumbra --version`. Cases rendered by another adapter are named.
 fn origin(cases: &[Case], version: &str) -> Result<String, String> {
     let commit = version.trim().strip_suffix(')').and_then(|text| text.rsplit_once("(commit "));
-    let (_, commit) = commit.ok_or_else(|| format!("`antumbra --version` names no commit: {version}"))?;
+    let (_, commit) = commit.ok_or_else(|| format!("`antumbra --version` printed no commit: {version}"))?;
     let first = cases.first().ok_or("no cases were measured")?;
     let others = cases.iter().filter(|case| case.adapter != first.adapter);
     let others: String = others.map(|case| format!("; `{}` on {}", case.name, case.adapter)).collect();
@@ -189,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_those_of_the_printed_table() {
+    fn errors_are_parsed_from_the_printed_table() {
         let expected = [("hard", Some(0.01)), ("essm", Some(0.98)), ("ray_traced", None)];
         assert_eq!(errors_in(PRINTED), expected.map(|(name, error)| (name.to_owned(), error)));
     }

@@ -28,9 +28,9 @@ pub fn run(args: &[String]) -> Result<(), String> {
     }
     machine::set_up()?;
     let driver = Driver::choose(wanted)?;
-    eprintln!("xtask: building the command `antumbra` (some six minutes on two cores the first time)");
+    eprintln!("xtask: building the command `antumbra` (about six minutes on two cores the first time)");
     let binary = shell::built_of_workspace("antumbra")?;
-    eprintln!("xtask: ready after {} s", began.elapsed().as_secs());
+    eprintln!("xtask: built in {} s", began.elapsed().as_secs());
 
     // The user's own scenes come first. Their paths are relative to the current directory.
     let out = crate::root().join("out/demo");

@@ -25,7 +25,7 @@ const BACKPORTS: &str = "bookworm-backports";
 
 /// Requested driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wanted {
+pub enum DriverChoice {
     /// The driver of a graphics card, or one chosen by the loader's own variables; else the newer one if available; else the installed
     /// one.
     Default,
@@ -39,7 +39,7 @@ pub enum Wanted {
 ///
 /// # Errors
 /// If there is no such driver.
-pub fn option(args: &[String]) -> Result<(Wanted, Vec<String>), String> {
+pub fn option(args: &[String]) -> Result<(DriverChoice, Vec<String>), String> {
     let (mut value, mut rest) = (std::env::var(VARIABLE).ok().filter(|value| !value.is_empty()), Vec::new());
     let mut args = args.iter();
     while let Some(arg) = args.next() {
@@ -50,10 +50,12 @@ pub fn option(args: &[String]) -> Result<(Wanted, Vec<String>), String> {
         }
     }
     let wanted = match value.as_deref() {
-        None | Some("default") => Wanted::Default,
-        Some("installed") => Wanted::Installed,
-        Some("newer") => Wanted::Newer,
-        Some(other) => return Err(format!("there is no driver `{other}`: {OPTION} is default, installed or newer")),
+        None | Some("default") => DriverChoice::Default,
+        Some("installed") => DriverChoice::Installed,
+        Some("newer") => DriverChoice::Newer,
+        Some(other) => {
+            return Err(format!("there is no driver `{other}`; {OPTION} must be default, installed or newer"));
+        }
     };
     Ok((wanted, rest))
 }
@@ -68,20 +70,20 @@ impl Driver {
     ///
     /// # Errors
     /// If the newer driver is requested and unavailable, with the reason.
-    pub fn choose(wanted: Wanted) -> Result<Self, String> {
+    pub fn choose(wanted: DriverChoice) -> Result<Self, String> {
         let chosen = DRIVER_VARIABLES.iter().find(|name| std::env::var_os(name).is_some());
         let why = match (wanted, chosen) {
-            (Wanted::Newer, _) => return Self::newer(),
-            (_, Some(name)) => format!("as {name} says"),
-            (Wanted::Installed, None) => "as asked for".to_owned(),
-            (Wanted::Default, None) if !cfg!(target_os = "linux") => "the system's".to_owned(),
-            (Wanted::Default, None) if machine::has_card() => "of a graphics card".to_owned(),
-            (Wanted::Default, None) => match Self::newer() {
+            (DriverChoice::Newer, _) => return Self::newer(),
+            (_, Some(name)) => format!("chosen by {name}"),
+            (DriverChoice::Installed, None) => "as requested".to_owned(),
+            (DriverChoice::Default, None) if !cfg!(target_os = "linux") => "the system's driver".to_owned(),
+            (DriverChoice::Default, None) if machine::has_card() => "for a graphics card".to_owned(),
+            (DriverChoice::Default, None) => match Self::newer() {
                 Ok(newer) => return Ok(newer),
-                Err(reason) => format!("since {reason}"),
+                Err(reason) => format!("because {reason}"),
             },
         };
-        eprintln!("xtask: drawing by the installed driver, {why}");
+        eprintln!("xtask: using the installed driver, {why}");
         Ok(Self { variables: Vec::new() })
     }
 
@@ -95,8 +97,8 @@ impl Driver {
         // Written every time, because it contains the absolute path, and folders move.
         let file = folder.join("lvp_icd.json");
         std::fs::write(&file, manifest).map_err(|error| format!("{}: {error}", file.display()))?;
-        let version = version_in(&folder).unwrap_or_else(|| "of a version not known".to_owned());
-        eprintln!("xtask: drawing by the newer software driver, Mesa {version} in {}", folder.display());
+        let version = version_in(&folder).unwrap_or_else(|| "of unknown version".to_owned());
+        eprintln!("xtask: using the newer software driver, Mesa {version}, in {}", folder.display());
         Ok(Self { variables: vec![("VK_DRIVER_FILES", file.into()), ("LD_LIBRARY_PATH", searched)] })
     }
 
@@ -129,8 +131,8 @@ pub fn for_amd() -> Result<Library, String> {
     let file = installed
         .into_iter()
         .find(|file| file.is_file())
-        .ok_or_else(|| format!("Mesa's driver for AMD is not installed (Debian: {DRIVER_PACKAGE}), and {problem}"))?;
-    eprintln!("xtask: using the installed {NAME}, since {problem}");
+        .ok_or_else(|| format!("Mesa's driver for AMD is not installed (Debian: {DRIVER_PACKAGE}): {problem}"))?;
+    eprintln!("xtask: using the installed {NAME}, because {problem}");
     Ok(Library { file, searched: std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default() })
 }
 
@@ -139,7 +141,7 @@ fn newer_folder() -> PathBuf {
 }
 
 fn lacking(what: &str) -> String {
-    format!("{} lacks {what}; remove it to have it anew", newer_folder().display())
+    format!("{} lacks {what}; delete it, and it will be installed again", newer_folder().display())
 }
 
 /// Returns a library of the newer Mesa, installed first if necessary.
@@ -147,7 +149,7 @@ fn newer_library(name: &str) -> Result<Library, String> {
     let folder = newer_folder();
     let unpacked = folder.join("unpacked");
     if !unpacked.exists() {
-        bring(&folder).map_err(|problem| format!("the newer Mesa cannot be had: {problem}"))?;
+        bring(&folder).map_err(|problem| format!("the newer Mesa cannot be installed: {problem}"))?;
     }
     let file = the_file(&unpacked.join("usr/lib"), name, ".so").ok_or_else(|| lacking("the driver"))?;
     let libraries = file.parent().map(Path::to_owned).unwrap_or_default();
@@ -155,7 +157,7 @@ fn newer_library(name: &str) -> Result<Library, String> {
     let searched = std::iter::once(libraries).chain(std::env::split_paths(&path));
     let searched = std::env::join_paths(searched).map_err(|error| error.to_string())?;
     match missing_libraries(&file, &searched) {
-        Some(missing) => Err(format!("the newer Mesa does not load here: {missing}")),
+        Some(missing) => Err(format!("the newer Mesa cannot be loaded on this system: {missing}")),
         None => Ok(Library { file, searched }),
     }
 }
@@ -164,7 +166,7 @@ fn newer_library(name: &str) -> Result<Library, String> {
 fn bring(folder: &Path) -> Result<(), String> {
     let system = std::fs::read_to_string("/etc/os-release").unwrap_or_default();
     if !is_the_release(&system) {
-        return Err(format!("it comes from the backports of Debian's {RELEASE}, which this system is not"));
+        return Err(format!("it is a backport for Debian's {RELEASE}, which this system is not"));
     }
     if let Some(program) = ["apt-get", "dpkg"].into_iter().find(|name| find(name).is_none()) {
         return Err(format!("there is no {program}"));
@@ -173,9 +175,9 @@ fn bring(folder: &Path) -> Result<(), String> {
     let targets = shell::output(Command::new("apt-get").args(targets))?;
     let mirrors = mirrors(&targets);
     if mirrors.is_empty() {
-        return Err(format!("apt knows no mirror that has {RELEASE}"));
+        return Err(format!("apt has no mirror for {RELEASE}"));
     }
-    eprintln!("xtask: bringing a newer software driver from Debian's backports into {}", folder.display());
+    eprintln!("xtask: downloading a newer software driver from Debian's backports to {}", folder.display());
     let mut problem = String::new();
     let unfinished = folder.join(format!("unfinished-{}", std::process::id()));
     for mirror in mirrors {
@@ -193,11 +195,11 @@ fn bring(folder: &Path) -> Result<(), String> {
 fn bring_from(mirror: &str, folder: &Path, unfinished: &Path) -> Result<(), String> {
     let apt = folder.join("apt");
     for new in [&apt.join("lists/partial"), &apt.join("cache/archives/partial"), unfinished] {
-        std::fs::create_dir_all(new).map_err(|error| format!("{}: cannot make it: {error}", new.display()))?;
+        std::fs::create_dir_all(new).map_err(|error| format!("cannot create {}: {error}", new.display()))?;
     }
     let write = |name: &str, text: String| {
         let file = apt.join(name);
-        std::fs::write(&file, text).map_err(|error| format!("{}: cannot write it: {error}", file.display()))
+        std::fs::write(&file, text).map_err(|error| format!("cannot write {}: {error}", file.display()))
     };
     write("newer.sources", source(mirror))?;
     write("apt.conf", settings(&apt))?;
@@ -209,14 +211,14 @@ fn bring_from(mirror: &str, folder: &Path, unfinished: &Path) -> Result<(), Stri
     shell::run(apt_get().arg("update"))?;
     shell::run(apt_get().arg("download").args(PACKAGES))?;
     for package in PACKAGES {
-        let archive =
-            the_file(folder, &format!("{package}_"), ".deb").ok_or_else(|| format!("apt-get brought no {package}"))?;
+        let archive = the_file(folder, &format!("{package}_"), ".deb")
+            .ok_or_else(|| format!("apt-get did not download {package}"))?;
         shell::run(Command::new("dpkg").arg("-x").arg(archive).arg(unfinished))?;
     }
     // The rename is atomic. If another process was faster, its result is equivalent.
     let unpacked = folder.join("unpacked");
     match std::fs::rename(unfinished, &unpacked) {
-        Err(error) if !unpacked.exists() => Err(format!("{}: cannot be made: {error}", unpacked.display())),
+        Err(error) if !unpacked.exists() => Err(format!("cannot create {}: {error}", unpacked.display())),
         _ => Ok(()),
     }
 }
@@ -321,8 +323,8 @@ mod tests {
 
     #[test]
     fn the_option_is_taken_from_anywhere() {
-        assert_eq!(option(&words("pcss --driver newer kept")), Ok((Wanted::Newer, words("pcss kept"))));
-        assert_eq!(option(&words("--driver=installed")), Ok((Wanted::Installed, Vec::new())));
+        assert_eq!(option(&words("pcss --driver newer kept")), Ok((DriverChoice::Newer, words("pcss kept"))));
+        assert_eq!(option(&words("--driver=installed")), Ok((DriverChoice::Installed, Vec::new())));
     }
 
     #[test]

@@ -15,18 +15,18 @@ pub fn check() -> Result<(), String> {
     let text = std::fs::read_to_string(&manifest).map_err(|error| format!("{}: {error}", manifest.display()))?;
     let families = default_features(&text);
     if families.is_empty() {
-        return Err(format!("{}: no features under `default`", manifest.display()));
+        return Err(format!("{}: no features in `default`", manifest.display()));
     }
     for family in &families {
         let alone =
             ["check", "--quiet", "--locked", "--package", "antumbra", "--no-default-features", "--features", family];
-        shell::run(cargo().args(alone)).map_err(|problem| format!("antumbra with `{family}` alone: {problem}"))?;
+        shell::run(cargo().args(alone)).map_err(|problem| format!("antumbra with only `{family}`: {problem}"))?;
     }
     // Its dependencies are rebuilt for a short run, so nothing is optimised.
     let without_decoder =
         ["test", "--quiet", "--locked", "--package", "antumbra-scene", "--no-default-features", "--lib", "decoder"];
     shell::run(cargo().args(without_decoder).env("CARGO_PROFILE_DEV_OPT_LEVEL", "0"))?;
-    eprintln!("xtask: {} families checked alone in {} s", families.len(), began.elapsed().as_secs());
+    eprintln!("xtask: checked {} families separately in {} s", families.len(), began.elapsed().as_secs());
     Ok(())
 }
 

@@ -36,7 +36,7 @@ pub fn run(names: &[String]) -> Result<(), String> {
     let worst_cases = worst_cases(&page);
     if let Some(name) = names.iter().find(|name| worst_cases.iter().all(|(technique, _)| technique != name)) {
         let known: Vec<_> = worst_cases.iter().map(|(technique, _)| *technique).collect();
-        return Err(format!("figures: there is no technique `{name}`; there are {}", known.join(", ")));
+        return Err(format!("figures: there is no technique `{name}`; available: {}", known.join(", ")));
     }
     machine::set_up()?;
     let binary = shell::built_of_workspace("antumbra")?;

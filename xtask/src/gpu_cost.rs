@@ -26,7 +26,7 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
         [] => count(&Purpose::Page { earlier: None }, Missing::Fail),
         ["--diff", earlier] => count(&Purpose::Page { earlier: Some(earlier.to_owned()) }, Missing::Fail),
         ["--check"] => count(&Purpose::Check, Missing::Fail),
-        _ => Err("`cargo xtask gpu-cost` takes `--diff TABLE`, `--check` or nothing".into()),
+        _ => Err("`cargo xtask gpu-cost` takes only `--diff TABLE` or `--check`".into()),
     }
 }
 
@@ -64,13 +64,13 @@ fn count(purpose: &Purpose, missing: Missing) -> Result<(), String> {
         }
     }
     shell::run(&mut command)?;
-    eprintln!("xtask: pipelines counted in {} s", began.elapsed().as_secs());
+    eprintln!("xtask: counted pipelines in {} s", began.elapsed().as_secs());
     Ok(())
 }
 
 fn driver() -> Result<Library, String> {
     if !cfg!(target_os = "linux") {
-        return Err("Mesa's driver for AMD is there on Linux alone".into());
+        return Err("Mesa's driver for AMD exists only on Linux".into());
     }
     machine::set_up()?;
     driver::for_amd()

@@ -31,10 +31,10 @@ const NEEDS: [Need; 2] = [
         why: "a C++ compiler, for the FLIP metric and the meshopt decoder",
         met: || ["c++", "g++", "clang++"].iter().any(|name| find(name).is_some()) || std::env::var_os("CXX").is_some(),
         packages: &["g++"],
-        otherwise: "install a C++ compiler (gcc or clang) and make it known as `c++`, or set CXX",
+        otherwise: "install a C++ compiler (gcc or clang) that is available as `c++`, or set CXX",
     },
     Need {
-        why: "a Vulkan driver (Mesa's lavapipe runs on any processor)",
+        why: "a Vulkan driver (Mesa's lavapipe runs on any CPU)",
         met: has_graphics,
         packages: &["mesa-vulkan-drivers", "libvulkan1"],
         otherwise: "install the Vulkan driver of your graphics card, or Mesa's software driver \
@@ -68,14 +68,14 @@ pub fn install(needs: &[Need]) -> Result<(), String> {
     {
         // With this variable the Vulkan loader looks nowhere else, whatever is installed.
         return Err(format!(
-            "{name} hides every Vulkan driver: it names no file that is there; unset it, or correct it"
+            "{name} hides every Vulkan driver, because it names no existing file; unset or correct it"
         ));
     }
     let packages: Vec<&str> = missing.iter().flat_map(|need| need.packages).copied().collect();
     let list = packages.join(" ");
     let by_hand = || {
         let remedies: Vec<&str> = missing.iter().map(|need| need.otherwise).collect();
-        format!("cannot install it from here: {}", remedies.join("; and "))
+        format!("it cannot be installed automatically: {}", remedies.join("; and "))
     };
     if find("apt-get").is_none() {
         return Err(by_hand());
@@ -85,8 +85,7 @@ pub fn install(needs: &[Need]) -> Result<(), String> {
     let sudo = !is_root;
     if sudo && !succeeds(Command::new("sudo").args(["-n", "true"])) {
         return Err(format!(
-            "installing needs root, and sudo asks for a password here: run `sudo apt-get install {list}` yourself, \
-             then this again"
+            "installation needs root, and sudo asks for a password: run `sudo apt-get install {list}`, then repeat this command"
         ));
     }
     eprintln!("xtask: installing with apt-get: {list}");
@@ -102,12 +101,12 @@ pub fn install(needs: &[Need]) -> Result<(), String> {
     };
     // Containers come without package lists. Outdated lists may still suffice.
     if let Err(problem) = run(apt_get().arg("update")) {
-        eprintln!("xtask: {problem}; trying with the lists there are");
+        eprintln!("xtask: {problem}; trying with the existing package lists");
     }
     run(apt_get().args(["install", "--no-install-recommends"]).args(&packages))?;
     match needs.iter().find(|need| !(need.met)()) {
         None => Ok(()),
-        Some(need) => Err(format!("installed {list}, and still found no {}: {}", need.why, need.otherwise)),
+        Some(need) => Err(format!("installed {list}, but still found no {}: {}", need.why, need.otherwise)),
     }
 }
 

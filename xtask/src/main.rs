@@ -28,7 +28,7 @@ use std::process::ExitCode;
 use machine::Missing;
 
 const USAGE: &str = "\
-Development commands of Antumbra. They install what is missing where they can, and say so.
+Development commands of Antumbra. They install missing programs where possible, and print what they install.
 
     cargo xtask demo [SCENE.glb ...] [--no-open] [--driver default|installed|newer]
         Builds the command `antumbra`, compares techniques with ground truth on built-in scenes and on the scenes given, prints the
@@ -42,7 +42,7 @@ Development commands of Antumbra. They install what is missing where they can, a
         Choose with --driver or ANTUMBRA_DRIVER; VK_DRIVER_FILES is respected.
 
     cargo xtask ci [--driver default|installed|newer]
-        Runs `test`, each family of techniques alone, that the program of `packages` compiles, `semver`, `wasm`, `web --shaders`,
+        Runs `test`, builds each family of techniques separately and the program of `packages`, runs `semver`, `wasm`, `web --shaders`,
         `portability` and `gpu-cost --check`. Fails where a check would be skipped, except in the last three, where a browser, a
         compiler or a driver may be missing.
 
@@ -57,20 +57,21 @@ Development commands of Antumbra. They install what is missing where they can, a
 
     cargo xtask site [-o FOLDER] [--check | --serve]
         Builds the book, a gallery and the web viewer as static files in target/site, for any server and any path.
-        --check: crawls them in a headless browser: links, anchors, console, time to the first image. --serve: serves them on this machine.
+        --check: crawls them in a headless browser: links, anchors, console, time to the first image. --serve: serves them on this \
+machine.
 
     cargo xtask packages
-        Makes the packages for publication, and builds and runs a program from them outside the repository; with nightly, too, where
-        that is installed.
+        Creates the packages for publication, and builds and runs a program from them outside the repository, also with nightly if
+        it is installed.
 
     cargo xtask semver [--baseline REVISION]
         Compares the library's public API with that of the last release (tag v*), or of a revision, by cargo-semver-checks, which is
-        installed in target/tools once. Without a release there is nothing to do.
+        installed in target/tools once. Without a release, it does nothing.
 
     cargo xtask portability [--only TEXT]
         Translates the programs of every pipeline as wgpu does on other systems, and has their compilers judge them: HLSL by DXC, SPIR-V
-        by spirv-val; MSL is translated alone. A minute on two cores. Installs spirv-tools and, in target/tools, DXC; what cannot be
-        had is skipped. --only: programs whose label, module or entry point contains the text.
+        by spirv-val; MSL is translated only. A minute on two cores. Installs spirv-tools and, in target/tools, DXC; what cannot be
+        installed is skipped. --only: only programs whose label, module or entry point contains the text.
 
     cargo xtask wasm
         Checks that the library and the page of the viewer compile for browsers.
@@ -92,14 +93,14 @@ Development commands of Antumbra. They install what is missing where they can, a
         Measures every technique at every quality but best on built-in scenes, and writes bench/qualities.md: ten minutes.
 
     cargo xtask cases [NAME ...]
-        Measures every technique on the small inputs that reports led to, and writes bench/cases.md: half an hour. With the beginnings of
-        their names, only prints the table of some.
+        Measures every technique on the small inputs of problem reports, and writes bench/cases.md: half an hour. With the beginnings
+        of their names, only prints the table of those inputs.
 
     cargo xtask gpu-cost [--diff TABLE | --check]
         Counts registers, waves, instructions and workgroup memory of every pipeline as Mesa's compiler for AMD does, without a GPU,
         and dispatches, barriers and passes of a frame of each technique. Writes bench/gpu-cost.md, and tables in target/gpu-cost: two
         minutes. --diff: compares with an earlier table of target/gpu-cost.
-        --check: writes no page, and fails on a spill or on more than 128 registers, but for xtask/programs/exceptions.toml.
+        --check: writes no page, and fails on a spill or on more than 128 registers, except those in xtask/programs/exceptions.toml.
 
     cargo xtask figures [TECHNIQUE ...]
         Makes the images of docs/ and the README, or only those of the named techniques in docs/limits.md.
@@ -138,7 +139,7 @@ fn main() -> ExitCode {
         "site" => site::run(rest),
         "setup" => machine::set_up(),
         other => {
-            eprintln!("xtask: there is no command `{other}`; there are {}", commands().join(", "));
+            eprintln!("xtask: there is no command `{other}`; available: {}", commands().join(", "));
             return ExitCode::from(2);
         }
     };

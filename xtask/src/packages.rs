@@ -80,7 +80,7 @@ pub fn run() -> Result<(), String> {
         check_program(nightly(), "nightly", &folder.0)
     } else {
         eprintln!(
-            "xtask: SKIPPED a program outside with nightly: it is not installed (`rustup toolchain add nightly`)"
+            "xtask: SKIPPED the program outside the repository with nightly, which is not installed (`rustup toolchain add nightly`)"
         );
         Ok(())
     }
@@ -103,15 +103,15 @@ fn unpacked_program() -> Result<Folder, String> {
     for name in PUBLISHED {
         let unpacked = unpack(name, &folder.0)?;
         if let Some(file) = IN_EACH.iter().find(|file| !unpacked.join(file).is_file()) {
-            return Err(format!("the package {name} lacks {file}: give crates/{name} one"));
+            return Err(format!("the package {name} lacks {file}: add it to crates/{name}"));
         }
     }
     if folder.0.join("antumbra/linked/test").exists() {
-        return Err("the package antumbra holds linked/test: its Cargo.toml has to exclude it".to_owned());
+        return Err("the package antumbra contains linked/test: exclude it in Cargo.toml".to_owned());
     }
     write(&folder.0.join("Cargo.toml"), MANIFEST)?;
     write(&folder.0.join("src/main.rs"), PROGRAM)?;
-    eprintln!("xtask: {} crates packaged after {} s", PUBLISHED.len(), began.elapsed().as_secs());
+    eprintln!("xtask: packaged {} crates after {} s", PUBLISHED.len(), began.elapsed().as_secs());
     Ok(folder)
 }
 
@@ -127,7 +127,7 @@ fn of_program(mut cargo: Command, toolchain: &str, folder: &Path) -> Command {
 fn check_program(cargo: Command, toolchain: &str, folder: &Path) -> Result<(), String> {
     let began = Instant::now();
     shell::run(of_program(cargo, toolchain, folder).args(["check", "--quiet"]))?;
-    eprintln!("xtask: a program outside compiles with {toolchain}; {} s", began.elapsed().as_secs());
+    eprintln!("xtask: the program outside the repository compiles with {toolchain}; {} s", began.elapsed().as_secs());
     Ok(())
 }
 
@@ -138,11 +138,13 @@ fn run_program(folder: &Path) -> Result<(), String> {
     cargo.args(["run", "--quiet"]);
     let techniques = shell::output(&mut cargo)?;
     if !techniques.lines().any(|name| name == "pcss") {
-        return Err(format!("a program outside should print the techniques' names, and printed `{techniques}`"));
+        return Err(format!(
+            "the program outside the repository should print the techniques' names, but printed `{techniques}`"
+        ));
     }
     let count = techniques.lines().count();
     let seconds = began.elapsed().as_secs();
-    eprintln!("xtask: a program outside built and ran in {seconds} s and knows {count} techniques");
+    eprintln!("xtask: the program outside the repository was built and run in {seconds} s, and has {count} techniques");
     Ok(())
 }
 
@@ -153,7 +155,7 @@ fn unpack(name: &str, to: &Path) -> Result<PathBuf, String> {
     shell::run(Command::new("tar").arg("-xzf").arg(archive).arg("-C").arg(to))?;
     let unpacked = to.join(name);
     std::fs::rename(to.join(versioned), &unpacked)
-        .map_err(|error| format!("{}: cannot be made: {error}", unpacked.display()))?;
+        .map_err(|error| format!("cannot create {}: {error}", unpacked.display()))?;
     Ok(unpacked)
 }
 
@@ -161,7 +163,7 @@ fn write(file: &Path, text: &str) -> Result<(), String> {
     file.parent()
         .map_or(Ok(()), std::fs::create_dir_all)
         .and_then(|()| std::fs::write(file, text))
-        .map_err(|error| format!("{}: cannot write it: {error}", file.display()))
+        .map_err(|error| format!("cannot write {}: {error}", file.display()))
 }
 
 /// New folder, removed when dropped.
@@ -170,7 +172,7 @@ struct Folder(PathBuf);
 impl Folder {
     fn new() -> Result<Self, String> {
         let path = std::env::temp_dir().join(format!("antumbra-outside-{}", std::process::id()));
-        std::fs::create_dir(&path).map_err(|error| format!("{}: cannot make it: {error}", path.display()))?;
+        std::fs::create_dir(&path).map_err(|error| format!("cannot create {}: {error}", path.display()))?;
         Ok(Self(path))
     }
 }

@@ -11,14 +11,14 @@ use crate::machine::{self, Need};
 use crate::shell::{self, find};
 
 const VALIDATOR: [Need; 1] = [Need {
-    why: "spirv-val, which judges SPIR-V",
+    why: "spirv-val, which validates SPIR-V",
     met: || find("spirv-val").is_some(),
     packages: &["spirv-tools"],
     otherwise: "install SPIRV-Tools",
 }];
 
 const PIP: [Need; 1] = [Need {
-    why: "pip, which brings DXC",
+    why: "pip, which downloads DXC",
     met: || pip().is_some(),
     packages: &["python3-pip"],
     otherwise: "install pip for Python 3",
@@ -39,7 +39,7 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     match arguments {
         [] => {}
         [option, _] if option == "--only" => {}
-        _ => return Err("`cargo xtask portability` takes `--only TEXT` or nothing".into()),
+        _ => return Err("`cargo xtask portability` takes only `--only TEXT`".into()),
     }
     let began = Instant::now();
     let mut command = Command::new(shell::built_of_workspace("antumbra-programs")?);
@@ -50,27 +50,31 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     }
     match machine::install(&VALIDATOR).map(|()| find("spirv-val")) {
         Ok(Some(validator)) => drop(command.arg("--spirv-val").arg(validator)),
-        Ok(None) => eprintln!("xtask: SKIPPED spirv-val: it is not on the path"),
+        Ok(None) => eprintln!("xtask: SKIPPED spirv-val: it is not in PATH"),
         Err(lack) => eprintln!("xtask: SKIPPED spirv-val: {lack}"),
     }
     shell::run(&mut command)?;
-    eprintln!("xtask: programs checked for other systems in {} s", began.elapsed().as_secs());
+    eprintln!("xtask: checked programs for other systems in {} s", began.elapsed().as_secs());
     Ok(())
 }
 
 /// Returns DXC's library: the one named by the variable, else a copy in `target/tools`, downloaded if necessary.
 fn dxc() -> Result<PathBuf, String> {
     if let Some(named) = std::env::var_os(VARIABLE).map(PathBuf::from) {
-        return if named.is_file() { Ok(named) } else { Err(format!("{VARIABLE} names no file: {}", named.display())) };
+        return if named.is_file() {
+            Ok(named)
+        } else {
+            Err(format!("{VARIABLE} does not name a file: {}", named.display()))
+        };
     }
     let folder = crate::root().join("target/tools/dxc");
     let library = folder.join(LIBRARY);
     if library.is_file() {
         return Ok(library);
     }
-    let by_hand = format!("set {VARIABLE} to the path of a {LIBRARY} of DirectXShaderCompiler's releases");
+    let by_hand = format!("set {VARIABLE} to the path of a {LIBRARY} from a release of DirectXShaderCompiler");
     if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
-        return Err(format!("there is no package of it for this system: {by_hand}"));
+        return Err(format!("there is no package of DXC for this system: {by_hand}"));
     }
     let unfinished = folder.join(format!("unfinished-{}", std::process::id()));
     let outcome = bring(&unfinished, &library);
@@ -82,19 +86,19 @@ fn dxc() -> Result<PathBuf, String> {
 /// Downloads the package and extracts the library.
 fn bring(unfinished: &Path, library: &Path) -> Result<(), String> {
     machine::install(&PIP)?;
-    let mut pip = pip().ok_or("there is no pip")?;
-    eprintln!("xtask: bringing DXC into {}, 30 MB", library.display());
+    let mut pip = pip().ok_or("pip is missing")?;
+    eprintln!("xtask: downloading DXC (30 MB) to {}", library.display());
     let unpacked = unfinished.join("unpacked");
     std::fs::create_dir_all(&unpacked).map_err(|error| format!("{}: {error}", unpacked.display()))?;
     shell::run(
         pip.args(["download", "--quiet", "--no-deps", "--only-binary=:all:", PACKAGE, "--dest"]).arg(unfinished),
     )?;
-    let package = file_in(unfinished, |name| name.ends_with(".whl")).ok_or("pip brought no wheel")?;
+    let package = file_in(unfinished, |name| name.ends_with(".whl")).ok_or("pip downloaded no wheel")?;
     // A wheel is a zip archive, which Python can extract.
     shell::run(python().args(["-m", "zipfile", "-e"]).args([&package, &unpacked]))?;
     let found = file_in(&unpacked, |name| name == LIBRARY).ok_or_else(|| format!("{PACKAGE} has no {LIBRARY}"))?;
     // The rename is atomic. If another process was faster, its result is equivalent.
-    std::fs::rename(found, library).map_err(|error| format!("{}: cannot be made: {error}", library.display()))
+    std::fs::rename(found, library).map_err(|error| format!("cannot create {}: {error}", library.display()))
 }
 
 fn python() -> Command {

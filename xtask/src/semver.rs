@@ -21,10 +21,10 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
     let baseline = match words[..] {
         [] => last_release(),
         ["--baseline", revision] => Some(revision.to_owned()),
-        _ => return Err("`cargo xtask semver` takes `--baseline REVISION` or nothing".into()),
+        _ => return Err("`cargo xtask semver` takes only `--baseline REVISION`".into()),
     };
     let Some(baseline) = baseline else {
-        eprintln!("xtask: no tag v* here, so there is no release whose API could be compared");
+        eprintln!("xtask: there is no tag v*, so there is no release to compare the API with");
         return Ok(());
     };
     let tool = tool()?;
@@ -55,7 +55,7 @@ fn tool() -> Result<PathBuf, String> {
 
 fn install(tools: &Path) -> Result<(), String> {
     eprintln!(
-        "xtask: installing cargo-semver-checks {TOOL} in {}, by cargo: ten minutes on two cores",
+        "xtask: installing cargo-semver-checks {TOOL} in {} with cargo, which takes ten minutes on two cores",
         tools.display()
     );
     let install = ["install", "--quiet", "--locked", "cargo-semver-checks", "--version", TOOL, "--root"];

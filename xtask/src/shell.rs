@@ -21,7 +21,7 @@ pub fn run(command: &mut Command) -> Result<(), String> {
     match command.status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("`{shown}` failed: {status}")),
-        Err(error) => Err(format!("`{shown}` cannot be run: {error}")),
+        Err(error) => Err(format!("cannot run `{shown}`: {error}")),
     }
 }
 
@@ -35,7 +35,7 @@ pub fn output(command: &mut Command) -> Result<String, String> {
     match command.stderr(Stdio::inherit()).output() {
         Ok(output) if output.status.success() => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
         Ok(output) => Err(format!("`{shown}` failed: {}", output.status)),
-        Err(error) => Err(format!("`{shown}` cannot be run: {error}")),
+        Err(error) => Err(format!("cannot run `{shown}`: {error}")),
     }
 }
 
@@ -78,7 +78,7 @@ pub fn built_of_workspace(name: &str) -> Result<PathBuf, String> {
 }
 
 fn beside_us(name: &str) -> Result<PathBuf, String> {
-    let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
+    let own = std::env::current_exe().map_err(|error| format!("cannot find the path of this program: {error}"))?;
     let binary = own.with_file_name(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     if binary.is_file() { Ok(binary) } else { Err(format!("expected the built command at {}", binary.display())) }
 }

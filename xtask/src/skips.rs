@@ -20,7 +20,7 @@ impl Skips {
     /// If the file cannot be created.
     pub fn new() -> Result<Self, String> {
         // In the build folder, which contains this program.
-        let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
+        let own = std::env::current_exe().map_err(|error| format!("cannot find the path of this program: {error}"))?;
         let path = own.with_file_name(format!("skipped-{}.txt", std::process::id()));
         std::fs::write(&path, "").map_err(|error| format!("{}: {error}", path.display()))?;
         Ok(Self { path })
@@ -34,7 +34,7 @@ impl Skips {
     /// Prints the number of skipped tests for each reason.
     pub fn report(self) {
         for (reason, count) in counted(&std::fs::read_to_string(&self.path).unwrap_or_default()) {
-            eprintln!("xtask: SKIPPED {count} tests or parts of them: {reason}");
+            eprintln!("xtask: SKIPPED {count} tests or parts of tests: {reason}");
         }
         // A remaining file in the build folder is harmless.
         let _ = std::fs::remove_file(&self.path);

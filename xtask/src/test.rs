@@ -62,7 +62,9 @@ pub fn run(arguments: &[String], missing: Missing) -> Result<(), String> {
             // the tests find its dependencies.
             timed("built", || run_locked(&["build", "--workspace", "--exclude", "xtask"], &[]))?;
             shell::run(std::process::Command::new(shell::built_binary()?).arg("doctor").envs(driver.variables()))
-                .map_err(|problem| format!("no graphics adapter works here, and most tests need one: {problem}"))?;
+                .map_err(|problem| {
+                    format!("no graphics adapter works on this machine, but most tests need one: {problem}")
+                })?;
         }
         let lint = || {
             if component("clippy", "clippy", missing)? {
@@ -153,7 +155,7 @@ fn component(subcommand: &str, name: &str, missing: Missing) -> Result<bool, Str
         return Ok(true);
     }
     if find("rustup").is_some() {
-        eprintln!("xtask: this toolchain lacks {name}; asking rustup for it");
+        eprintln!("xtask: this toolchain lacks {name}; installing it with rustup");
         if shell::run(std::process::Command::new("rustup").args(["component", "add", name])).is_ok() && here() {
             return Ok(true);
         }

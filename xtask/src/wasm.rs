@@ -38,7 +38,7 @@ pub fn check(missing: Missing) -> Result<(), String> {
         }
     };
     shell::run(&mut check)?;
-    eprintln!("xtask: wasm32 checked in {} s", began.elapsed().as_secs());
+    eprintln!("xtask: checked wasm32 in {} s", began.elapsed().as_secs());
     Ok(())
 }
 
@@ -54,7 +54,7 @@ pub fn compiler(arguments: &[&str]) -> Result<Command, String> {
         library.is_ok_and(|printed| Path::new(String::from_utf8_lossy(&printed.stdout).trim()).is_dir())
     };
     if !ours_is_here() && find("rustup").is_some() {
-        eprintln!("xtask: this toolchain lacks {TARGET}; asking rustup for it");
+        eprintln!("xtask: this toolchain lacks {TARGET}; installing it with rustup");
         // If rustup's server is unreachable, Debian's may still be reachable.
         let _ = succeeds(Command::new("rustup").args(["target", "add", TARGET]));
     }

@@ -78,7 +78,7 @@ fn say(
     let frame_ms = diagnostics.get(&FrameTimeDiagnosticsPlugin::FRAME_TIME).and_then(|time| time.smoothed());
     let counts = counts.get();
     window.title = format!(
-        "{} {:?}: {:.1} ms a frame, {:.2} ms of the processor for shadows of {} lights and {} casters",
+        "{} {:?}: {:.1} ms per frame, {:.2} ms of CPU time for the shadows of {} lights and {} casters",
         settings.technique.kind().title(),
         settings.quality,
         frame_ms.unwrap_or_default(),

@@ -20,14 +20,14 @@ pub enum MeshError {
     #[error("a mesh is not on the GPU yet")]
     NotThere,
     /// The mesh is not a triangle list.
-    #[error("a mesh of {0:?} casts no shadow: only lists of triangles do")]
+    #[error("a mesh of {0:?} casts no shadow: only triangle lists are supported")]
     Topology(PrimitiveTopology),
     /// The mesh has no positions, or in an unknown format.
-    #[error("a mesh with positions of {0:?} casts no shadow: only Float32x3 and Snorm16x4 are known")]
+    #[error("a mesh with positions of {0:?} casts no shadow: only Float32x3 and Snorm16x4 are supported")]
     Positions(Option<VertexFormat>),
     /// The mesh has a skeleton, and its joints or weights are missing or of an unknown format.
     #[error(
-        "a mesh with joints of {0:?} and weights of {1:?} casts no shadow: Uint16x4, and Float32x4 or Unorm16x4 are known"
+        "a mesh with joints of {0:?} and weights of {1:?} casts no shadow: only Uint16x4 with Float32x4 or Unorm16x4 is supported"
     )]
     Joints(Option<VertexFormat>, Option<VertexFormat>),
     /// The mesh exceeds the range of a shader's 32-bit offsets.

@@ -46,8 +46,8 @@ Start here:
 
 SCENE is a .glb or .gltf file, or builtin:NAME (`antumbra scenes` lists them). Names are not case-sensitive.
 
-Exit codes: 0 success; 2 wrong arguments or input file; 3 no usable adapter or feature; 4 the deadline came before the end; 130 interrupted; \
-1 anything else. Output files appear complete or not at all.")]
+Exit codes: 0 success; 2 wrong arguments or input file; 3 no usable adapter or feature; 4 the deadline ended the run early; 130 \
+interrupted; 1 any other error. Output files are written completely or not at all.")]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,

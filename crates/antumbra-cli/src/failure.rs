@@ -44,22 +44,22 @@ impl fmt::Display for Failure {
 
 /// Location of the results of a run that ended early.
 #[derive(Debug)]
-pub enum Kept<'a> {
+pub enum SavedResults<'a> {
     /// No results were written.
     Nothing,
     /// A file that cannot be resumed.
-    Alone(&'a Path),
+    NotResumable(&'a Path),
     /// A file or folder that `--resume` continues.
-    ToResume(&'a Path),
+    Resumable(&'a Path),
 }
 
-impl fmt::Display for Kept<'_> {
+impl fmt::Display for SavedResults<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Nothing => f.write_str("nothing was written"),
-            Self::Alone(path) => write!(f, "what was measured is in {}", path.display()),
-            Self::ToResume(path) => {
-                write!(f, "what was measured is in {}, and the same line with --resume continues", path.display())
+            Self::NotResumable(path) => write!(f, "results so far are in {}", path.display()),
+            Self::Resumable(path) => {
+                write!(f, "results so far are in {}; run the same command with --resume to continue", path.display())
             }
         }
     }
@@ -67,14 +67,18 @@ impl fmt::Display for Kept<'_> {
 
 impl Failure {
     /// Failure of a run that its deadline ended: names what is missing, out of how many, and where the results are.
-    pub fn incomplete<T: AsRef<str>>(missing: &[T], of: usize, kept: &Kept<'_>) -> Self {
+    pub fn incomplete<T: AsRef<str>>(missing: &[T], of: usize, kept: &SavedResults<'_>) -> Self {
         const NAMED: usize = 8;
         let mut names: Vec<&str> = missing.iter().take(NAMED).map(AsRef::as_ref).collect();
         let more = format!("and {} more", missing.len().saturating_sub(NAMED));
         if missing.len() > NAMED {
             names.push(&more);
         }
-        Self::Incomplete(format!("the deadline left out {} of {of}: {}; {kept}", missing.len(), names.join("; ")))
+        Self::Incomplete(format!(
+            "the deadline ended the run before {} of {of}: {}; {kept}",
+            missing.len(),
+            names.join("; ")
+        ))
     }
 }
 

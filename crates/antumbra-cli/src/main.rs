@@ -21,7 +21,7 @@ use clap::Parser;
 use clap::error::ErrorKind;
 
 use args::{Cli, Command};
-use failure::{Failure, Kept};
+use failure::{Failure, SavedResults};
 use progress::Bars;
 
 fn main() -> ExitCode {
@@ -31,7 +31,7 @@ fn main() -> ExitCode {
         Err(error) => return report_usage(&error),
     };
     if let Err(error) = ctrlc::set_handler(stop) {
-        tell(&format_args!("Ctrl-C will stop without cleaning up: {error}"));
+        tell(&format_args!("cannot handle Ctrl-C, which will leave unfinished files behind: {error}"));
     }
     let bars = Bars::new(cli.quiet);
     let outcome = match cli.command {
@@ -64,7 +64,7 @@ fn main() -> ExitCode {
 fn keep_wayland_quiet() {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         // SAFETY: no other thread has been started yet, so no other code reads the environment.
-        #[expect(unsafe_code, reason = "the Vulkan loader takes this from the environment alone")]
+        #[expect(unsafe_code, reason = "the Vulkan loader reads this only from the environment")]
         unsafe {
             std::env::set_var("NODEVICE_SELECT", "1");
         }
@@ -75,8 +75,8 @@ fn keep_wayland_quiet() {
 fn stop() {
     antumbra_lab::output_files::remove_unfinished();
     match &*KEPT.lock().unwrap_or_else(PoisonError::into_inner) {
-        Some(path) => tell(&format_args!("interrupted; {}", Kept::ToResume(path))),
-        None => tell(&"interrupted; nothing half-written is left"),
+        Some(path) => tell(&format_args!("interrupted; {}", SavedResults::Resumable(path))),
+        None => tell(&"interrupted; no unfinished file was left"),
     }
     leave_at_once(INTERRUPTED);
 }
@@ -96,7 +96,7 @@ const INTERRUPTED: i32 = 130;
 fn leave_at_once(code: i32) -> ! {
     #[cfg(unix)]
     // SAFETY: `_exit` accepts any number, never returns and touches no memory of this process.
-    #[expect(unsafe_code, reason = "the standard library ends a process only with its destructors, or by an abort")]
+    #[expect(unsafe_code, reason = "the standard library ends a process only with destructors or by an abort")]
     unsafe {
         libc::_exit(code)
     }
@@ -113,7 +113,7 @@ fn report_usage(error: &clap::Error) -> ExitCode {
             ExitCode::SUCCESS
         }
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => match given_command() {
-            Some(_) => refused("one of its commands is missing"),
+            Some(_) => refused("every command is in the list"),
             None => {
                 let _ = error.print();
                 ExitCode::from(2)

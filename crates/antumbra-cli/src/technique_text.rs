@@ -10,5 +10,5 @@ pub fn plain(text: &str) -> String {
 /// List of all techniques with their uses, for `--help`.
 pub fn techniques_help() -> String {
     let rows = TechniqueKind::ALL.iter().map(|kind| format!("  {:20} {}\n", kind.name(), plain(kind.facts().good_for)));
-    format!("Good for:\n{}\n`antumbra techniques` says where each fails, too.", rows.collect::<String>())
+    format!("Good for:\n{}\n`antumbra techniques` also lists where each fails.", rows.collect::<String>())
 }

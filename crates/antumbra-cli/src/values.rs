@@ -44,7 +44,7 @@ pub struct Technique {
 pub struct Techniques(pub Vec<Technique>);
 
 pub fn size(text: &str) -> Result<UVec2, String> {
-    let right = || format!("a size is WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE_PX}, such as 1280x720");
+    let right = || format!("expected WIDTHxHEIGHT in pixels, each from 1 to {MAX_SIDE_PX}, such as 1280x720");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(right)?;
     let side = |text: &str| text.parse().ok().filter(|side| (1..=MAX_SIDE_PX).contains(side)).ok_or_else(right);
     Ok(UVec2::new(side(width)?, side(height)?))
@@ -56,7 +56,7 @@ pub fn scene(text: &str) -> Result<String, String> {
 }
 
 pub fn time(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|t: &f32| t.is_finite()).ok_or_else(|| "a time is a number of seconds, such as 1.5".into())
+    text.parse().ok().filter(|t: &f32| t.is_finite()).ok_or_else(|| "expected a number of seconds, such as 1.5".into())
 }
 
 pub fn samples(text: &str) -> Result<u32, String> {
@@ -74,7 +74,7 @@ pub fn warm_up(text: &str) -> Result<u32, String> {
 /// Parses a time limit in seconds, up to about eleven days.
 pub fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0 && *seconds <= 1e6);
-    seconds.map(Duration::from_secs_f64).ok_or_else(|| "it takes seconds above 0, such as 60 or 0.5".into())
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "expected a number of seconds above 0, such as 60 or 0.5".into())
 }
 
 pub fn minutes(text: &str) -> Result<u32, String> {
@@ -83,14 +83,14 @@ pub fn minutes(text: &str) -> Result<u32, String> {
 
 fn whole_number(text: &str, low: u32, high: u32) -> Result<u32, String> {
     let number = text.parse().ok().filter(|n| (low..=high).contains(n));
-    number.ok_or_else(|| format!("it takes a whole number from {low} to {high}"))
+    number.ok_or_else(|| format!("expected a whole number from {low} to {high}"))
 }
 
 pub fn truth(text: &str) -> Result<Truth, String> {
     match text.to_lowercase().as_str() {
         "traced" => Ok(Truth::Traced),
         "filtered" => Ok(Truth::Filtered),
-        _ => Err("it takes traced or filtered".into()),
+        _ => Err("expected traced or filtered".into()),
     }
 }
 
@@ -114,12 +114,12 @@ pub fn is_all(name: &str) -> bool {
 
 fn motion(name: &str) -> Result<Motion, String> {
     named(name, &Motion::ALL, Motion::name)
-        .map_err(|(near, list)| format!("`{name}` does not move{near}; {list} do, or all"))
+        .map_err(|(near, list)| format!("there is no motion `{name}`{near}; expected {list} or all"))
 }
 
 pub fn suite_part(text: &str) -> Result<Part, String> {
     named(text.trim(), &Part::ALL, Part::name)
-        .map_err(|(near, list)| format!("`{text}` is no table of the suite{near}; it has {list}"))
+        .map_err(|(near, list)| format!("the suite has no table `{text}`{near}; it has {list}"))
 }
 
 /// Finds a value by its name. The error has a suggestion and the list of names.
@@ -135,12 +135,12 @@ pub fn motion_frames(text: &str) -> Result<u32, String> {
 
 pub fn step(text: &str) -> Result<f32, String> {
     let metres = text.parse().ok().filter(|metres| (0.0..=1000.0).contains(metres));
-    metres.ok_or_else(|| "it takes metres from 0 to 1000, such as 0.15".into())
+    metres.ok_or_else(|| "expected a distance in metres from 0 to 1000, such as 0.15".into())
 }
 
 pub fn distance(text: &str) -> Result<f32, String> {
     let metres = text.parse().ok().filter(|metres: &f32| *metres > 0.0 && metres.is_finite());
-    metres.ok_or_else(|| "it takes metres above 0, such as 150".into())
+    metres.ok_or_else(|| "expected a distance in metres above 0, such as 150".into())
 }
 
 pub fn technique(text: &str) -> Result<Technique, String> {
@@ -157,14 +157,14 @@ pub fn technique(text: &str) -> Result<Technique, String> {
     }
     let list =
         all_of(quality, Extras::default()).iter().map(|technique| technique.kind.name()).collect::<Vec<_>>().join(", ");
-    Err(format!("`{kind}` has no setting `{quality}`; {list} have"))
+    Err(format!("`{kind}` has no preset `{quality}`; techniques that have it: {list}"))
 }
 
 pub fn preset(id: &str) -> Result<Preset, String> {
     let known = || PRESETS.iter().map(|preset| preset.paper);
     PRESETS.iter().find(|preset| preset.paper.eq_ignore_ascii_case(id)).copied().ok_or_else(|| {
         let list = known().collect::<Vec<_>>().join(", ");
-        format!("there is no preset `{id}`{}; there are {list}", did_you_mean(id, known()))
+        format!("there is no preset `{id}`{}; available: {list}", did_you_mean(id, known()))
     })
 }
 
@@ -179,7 +179,7 @@ pub fn quality(name: &str) -> Result<Quality, String> {
     let known = || Quality::ALL.into_iter().map(Quality::name);
     Quality::from_name(name).ok_or_else(|| {
         let list = known().collect::<Vec<_>>().join(", ");
-        format!("there is no quality `{name}`{}; there are {list}", did_you_mean(name, known()))
+        format!("there is no quality `{name}`{}; available: {list}", did_you_mean(name, known()))
     })
 }
 
@@ -187,7 +187,7 @@ pub fn kind(name: &str) -> Result<TechniqueKind, String> {
     let known = || TechniqueKind::ALL.iter().map(|kind| kind.name());
     TechniqueKind::from_name(name).ok_or_else(|| {
         let list = known().collect::<Vec<_>>().join(", ");
-        format!("there is no technique `{name}`{}; there are {list}", did_you_mean(name, known()))
+        format!("there is no technique `{name}`{}; available: {list}", did_you_mean(name, known()))
     })
 }
 
@@ -237,7 +237,7 @@ pub fn kinds(text: &str) -> Result<Kinds, String> {
 }
 
 pub fn budget(text: &str) -> Result<Budget, String> {
-    let right = || "it takes milliseconds, such as 4ms, or times what pcf takes, such as 4x".to_owned();
+    let right = || "expected milliseconds, such as 4ms, or a multiple of the time of pcf, such as 4x".to_owned();
     let text = text.to_lowercase();
     let (number, unit): (&str, fn(f64) -> Budget) = match (text.strip_suffix("ms"), text.strip_suffix('x')) {
         (Some(number), _) => (number, Budget::Ms),
@@ -255,12 +255,12 @@ pub fn memory(text: &str) -> Result<u64, String> {
         let number: f64 = text.strip_suffix(unit)?.trim().parse().ok()?;
         (number > 0.0 && number <= 1e6).then(|| (number * bytes) as u64)
     };
-    UNITS.iter().find_map(of).ok_or_else(|| "it takes a size, such as 512KiB, 64MiB or 1GiB".into())
+    UNITS.iter().find_map(of).ok_or_else(|| "expected a memory size, such as 512KiB, 64MiB or 1GiB".into())
 }
 
 /// Parses a root-mean-square error of visibility, above 0 and at most 1.
 pub fn roughness(text: &str) -> Result<f64, String> {
-    let right = || "it takes a fraction above 0 and at most 1, such as 0.01".to_owned();
+    let right = || "expected a fraction above 0 and at most 1, such as 0.01".to_owned();
     text.parse().ok().filter(|v| *v > 0.0 && *v <= 1.0).ok_or_else(right)
 }
 
@@ -268,12 +268,12 @@ pub fn roughness(text: &str) -> Result<f64, String> {
 pub fn bandwidth(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("want a positive number of gigabytes a second, such as 288".into()),
+        _ => Err("expected a positive number of gigabytes per second, such as 288".into()),
     }
 }
 
 pub fn shard(text: &str) -> Result<Shard, String> {
-    let right = || "it takes a part and how many there are, such as 1/4".to_owned();
+    let right = || "expected INDEX/COUNT with an index from 1 to the count, such as 1/4".to_owned();
     let (index, of) = text.split_once('/').ok_or_else(right)?;
     let number = |text: &str| text.parse::<usize>().map_err(|_| right());
     let shard = Shard { index: number(index)?, of: number(of)? };
@@ -284,12 +284,12 @@ pub fn prefer(text: &str) -> Result<Prefer, String> {
     match text.to_lowercase().as_str() {
         "still" => Ok(Prefer::Still),
         "motion" => Ok(Prefer::Motion),
-        _ => Err("it takes still or motion".into()),
+        _ => Err("expected still or motion".into()),
     }
 }
 
 pub fn setting(text: &str) -> Result<Setting, String> {
-    let form = "it takes KEY=VALUE or TECHNIQUE.KEY=VALUE, such as map_size=2048 or pcss.map_size=2048";
+    let form = "expected KEY=VALUE or TECHNIQUE.KEY=VALUE, such as map_size=2048 or pcss.map_size=2048";
     let (path, value) = text.split_once('=').ok_or(form)?;
     let (name, key) = match path.split_once('.') {
         Some((name, key)) => (Some(kind_and_quality(name.trim())?), key),
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn presets_are_of_papers_and_print_something() {
+    fn every_preset_has_techniques_as_published() {
         assert!(preset("shen-2014").unwrap_err().contains("did you mean `shen-2013`?"));
         for chosen in PRESETS {
             assert!(antumbra_lab::reproduce::PAPERS.iter().any(|paper| paper.id == chosen.paper), "{}", chosen.paper);

@@ -37,7 +37,7 @@ fn reproductions_go_into_folders_of_their_own() {
     fs::create_dir(dir.path().join("notes")).unwrap();
     fs::write(dir.path().join("notes/mine.txt"), "mine").unwrap();
     let words = ["reproduce", "--all", "-o", "notes"];
-    refuses_in(dir.path(), &words, &["cannot write notes", "nothing that was reproduced", "another folder"]);
+    refuses_in(dir.path(), &words, &["cannot write notes", "no results of `reproduce`", "another folder"]);
 }
 
 /// Files of other formats are refused with a hint how to convert them.
@@ -85,8 +85,8 @@ fn arguments() {
     refuses(&["bench", "--setup", "no-such.toml"], &["no-such.toml", "cannot be read"]);
     refuses(&["techniques", "psm"], &["psm", "hard, pcf"]);
     refuses(&["reproduce", "marrs-2014/figure99"], &["marrs-2014/figure99", "did you mean"]);
-    refuses(&["reproduce", "-o", "papers"], &["-o and --json want exhibits", "--all"]);
-    refuses(&["reproduce", "--all", "--bandwidth", "0"], &["--bandwidth", "gigabytes a second"]);
+    refuses(&["reproduce", "-o", "papers"], &["-o and --json need entries", "--all"]);
+    refuses(&["reproduce", "--all", "--bandwidth", "0"], &["--bandwidth", "gigabytes per second"]);
 }
 
 #[test]

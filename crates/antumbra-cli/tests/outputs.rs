@@ -304,7 +304,7 @@ fn what_moves_is_measured_and_shown() {
                  --caster boards -o out";
     let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(String::from_utf8_lossy(&output.stdout).contains("In motion, 3 frames of 0.15 m"));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("Motion, 3 frames of 0.15 m each"));
     let out = dir.path().join("out");
     let metrics: serde_json::Value = serde_json::from_slice(&fs::read(out.join("metrics.json")).unwrap()).unwrap();
     assert_eq!(metrics["motion"]["motions"]["caster"]["caster"], "boards");
@@ -323,7 +323,7 @@ fn what_moves_is_measured_and_shown() {
         ["compare", "builtin:overlap", "--motion", "caster", "--caster", "board", "--size", "64x36", "-o", "out"];
     let output = run(dir.path(), &unknown);
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("there are ground, boards, table"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("available: ground, boards, table"));
     assert!(out.join("images/hard_motion_camera.png").is_file());
 }
 
@@ -407,12 +407,15 @@ fn what_is_assumed_of_a_scene_is_said() {
         "buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
     fs::write(dir.path().join("t.gltf"), triangle).unwrap();
     let plain = told("reference t.gltf --samples 4 --size 32x18 -o a.png --visibility a.exr --time 3");
-    assert!(plain.contains("t has no camera, and one frames it; no lights, and a square one of"), "{plain}");
-    assert!(plain.contains("t stands on nothing, and was put on a ground; --ground=no leaves it out"), "{plain}");
+    assert!(
+        plain.contains("t has no camera, so one that frames it was added; no lights, so a square one of"),
+        "{plain}"
+    );
+    assert!(plain.contains("t has no ground, so a ground plane was added; --ground=no omits it"), "{plain}");
     let quiet = told("reference t.gltf --samples 4 --size 32x18 -o a.png --time 3 --quiet");
     assert!(quiet.is_empty(), "{quiet}");
     let bare = told("reference t.gltf --samples 4 --size 32x18 -o a.png --ground=no");
-    assert!(!bare.contains("put on a ground"), "{bare}");
+    assert!(!bare.contains("ground plane"), "{bare}");
     assert!(plain.contains("--time 3: nothing in the scene is animated"), "{plain}");
     // The camera looks from the side to which the shadow falls.
     let setup = "[camera]\neye = [2.0, 2.0, -2.0]\ntarget = [0.5, 0.0, -0.3]\n[[light]]\nshape = \"sphere\"\nradius = 0.1\n\

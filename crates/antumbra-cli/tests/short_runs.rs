@@ -209,11 +209,11 @@ fn a_deadline_ends_in_time_and_says_what_is_missing() {
             let began = Instant::now();
             let (code, _, told) = code(dir.path(), &format!("{line} --quiet --deadline {seconds}"));
             assert_eq!((code, told.lines().count()), (Some(4), 1), "{line}: {told}");
-            assert!(told.contains("the deadline left out ") && told.contains(" of "), "{told}");
+            assert!(told.contains("the deadline ended the run before ") && told.contains(" of "), "{told}");
             assert!(told.contains("; and ") && told.contains(" more"), "{told}");
             // A running frame or compilation is not interrupted.
             assert!(began.elapsed() < Duration::from_secs(60 + seconds), "{line}: {:?}", began.elapsed());
-            told.contains(" --resume continues")
+            told.contains(" --resume to continue")
         };
         assert!([4, 8, 16, 32, 64].iter().any(ends), "{line}: nothing was measured in a minute");
     }
@@ -254,7 +254,7 @@ fn a_technique_that_takes_too_long_is_cut_short_and_said() {
     }
     for line in [BENCH, COMPARE, REPRODUCE] {
         let said = works(dir.path(), &format!("{line} --technique-limit 0.000001"));
-        assert!(said.contains("cut short by the limit of 0.000001 s for a technique"), "{line}: {said}");
+        assert!(said.contains("cut short by the limit of 0.000001 s per technique"), "{line}: {said}");
     }
     let [bench, compared] = ["t.json", "out/metrics.json"].map(|name| read(&dir.path().join(name)));
     for json in [&bench, &compared] {
@@ -282,12 +282,12 @@ fn another_run_is_not_resumed() {
     refuses(
         dir.path(),
         &other(BENCH, "--frames 2", "--frames 3"),
-        &["--resume t.json: its frames is 2, and here it is 3"],
+        &["--resume t.json: its frames is 2, but this run has 3"],
     );
     refuses(dir.path(), &other(BENCH, "hard,pcf", "hard"), &["its techniques is [\"hard\",\"pcf\"]"]);
     refuses(dir.path(), &other(COMPARE, "32x18", "48x27"), &["out/metrics.json: its scene is", "48x27"]);
-    refuses(dir.path(), &other(COMPARE, "--samples 4", "--samples 9"), &["its samples is 4, and here it is 9"]);
-    refuses(dir.path(), &other(REPRODUCE, "--frames 1", "--frames 2"), &["its frames is 1, and here it is 2"]);
+    refuses(dir.path(), &other(COMPARE, "--samples 4", "--samples 9"), &["its samples is 4, but this run has 9"]);
+    refuses(dir.path(), &other(REPRODUCE, "--frames 1", "--frames 2"), &["its frames is 1, but this run has 2"]);
     for (file, line) in [("t.json", BENCH), ("out/metrics.json", COMPARE), ("papers/reproduced.json", REPRODUCE)] {
         let path = dir.path().join(file);
         let whole = fs::read_to_string(&path).unwrap();
@@ -300,7 +300,7 @@ fn another_run_is_not_resumed() {
         };
         let resume = format!("{line} --quiet --resume");
         fs::write(&path, whole.replace(&format!("\"{}\"", of(&adapter)), "\"another card\"")).unwrap();
-        refuses(dir.path(), &resume, &[file, "its adapter is \"another card\", and here it is"]);
+        refuses(dir.path(), &resume, &[file, "its adapter is \"another card\", but this run has"]);
         let commit = [&adapter["commit"], &adapter["about"]["commit"]].into_iter().find_map(Value::as_str).unwrap();
         fs::write(&path, whole.replace(&format!("\"{commit}\""), "\"0123456789ab\"")).unwrap();
         refuses(dir.path(), &resume, &[file, "its commit is \"0123456789ab\""]);
@@ -330,7 +330,7 @@ fn a_baseline_gives_ratios_and_differences() {
     }
     fs::write(dir.path().join("b.json"), bench.to_string()).unwrap();
     let said = works(dir.path(), &format!("{BENCH} --resume --baseline b.json"));
-    assert!(said.contains("Against another card") && said.contains("geometric mean of 2 times: 2.000"), "{said}");
+    assert!(said.contains("Compared with another card") && said.contains("geometric mean over 2: 2.000"), "{said}");
     assert_eq!(read(&dir.path().join("t.json"))["baseline"]["rows"][0]["ratio"], 2.0);
 
     let mut metrics = read(&dir.path().join("out/metrics.json"));
@@ -341,7 +341,7 @@ fn a_baseline_gives_ratios_and_differences() {
     }
     fs::write(dir.path().join("m.json"), metrics.to_string()).unwrap();
     let said = works(dir.path(), &format!("{COMPARE} --resume --baseline m.json"));
-    assert!(said.contains("geometric mean of 2 times: 0.250") && said.contains("+0.0625"), "{said}");
+    assert!(said.contains("geometric mean over 2: 0.250") && said.contains("+0.0625"), "{said}");
     let against = &read(&dir.path().join("out/metrics.json"))["baseline"];
     assert_eq!((&against["adapter"], against["rows"].as_array().unwrap().len()), (&"another card".into(), 2));
     for row in against["rows"].as_array().unwrap() {
@@ -350,7 +350,7 @@ fn a_baseline_gives_ratios_and_differences() {
         assert_eq!(row["differences"]["penumbra_rmse"], 0.0);
     }
     let page = fs::read_to_string(dir.path().join("out/index.html")).unwrap();
-    assert!(page.contains("id=\"baseline\"") && page.contains("Against another card"));
+    assert!(page.contains("id=\"baseline\"") && page.contains("Compared with another card"));
 
     let said = works(dir.path(), &format!("{reproduce} --baseline r.json"));
     assert!(said.contains("lauritzen-2008/figure6: ") && said.contains("+0.0000"), "{said}");
@@ -367,7 +367,7 @@ fn a_baseline_gives_ratios_and_differences() {
 
 /// A shared file contains the device's description and times, and nothing about the user.
 #[test]
-fn a_shared_file_is_of_the_card_and_of_nobody() {
+fn a_shared_file_has_no_personal_data() {
     let home = tempfile::tempdir().unwrap();
     if adapter().is_none() {
         return;

@@ -58,7 +58,7 @@ impl Device {
         let descriptor =
             wgpu::DeviceDescriptor { required_features, required_limits, ..wgpu::DeviceDescriptor::default() };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
-            .unwrap_or_else(|error| panic!("{} gives no device: {error}", adapter.get_info().name));
+            .unwrap_or_else(|error| panic!("{} cannot create a device: {error}", adapter.get_info().name));
         Self { gpu: Gpu::new(&device, &queue), adapter }
     }
 

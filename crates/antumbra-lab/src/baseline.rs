@@ -74,13 +74,13 @@ pub struct Baseline {
 
 /// Comparison of a run with another.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Against {
+pub struct BaselineComparison {
     /// Adapter of the other run.
     pub adapter: String,
     /// Commit of the other run.
     pub commit: String,
     /// Rows that both runs have.
-    pub rows: Vec<Beside>,
+    pub rows: Vec<PairedRow>,
     /// Geometric mean of the time ratios.
     pub mean_ratio: Option<f64>,
     /// Names of rows that the other run lacks.
@@ -89,7 +89,7 @@ pub struct Against {
 
 /// A row paired with the other run's.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Beside {
+pub struct PairedRow {
     /// Name of the row.
     pub name: String,
     /// Time of this run, milliseconds.
@@ -102,7 +102,7 @@ pub struct Beside {
     pub differences: Map<String, Value>,
 }
 
-impl Beside {
+impl PairedRow {
     /// Returns the difference of one error; `None` unless both runs have it.
     pub fn difference(&self, key: &str) -> Option<f64> {
         self.differences.get(key).and_then(Value::as_f64)
@@ -118,7 +118,7 @@ impl Baseline {
         let json: Value = read_json(path, source.wanted())?;
         let bad = |why: String| FileError::bad_content(path, why, source.wanted());
         if Source::of(&json) != Some(source) {
-            return Err(bad("it is none of this command".into()));
+            return Err(bad("it was not written by this command".into()));
         }
         let rows = match source {
             Source::Compare => of_metrics(&json),
@@ -142,19 +142,23 @@ impl Baseline {
         let Some((key, here)) = report.iter().find(|(key, here)| there(key) != here) else { return Ok(()) };
         // A setup is a page of text, so its values are not printed.
         let what = if *key == "setup" {
-            "its camera or lights differ from those here".to_owned()
+            "its camera or lights differ from those of this run".to_owned()
         } else {
-            format!("its {key} is {}, and here it is {here}", there(key))
+            format!("its {key} is {}, but this run has {here}", there(key))
         };
         Err(LabError::Request(format!("--baseline {}: {what}; give the metrics.json of the same view", path.display())))
     }
 
     /// Pairs rows with those of the same name.
-    pub fn against(&self, rows: &[Figures]) -> Against {
-        let mut against = Against { adapter: self.adapter.clone(), commit: self.commit.clone(), ..Against::default() };
+    pub fn against(&self, rows: &[Figures]) -> BaselineComparison {
+        let mut against = BaselineComparison {
+            adapter: self.adapter.clone(),
+            commit: self.commit.clone(),
+            ..BaselineComparison::default()
+        };
         for row in rows {
             match self.rows.iter().find(|other| other.name == row.name) {
-                Some(other) => against.rows.push(beside(row, other)),
+                Some(other) => against.rows.push(paired(row, other)),
                 None => against.not_there.push(row.name.clone()),
             }
         }
@@ -165,14 +169,14 @@ impl Baseline {
     }
 }
 
-fn beside(row: &Figures, other: &Figures) -> Beside {
+fn paired(row: &Figures, other: &Figures) -> PairedRow {
     let ratio =
         row.ms.zip(other.ms).filter(|(here, there)| *here > 0.0 && *there > 0.0).map(|(here, there)| here / there);
     let difference = |(key, here): (&String, &Value)| {
         let there = other.errors.get(key)?.as_f64()?;
         Some((key.clone(), Value::from(here.as_f64()? - there)))
     };
-    Beside {
+    PairedRow {
         name: row.name.clone(),
         ms: row.ms,
         baseline_ms: other.ms,
@@ -181,17 +185,17 @@ fn beside(row: &Figures, other: &Figures) -> Beside {
     }
 }
 
-impl Against {
+impl BaselineComparison {
     /// Returns one line: the other run, the mean ratio of times, and missing rows.
     pub fn summary(&self) -> String {
         let mean = self.mean_ratio.map_or_else(String::new, |mean| {
-            format!("; here over there, geometric mean of {} times: {mean:.3}", self.timed())
+            format!("; ratio of times to the baseline's, geometric mean over {}: {mean:.3}", self.timed())
         });
         let lacking = match self.not_there.len() {
             0 => String::new(),
             count => format!("; {count} not in the baseline: {}", self.not_there.join(", ")),
         };
-        format!("Against {} (commit {}){mean}{lacking}", self.adapter, self.commit)
+        format!("Compared with {} (commit {}){mean}{lacking}", self.adapter, self.commit)
     }
 
     fn timed(&self) -> usize {
@@ -202,7 +206,7 @@ impl Against {
     pub fn table(&self) -> Vec<Vec<String>> {
         let has_errors = self.rows.iter().any(|row| !row.differences.is_empty());
         let keys: &[&str] = if has_errors { &DIFFERENCES } else { &[] };
-        let heading = ["NAME", "MS HERE", "MS THERE", "RATIO"].map(str::to_owned).into_iter();
+        let heading = ["NAME", "MS", "BASELINE MS", "RATIO"].map(str::to_owned).into_iter();
         let differences = keys.iter().map(|key| format!("{} DIFFERENCE", key.replace('_', " ").to_uppercase()));
         let mut rows = vec![heading.chain(differences).collect::<Vec<_>>()];
         let number = |value: Option<f64>, digits| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.digits$}"));
@@ -323,11 +327,9 @@ mod tests {
         assert_eq!(against.rows[0].difference("flip"), None, "the baseline has none");
         assert_eq!((against.not_there.as_slice(), against.rows.len()), (&["vsm".to_owned()][..], 3));
         assert!((against.mean_ratio.unwrap() - 2.0_f64.sqrt()).abs() < 1e-12);
-        assert!(
-            against
-                .summary()
-                .contains("Against card (commit abc); here over there, geometric mean of 2 times: 1.414; 1 not in")
-        );
+        assert!(against.summary().contains(
+            "Compared with card (commit abc); ratio of times to the baseline's, geometric mean over 2: 1.414; 1 not in"
+        ));
         assert_eq!(against.table()[1][..5], ["hard", "1.000", "2.000", "0.500", "+0.2500"].map(str::to_owned));
     }
 
@@ -355,7 +357,7 @@ mod tests {
             (&json!({}), Source::Bench),
         ] {
             let error = read(json, source).unwrap_err();
-            assert!(error.contains("it is none of this command; give a") && error.contains("wrote"), "{error}");
+            assert!(error.contains("it was not written by this command; give a") && error.contains("wrote"), "{error}");
         }
         assert!(
             read(&json!({ "format": "antumbra-metrics", "rows": [] }), Source::Compare)
@@ -375,7 +377,7 @@ mod tests {
         let error = check("builtin:overlap", [128, 72], "[camera]").unwrap_err();
         assert_eq!(
             error,
-            "--baseline m.json: its size is [64,36], and here it is [128,72]; give the metrics.json of the same view"
+            "--baseline m.json: its size is [64,36], but this run has [128,72]; give the metrics.json of the same view"
         );
         assert!(check("builtin:tree", [64, 36], "[camera]").unwrap_err().contains("its name is \"builtin:overlap\""));
         assert!(check("builtin:overlap", [64, 36], "[camera] ").unwrap_err().contains("camera or lights"));

@@ -112,7 +112,7 @@ pub enum BenchOutcome {
 }
 
 /// Reason of rows for which no time was left.
-const NO_TIME: &str = "no time was left for it";
+const NO_TIME: &str = "no time was left";
 
 /// Rows of a run in progress.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn what_there_is_no_time_for_is_said_and_measured_when_resumed() {
+    fn rows_without_time_are_reported_and_measured_on_resume() {
         let Some(lab) = lab_or_skip() else { return };
         let scenes = scenes();
         let choices = [TechniqueKind::Hard, TechniqueKind::Pcf].map(TechniqueChoice::default_of);
@@ -366,7 +366,7 @@ mod tests {
         assert_eq!(
             run(Duration::from_secs(2), some.rows.clone()).rows,
             some.rows,
-            "a shorter limit measures nothing again"
+            "a shorter limit repeats no measurement"
         );
     }
 }

@@ -37,7 +37,7 @@ pub fn magnitude_color(unit: f32) -> [u8; 3] {
 
 /// Returns the signed error of every pixel. Coloured visibility shows the channel with the largest error. All images must have one size.
 pub fn signed_error_map(reference: &Visibility, tested: &Visibility, judged: &[bool]) -> RgbImage {
-    assert_eq!(reference.size_px, tested.size_px, "images to compare are of one size");
+    assert_eq!(reference.size_px, tested.size_px, "compared images must have equal sizes");
     let channels = reference.channel_count().max(tested.channel_count());
     rgb_image(reference.size_px, |i| {
         if !judged[i] {

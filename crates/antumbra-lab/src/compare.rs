@@ -107,7 +107,7 @@ impl CompareRequest<'_> {
 }
 
 /// Callback that receives the report whenever it has grown.
-pub type Each<'a> = &'a mut dyn FnMut(&Report) -> Result<(), LabError>;
+pub type ReportCallback<'a> = &'a mut dyn FnMut(&Report) -> Result<(), LabError>;
 
 /// Traces the ground truth, runs each technique, and measures its errors. `earlier` is an unfinished report of the same
 /// [identity](CompareRequest::identity); its results are not measured again. Measurements that are not expected to end before the deadline
@@ -121,7 +121,7 @@ pub fn compare(
     request: &CompareRequest<'_>,
     earlier: Option<Report>,
     pace: &mut Pace,
-    each: Each<'_>,
+    each: ReportCallback<'_>,
     progress: &dyn Progress,
 ) -> Result<Report, LabError> {
     let make_view = if request.coherent { View::coherent } else { View::new };
@@ -216,7 +216,7 @@ fn moving_scene<'a>(
     options: &'a MotionOptions,
 ) -> Result<MovingScene<'a>, LabError> {
     if request.truth == Truth::Filtered {
-        let why = "--motion holds techniques against traced light; leave out `--truth filtered`";
+        let why = "--motion compares techniques with traced visibility; omit `--truth filtered`";
         return Err(LabError::Request(why.into()));
     }
     MovingScene::new(lab, request.scene, request.setup, request.light, request.size_px, options)

@@ -17,7 +17,7 @@ pub struct CutShort {
 impl fmt::Display for CutShort {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let by = match self.limit {
-            Some(limit) => format!("the limit of {} s for a technique", limit.as_secs_f64()),
+            Some(limit) => format!("the limit of {} s per technique", limit.as_secs_f64()),
             None => "the deadline".to_owned(),
         };
         let frames = match self.frames {

@@ -29,7 +29,7 @@ pub enum DeviceError {
     )]
     NoAdapter,
     /// The requested adapter does not exist.
-    #[error("no adapter whose name, driver or backend contains `{wanted}`; there are: {available}")]
+    #[error("no adapter has a name, driver or backend that contains `{wanted}`; available: {available}")]
     NoSuchAdapter {
         /// Requested name.
         wanted: String,
@@ -53,7 +53,7 @@ pub enum DeviceError {
         first: String,
     },
     /// The device was lost.
-    #[error("the graphics device was lost: {reason}; if the picture is large, try a smaller one")]
+    #[error("the graphics device was lost: {reason}; if the image is large, try a smaller one")]
     Lost {
         /// Message of the driver.
         reason: String,
@@ -248,7 +248,7 @@ fn open(
     };
     let mut short = Vec::new();
     required_limits.check_limits_with_fail_fn(&report.limits, false, |name, needed, had| {
-        short.push(format!("its {name} is {had}, and WebGPU's least is {needed}"));
+        short.push(format!("its {name} is {had}, below WebGPU's minimum of {needed}"));
     });
     if !short.is_empty() {
         return Err(unusable(short.join("; ")));

@@ -30,7 +30,9 @@ pub enum LabError {
     #[error(transparent)]
     File(#[from] FileError),
     /// A technique ran out of space for its lists, however far they were enlarged.
-    #[error("{technique}: {overflow}, however often the frame was drawn again; lower the map's or the image's size")]
+    #[error(
+        "{technique}: {overflow}, even after the frame was drawn several times; reduce the size of the map or the image"
+    )]
     NoRoom {
         /// Technique that failed.
         technique: antumbra::TechniqueKind,

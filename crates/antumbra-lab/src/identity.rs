@@ -46,7 +46,7 @@ impl Identity {
     pub fn check(&self, path: &Path, there: &Value) -> Result<(), LabError> {
         let Some((key, there, here)) = self.difference(there) else { return Ok(()) };
         Err(LabError::Request(format!(
-            "--resume {}: its {key} is {}, and here it is {}; repeat the command that wrote it, or leave out --resume to measure anew",
+            "--resume {}: its {key} is {}, but this run has {}; repeat the command that wrote it, or omit --resume to measure again",
             path.display(),
             short(&there),
             short(&here)
@@ -71,7 +71,7 @@ impl Identity {
 /// Returns a value as one line, truncated to 80 characters.
 fn short(value: &Value) -> String {
     let text = match value {
-        Value::Null => return "not in it".to_owned(),
+        Value::Null => return "none".to_owned(),
         value => value.to_string(),
     };
     if text.chars().count() > 80 { format!("{}…", text.chars().take(79).collect::<String>()) } else { text }
@@ -82,13 +82,13 @@ fn short(value: &Value) -> String {
 /// # Errors
 /// If the file cannot be read, or is not JSON of this format.
 pub fn read_to_resume(path: &Path, format: &str) -> Result<Option<Value>, LabError> {
-    const REMEDY: &str = "leave out --resume to measure anew, or name another file";
+    const REMEDY: &str = "omit --resume to measure again, or name another file";
     if !path.exists() {
         return Ok(None);
     }
     let value: Value = read_json(path, REMEDY)?;
     if value["format"] != format {
-        return Err(FileError::bad_content(path, format!("it is no file of the format {format}"), REMEDY).into());
+        return Err(FileError::bad_content(path, format!("it is not a file of the format {format}"), REMEDY).into());
     }
     Ok(Some(value))
 }
@@ -112,15 +112,15 @@ mod tests {
         };
         identity().check(Path::new("t.json"), &same).unwrap();
         assert!(refused("commit", json!("def")).starts_with(
-            "--resume t.json: its commit is \"def\", and here it is \"abc\"; repeat the command that wrote it, or leave out --resume"
+            "--resume t.json: its commit is \"def\", but this run has \"abc\"; repeat the command that wrote it, or omit --resume"
         ));
-        assert!(refused("adapter", json!("other")).contains("its adapter is \"other\", and here it is \"card\""));
+        assert!(refused("adapter", json!("other")).contains("its adapter is \"other\", but this run has \"card\""));
         assert!(refused("antumbra", json!("0.9.0")).contains("its antumbra is \"0.9.0\""));
         let frames = refused("settings", json!({ "frames": 9, "size": [64, 36] }));
-        assert!(frames.contains("its frames is 9, and here it is 5"), "{frames}");
+        assert!(frames.contains("its frames is 9, but this run has 5"), "{frames}");
         let more = refused("settings", json!({ "frames": 5, "size": [64, 36], "other_key": 1 }));
-        assert!(more.contains("its other key is 1, and here it is not in it"), "{more}");
-        assert!(refused("settings", Value::Null).contains("its settings is not in it"));
+        assert!(more.contains("its other key is 1, but this run has none"), "{more}");
+        assert!(refused("settings", Value::Null).contains("its settings is none"));
     }
 
     #[test]

@@ -133,7 +133,7 @@ pub fn traced(
             })
         };
         let running: Vec<_> = receivers.points.chunks(chunk).enumerate().map(part).collect();
-        running.into_iter().map(|part| part.join().expect("a part that does not panic")).collect()
+        running.into_iter().map(|part| part.join().expect("threads do not panic")).collect()
     });
     Ok(parts.concat())
 }

@@ -51,13 +51,13 @@ impl<'a> Planned<'a> {
 
 /// A completed measurement.
 #[derive(Clone, Debug)]
-struct Spent {
+struct CompletedMeasurement {
     technique: String,
     pixels: u64,
     seconds: f64,
 }
 
-impl Spent {
+impl CompletedMeasurement {
     /// Returns the estimated time at another number of pixels. Fewer pixels take as long, because of compilation and casters.
     fn expected_s(&self, pixels: u64) -> f64 {
         self.seconds * (pixels as f64 / self.pixels.max(1) as f64).max(1.0)
@@ -68,7 +68,7 @@ impl Spent {
 #[derive(Clone, Debug, Default)]
 pub struct Pace {
     limits: Limits,
-    spent: Vec<Spent>,
+    spent: Vec<CompletedMeasurement>,
 }
 
 impl Pace {
@@ -80,7 +80,7 @@ impl Pace {
     /// Records the time of a measurement, of this run or of the one that it resumes.
     pub fn took(&mut self, planned: Planned<'_>, seconds: f64) {
         let Planned { technique, pixels } = planned;
-        self.spent.push(Spent { technique: technique.to_owned(), pixels, seconds });
+        self.spent.push(CompletedMeasurement { technique: technique.to_owned(), pixels, seconds });
     }
 
     /// Makes a measurement and records its time. `None` if it is not expected to end before the deadline, or did not.
@@ -119,7 +119,7 @@ impl Pace {
 
     /// Returns the expected time of a measurement, seconds; zero if nothing is known, and at most the technique's limit.
     fn expected_s(&self, planned: Planned<'_>) -> f64 {
-        let of = |spent: &&Spent| spent.technique == planned.technique;
+        let of = |spent: &&CompletedMeasurement| spent.technique == planned.technique;
         let same = self.spent.iter().filter(of).map(|spent| spent.expected_s(planned.pixels)).reduce(f64::max);
         let mut all: Vec<f64> = self.spent.iter().map(|spent| spent.expected_s(planned.pixels)).collect();
         all.sort_by(f64::total_cmp);
@@ -207,7 +207,7 @@ mod tests {
         let planned = Planned::new("pcss", SIZE_PX);
         assert_eq!(pace.measure(planned, |_| Err::<(), _>(cut(None))).unwrap(), None);
         let error = pace.measure(planned, |_| Err::<(), _>(cut(Some(Duration::from_millis(500))))).unwrap_err();
-        assert_eq!(error.to_string(), "pcss: cut short by the limit of 0.5 s for a technique, after 2 frames, 1.5 s");
+        assert_eq!(error.to_string(), "pcss: cut short by the limit of 0.5 s per technique, after 2 frames, 1.5 s");
         assert_eq!(pace.measure(planned, |end| Ok(end.is_some())).unwrap(), Some(true));
     }
 

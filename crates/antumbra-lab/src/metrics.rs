@@ -77,7 +77,9 @@ pub struct Metrics {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MetricsError {
     /// The images differ in size.
-    #[error("the images differ in size: {reference} is the reference's, {tested} the other's; render both at one size")]
+    #[error(
+        "the images differ in size: the reference has {reference}, the tested image {tested}; render both at the same size"
+    )]
     Sizes {
         /// Size of the reference, pixels.
         reference: UVec2,
@@ -85,7 +87,7 @@ pub enum MetricsError {
         tested: UVec2,
     },
     /// The mask of judged pixels has another size than the image.
-    #[error("the mask holds {mask} pixels and the image {image}")]
+    #[error("the mask has {mask} pixels, but the image has {image}")]
     Mask {
         /// Number of pixels of the mask.
         mask: usize,
@@ -93,7 +95,7 @@ pub enum MetricsError {
         image: usize,
     },
     /// The reference contains NaN or an infinity.
-    #[error("the reference is {value} at pixel ({x}, {y}); trace it again")]
+    #[error("the reference is {value} at pixel ({x}, {y}), which is not a visibility; trace it again")]
     Reference {
         /// Column of the pixel.
         x: usize,

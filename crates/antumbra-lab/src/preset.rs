@@ -48,9 +48,9 @@ pub fn preset_toml(choice: &TechniqueChoice) -> String {
 fn parse(text: &str) -> Result<TechniqueChoice, String> {
     let table: Table = text.parse().map_err(|error: toml::de::Error| one_line(error.message()))?;
     if let Some(other) = table.keys().find(|key| !["technique", "parameters"].contains(&key.as_str())) {
-        return Err(format!("it has a key `{other}`, which no preset has"));
+        return Err(format!("unknown key `{other}`"));
     }
-    let name = table.get("technique").and_then(Value::as_str).ok_or("it names no technique")?;
+    let name = table.get("technique").and_then(Value::as_str).ok_or("`technique` is missing")?;
     let (name, quality) = name.split_once(':').map_or((name, None), |(name, quality)| (name, Some(quality)));
     let kind = TechniqueKind::from_name(name).ok_or_else(|| format!("there is no technique `{name}`"))?;
     let quality = match quality {
@@ -62,12 +62,13 @@ fn parse(text: &str) -> Result<TechniqueChoice, String> {
         None => {}
         Some(Value::Table(parameters)) => {
             for (key, value) in parameters {
-                let value = text_of(value).ok_or_else(|| format!("`{key}` is no number, switch, choice or list"))?;
+                let value =
+                    text_of(value).ok_or_else(|| format!("`{key}` is not a number, Boolean, string or list"))?;
                 let (spec, value) = kind.read(key, &value).map_err(|error| error.to_string())?;
                 choice.settings.push((spec.key.to_owned(), value.to_string()));
             }
         }
-        Some(_) => return Err("`parameters` is no table".into()),
+        Some(_) => return Err("`parameters` is not a table".into()),
     }
     Ok(choice)
 }
@@ -114,15 +115,15 @@ mod tests {
     #[test]
     fn other_files_are_told_in_one_line() {
         for (text, part) in [
-            ("", "names no technique"),
-            ("technique = 3", "names no technique"),
+            ("", "`technique` is missing"),
+            ("technique = 3", "`technique` is missing"),
             ("technique = \"pscs\"", "no technique `pscs`"),
             ("technique = \"pcss:quick\"", "no quality `quick`"),
-            ("technique = \"pcss\"\nsize = 3", "a key `size`"),
-            ("technique = \"pcss\"\nparameters = 3", "no table"),
+            ("technique = \"pcss\"\nsize = 3", "unknown key `size`"),
+            ("technique = \"pcss\"\nparameters = 3", "not a table"),
             ("technique = \"pcss\"\n[parameters]\nmap_size = 7", "map_size"),
             ("technique = \"pcss\"\n[parameters]\nmap_siz = 512", "map_siz"),
-            ("technique = \"pcss\"\n[parameters]\nmap_size = { a = 1 }", "`map_size` is no number"),
+            ("technique = \"pcss\"\n[parameters]\nmap_size = { a = 1 }", "`map_size` is not a number"),
             ("technique = ", "string"),
         ] {
             let why = parse(text).unwrap_err();

@@ -75,7 +75,7 @@ fn mapped(lab: &LabDevice, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, De
     lab.check()?;
     buffer
         .get_mapped_range(..)
-        .map_err(|error| DeviceError::Failed { count: 1, first: format!("cannot map what was read back: {error}") })
+        .map_err(|error| DeviceError::Failed { count: 1, first: format!("cannot map the readback buffer: {error}") })
 }
 
 /// Reads the first mip level of a layer of a texture with usage `COPY_SRC` through a buffer, and waits.

@@ -11,7 +11,7 @@ use glam::{UVec2, Vec2, Vec3, Vec4};
 use crate::device::{DeviceError, LabDevice};
 use crate::gpu_scene::GpuScene;
 use crate::readback::{read_f32, read_rgba32f};
-use crate::stopwatch::{FrameCount, Seen, Stopwatch, Timing, clock_rise};
+use crate::stopwatch::{FrameCount, FrameMeasurement, Stopwatch, Timing, clock_rise};
 use crate::technique_run::median;
 use crate::truth::SurfacePoint;
 
@@ -137,7 +137,7 @@ impl ReceiverPass {
             lab.queue.submit([encoder.finish()]);
             lab.check()?;
             let ms = began.elapsed().as_secs_f64() * 1e3;
-            watch.see(Seen { ms, has_made: false });
+            watch.see(FrameMeasurement { ms, has_made: false });
             times_ms.push(ms);
         }
         let timed = times_ms.split_off(watch.warm_up() as usize);

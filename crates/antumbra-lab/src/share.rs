@@ -81,7 +81,7 @@ impl SharedFile {
         const REMEDY: &str = "give files that `antumbra bench --share` wrote";
         let file: Self = read_json(path, REMEDY)?;
         if file.format != FORMAT || file.version != VERSION {
-            return Err(FileError::bad_content(path, "it holds no shared results of this version", REMEDY));
+            return Err(FileError::bad_content(path, "it contains no shared results of this version", REMEDY));
         }
         Ok(file)
     }
@@ -99,7 +99,7 @@ impl SharedFile {
 pub fn check_scenes(specs: &[String]) -> Result<(), LabError> {
     match specs.iter().find(|spec| builtin::spec_of(spec).is_none()) {
         Some(spec) => Err(LabError::Request(format!(
-            "--share: {spec} is a file, whose name would be in what is shared; name built-in scenes (`antumbra scenes` lists them)"
+            "--share: {spec} is a file, whose name would be in the shared file; name built-in scenes (`antumbra scenes` lists them)"
         ))),
         None => Ok(()),
     }
@@ -266,7 +266,7 @@ mod tests {
         let page = std::fs::read_to_string(bench.join("cards.md")).unwrap();
         assert!(
             page.trim_end() == markdown(&files).trim_end(),
-            "write it anew: antumbra bench --cards bench/cards > bench/cards.md"
+            "regenerate the page: antumbra bench --cards bench/cards > bench/cards.md"
         );
         assert!(files.iter().any(|file| file.adapter.contains("H200")));
         let personal = |file: &SharedFile| file.rows.iter().any(|row| builtin::spec_of(&row.scene).is_none());

@@ -82,7 +82,7 @@ pub(crate) fn clock_rise(is_software: bool) -> Duration {
 
 /// Measurement of one frame.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Seen {
+pub(crate) struct FrameMeasurement {
     /// Time from preparation to completion, on the CPU's clock, milliseconds.
     pub(crate) ms: f64,
     /// Whether the frame created pipelines, buffers, textures, views or bind groups.
@@ -124,7 +124,7 @@ impl Stopwatch {
     }
 
     /// Adds a frame.
-    pub(crate) fn see(&mut self, Seen { ms, has_made }: Seen) {
+    pub(crate) fn see(&mut self, FrameMeasurement { ms, has_made }: FrameMeasurement) {
         let before_ms = self.before_ms.replace(ms);
         self.seen += 1;
         let ms_of = |duration: Duration| duration.as_secs_f64() * 1e3;
@@ -204,7 +204,7 @@ mod tests {
     fn counted(timing: Timing, frames_ms: &[f64]) -> (u32, Vec<f64>) {
         let mut watch = Stopwatch::new(timing, Duration::ZERO);
         for (i, ms) in frames_ms.iter().enumerate() {
-            watch.see(Seen { ms: ms.abs(), has_made: *ms < 0.0 });
+            watch.see(FrameMeasurement { ms: ms.abs(), has_made: *ms < 0.0 });
             if watch.is_done() {
                 let warm_up = watch.warm_up() as usize;
                 return (watch.warm_up(), frames_ms[warm_up..=i].to_vec());
@@ -250,17 +250,17 @@ mod tests {
 
     /// Frames of a graphics card that are alike at a low clock do not count.
     #[test]
-    fn a_clock_has_time_to_rise() {
+    fn warm_up_waits_for_the_clock_to_rise() {
         let mut watch = Stopwatch::new(TIMING, Duration::from_millis(100));
         let mut frames = 0;
         while !watch.is_done() {
-            watch.see(Seen { ms: if frames < 10 { 8.0 } else { 2.0 }, has_made: frames == 0 });
+            watch.see(FrameMeasurement { ms: if frames < 10 { 8.0 } else { 2.0 }, has_made: frames == 0 });
             frames += 1;
         }
         // Nine of 8 ms after the first, and fourteen of 2 ms.
         assert_eq!((watch.warm_up(), frames), (24, 27));
         let mut short_of_time = Stopwatch::new(Timing { at_most: Duration::ZERO, ..TIMING }, Duration::from_secs(1));
-        (0..3).for_each(|_| short_of_time.see(Seen { ms: 2.0, has_made: false }));
+        (0..3).for_each(|_| short_of_time.see(FrameMeasurement { ms: 2.0, has_made: false }));
         assert!(short_of_time.is_done(), "where there is no time, it is not waited for");
     }
 
@@ -273,19 +273,19 @@ mod tests {
 
     /// The measurement ends even if no two frames are alike, or if every frame creates a resource.
     #[test]
-    fn it_ends() {
+    fn warm_up_ends_for_unstable_frames() {
         let frames: Vec<f64> = (0..30).map(|i| if i % 2 == 0 { 10.0 } else { 30.0 }).collect();
         assert_eq!(counted(TIMING, &frames), (17, vec![30.0, 10.0, 30.0]));
         assert_eq!(counted(TIMING, &[-10.0; 30]), (17, vec![-10.0; 3]));
     }
 
     #[test]
-    fn what_lacked_room_is_forgotten() {
+    fn frames_with_overflow_are_discarded() {
         let mut watch = Stopwatch::new(TIMING, Duration::ZERO);
-        (0..2).for_each(|_| watch.see(Seen { ms: 5.0, has_made: false }));
+        (0..2).for_each(|_| watch.see(FrameMeasurement { ms: 5.0, has_made: false }));
         watch.begin_anew();
         assert_eq!((watch.warm_up(), watch.is_done()), (0, false));
-        (0..4).for_each(|_| watch.see(Seen { ms: 9.0, has_made: false }));
+        (0..4).for_each(|_| watch.see(FrameMeasurement { ms: 9.0, has_made: false }));
         assert_eq!((watch.warm_up(), watch.is_done()), (1, true));
     }
 }

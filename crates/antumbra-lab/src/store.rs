@@ -97,7 +97,7 @@ fn read<R: DeserializeOwned>(path: &Path, kind: Kind) -> Result<File<R>, FileErr
     const REMEDY: &str = "name another folder, or move the file away";
     let file: File<R> = read_json(path, REMEDY)?;
     if file.format != kind.format || file.version != kind.version {
-        return Err(FileError::bad_content(path, "it holds no measurements of this version", REMEDY));
+        return Err(FileError::bad_content(path, "it contains no measurements of this version", REMEDY));
     }
     Ok(file)
 }
@@ -112,7 +112,7 @@ fn difference(there: &Value, here: &Value) -> Option<String> {
     };
     keys.into_iter()
         .find(differs)
-        .map(|key| format!("its {key} is {}, and here it is {}", short(there.get(key)), short(here.get(key))))
+        .map(|key| format!("its {key} is {}, but this run has {}", short(there.get(key)), short(here.get(key))))
 }
 
 #[cfg(test)]
@@ -143,7 +143,7 @@ mod tests {
         let again = open(KIND, about.clone()).unwrap();
         assert_eq!((again.get("a"), again.get("b"), again.fresh), (Some(&0.25), None, 0));
         let other = open(KIND, json!({ "commit": "def" })).unwrap_err().to_string();
-        assert!(other.contains("its commit is \"abc\", and here it is \"def\"; name another folder"), "{other}");
+        assert!(other.contains("its commit is \"abc\", but this run has \"def\"; name another folder"), "{other}");
         let newer = open(Kind { version: 2, ..KIND }, about).unwrap_err().to_string();
         assert!(newer.contains("no measurements of this version"), "{newer}");
         std::fs::write(&path, "{}").unwrap();

@@ -79,7 +79,7 @@ pub fn trace(
     options: &VisibilityOptions,
     progress: &dyn Progress,
 ) -> Result<Vec<LightTruth>, ReferenceError> {
-    progress.begin("building the ray tracer's tree", 0);
+    progress.begin("building the acceleration structure", 0);
     let tracer = Tracer::new(scene)?;
     let receivers = tracer.primary(&setup.camera, size_px);
     trace_lights(&tracer, &receivers, &setup.lights, options, progress)

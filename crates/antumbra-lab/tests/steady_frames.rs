@@ -31,7 +31,7 @@ static HELD_BYTES: AtomicI64 = AtomicI64::new(0);
 /// Serialises the tests that count.
 static COUNTING: Mutex<()> = Mutex::new(());
 
-#[allow(unsafe_code, reason = "an allocator that counts can be written in no other way")]
+#[allow(unsafe_code, reason = "implementing GlobalAlloc requires unsafe code")]
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         HELD_BYTES.fetch_add(layout.size() as i64, Ordering::Relaxed);

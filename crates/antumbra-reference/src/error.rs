@@ -10,7 +10,7 @@ pub enum ReferenceError {
     Light(#[from] LightError),
     /// A scene has an index that is out of range.
     #[error(
-        "reference: scene `{scene}`: {what} {index} is out of range: there are {count}; the scene's loader is at fault"
+        "reference: scene `{scene}`: {what} {index} is out of range: there are {count}; this is a fault of the scene's loader"
     )]
     OutOfRange {
         /// The scene's name.
@@ -33,7 +33,7 @@ pub enum ReferenceError {
         instance: usize,
     },
     /// The scene has more triangles than the tracer's indices can address.
-    #[error("reference: scene `{scene}` has {count} triangles as drawn; the tracer takes at most {most}")]
+    #[error("reference: scene `{scene}` has {count} triangles, counting instances; the tracer supports at most {most}")]
     TooManyTriangles {
         /// The scene's name.
         scene: String,

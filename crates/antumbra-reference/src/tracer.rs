@@ -29,7 +29,7 @@ pub struct Tracer {
     geometry: Geometry,
     blockers: Tree,
     translucents: Tree,
-    homes: Homes,
+    homes: InstanceBlocks,
     simd: Simd,
 }
 
@@ -48,7 +48,7 @@ impl Tracer {
         let blockers = Tree::new(&geometry.blockers, true);
         // Each translucent triangle counts once, so none may be in two leaves.
         let translucents = Tree::new(&geometry.translucents, false);
-        let homes = Homes::new(&geometry.blockers, &blockers);
+        let homes = InstanceBlocks::new(&geometry.blockers, &blockers);
         Ok(Self { geometry, blockers, translucents, homes, simd: Simd::detect() })
     }
 
@@ -390,12 +390,12 @@ impl Resolved {
 
 /// Map from an instance's triangle to its block.
 #[derive(Clone, Debug, Default)]
-struct Homes {
+struct InstanceBlocks {
     /// `(instance, triangle)` of each blocker, sorted, with its block.
     entries: Vec<(u32, u32, u32)>,
 }
 
-impl Homes {
+impl InstanceBlocks {
     fn new(triangles: &[Triangle], tree: &Tree) -> Self {
         let mut block_of = vec![u32::MAX; triangles.len()];
         for (block, i) in tree.blocks.iter().zip(0u32..) {

@@ -19,7 +19,7 @@ impl Picture {
     /// # Panics
     /// The number of colours is not `width · height`.
     pub fn new(size_px: UVec2, linear_rgb: Vec<Vec3>) -> Self {
-        assert_eq!(pixel_count(size_px), linear_rgb.len(), "a picture of {size_px} has another number of pixels");
+        assert_eq!(pixel_count(size_px), linear_rgb.len(), "the number of pixels differs from the size {size_px}");
         Self { size_px, linear_rgb }
     }
 
@@ -53,7 +53,7 @@ impl Visibility {
     /// # Panics
     /// The number of values is not `width · height`.
     pub fn one(size_px: UVec2, values: Vec<f32>) -> Self {
-        assert_eq!(pixel_count(size_px), values.len(), "an image of {size_px} has another number of pixels");
+        assert_eq!(pixel_count(size_px), values.len(), "the number of pixels differs from the size {size_px}");
         Self { size_px, values: VisibilityValues::One(values) }
     }
 
@@ -62,7 +62,7 @@ impl Visibility {
     /// # Panics
     /// The number of values is not `width · height`.
     pub fn three(size_px: UVec2, values: Vec<Vec3>) -> Self {
-        assert_eq!(pixel_count(size_px), values.len(), "an image of {size_px} has another number of pixels");
+        assert_eq!(pixel_count(size_px), values.len(), "the number of pixels differs from the size {size_px}");
         Self { size_px, values: VisibilityValues::Three(values) }
     }
 

@@ -15,7 +15,7 @@ pub(crate) fn gpu_or_skip() -> Option<&'static Gpu> {
         let options = wgpu::RequestAdapterOptions::default();
         let adapter = pollster::block_on(instance.request_adapter(&options)).ok()?;
         let made = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()));
-        let (device, queue) = made.unwrap_or_else(|error| panic!("the adapter gives no device: {error}"));
+        let (device, queue) = made.unwrap_or_else(|error| panic!("the adapter cannot create a device: {error}"));
         Some(Gpu::new(&device, &queue))
     });
     if gpu.is_none() {

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_near_stays_as_it_is() {
+    fn near_scenes_are_not_shifted() {
         let mut scene = load("builtin:columns", &LoadOptions::default()).unwrap();
         let setup = Setup::for_scene(&scene);
         let before = corners(&scene);
@@ -92,7 +92,7 @@ mod tests {
     /// A far scene, whether its vertices or its instances are far away, equals the scene at the origin within the precision
     /// that the distance left.
     #[test]
-    fn what_is_far_is_counted_from_its_camera() {
+    fn far_scenes_are_relative_to_their_camera() {
         let scene = load("builtin:columns", &LoadOptions::default()).unwrap();
         let setup = Setup::for_scene(&scene);
         let (mut in_corners, mut in_instances) = (scene.clone(), scene.clone());

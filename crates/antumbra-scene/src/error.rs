@@ -24,7 +24,7 @@ pub enum SceneError {
         spec: String,
     },
     /// A file's path after `builtin:`.
-    #[error("builtin:{0}: this is a file, and no built-in scene; give its path alone, `{0}`", path.display())]
+    #[error("builtin:{0}: this is a file, not a built-in scene; give its path without `builtin:`, as `{0}`", path.display())]
     NotBuiltin {
         /// The file.
         path: PathBuf,
@@ -43,7 +43,7 @@ pub enum SceneError {
     },
     /// A scene without a triangle: there is nothing to cast or to receive a shadow.
     #[error(
-        "{origin}: the scene holds no triangle{left_out}; it needs at least one mesh of triangles in a node of its scene"
+        "{origin}: the scene has no triangle{left_out}; it needs at least one mesh of triangles in a node of its scene"
     )]
     Empty {
         /// Name of the file or built-in scene.

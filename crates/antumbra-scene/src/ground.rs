@@ -43,7 +43,7 @@ impl Ground {
 
     /// Message about a ground that [`Ground::Auto`] added.
     pub fn told(scene: &Scene) -> String {
-        format!("{} stands on nothing, and was put on a ground; --ground=no leaves it out", scene.name)
+        format!("{} has no ground, so a ground plane was added; --ground=no omits it", scene.name)
     }
 }
 

@@ -34,7 +34,7 @@ pub fn load_animated(spec: &str, options: &LoadOptions) -> Result<(Scene, Option
             let mut scene = builtin::build(name).map_err(|error| not_a_file(error, name))?;
             if options.time_s != 0.0 {
                 let line =
-                    format!("--time {}: built-in scenes stand still, and the time changes nothing", options.time_s);
+                    format!("--time {}: built-in scenes are not animated, so the time is ignored", options.time_s);
                 scene.warnings.push(line);
             }
             Loaded { scene, animations: None }
@@ -113,7 +113,9 @@ mod tests {
         let error = error_of(&format!("builtin:{file}"));
         assert_eq!(
             error,
-            format!("builtin:{file}: this is a file, and no built-in scene; give its path alone, `{file}`")
+            format!(
+                "builtin:{file}: this is a file, not a built-in scene; give its path without `builtin:`, as `{file}`"
+            )
         );
         assert!(error_of("builtin:overlapp").contains("nearest: overlap"));
     }
@@ -134,7 +136,7 @@ mod tests {
     #[test]
     fn a_time_without_motion_is_said() {
         let still = load("builtin:overlap", &LoadOptions { time_s: 2.0 }).unwrap();
-        assert_eq!(still.warnings, ["--time 2: built-in scenes stand still, and the time changes nothing"]);
+        assert_eq!(still.warnings, ["--time 2: built-in scenes are not animated, so the time is ignored"]);
         assert!(load("builtin:overlap", &LoadOptions::default()).unwrap().warnings.is_empty());
     }
 }

@@ -27,16 +27,16 @@ impl Scene {
         let what = if across_m < SMALLEST_M {
             format!("is {} across", length(across_m))
         } else if height_m > HIGHEST_ROOM_M && is_room(self) {
-            format!("is a room of {} in height", length(height_m))
+            format!("is a room {} high", length(height_m))
         } else if across_m > LARGEST_OBJECT_M && height_m > HIGHEST_OBJECT_M && self.lacks_ground() {
-            format!("is an object of {} across", length(across_m))
+            format!("is an object {} across", length(across_m))
         } else {
             return None;
         };
-        let other = if across_m < SMALLEST_M { "metres over a thousand" } else { "centimetres" };
+        let other = if across_m < SMALLEST_M { "millimetres" } else { "centimetres" };
         Some(format!(
-            "{} {what}; glTF counts in metres, and this looks like another unit ({other}, say): penumbrae go by metres, so scale the file, \
-             or give lights' sizes in its unit by --setup",
+            "{} {what}; glTF files are in metres, but this one seems to be in another unit ({other}?). Penumbrae depend on \
+             sizes in metres: scale the file, or give the lights' sizes in its unit with --setup",
             self.name
         ))
     }
@@ -78,7 +78,7 @@ mod tests {
         knot.instances.retain(|instance| knot.meshes[instance.mesh].name == "knot");
         let hall = builtin::build("hall").unwrap();
         for (scene, factor, said) in
-            [(&knot, 100.0, "an object of"), (&knot, 1e-3, "across"), (&hall, 100.0, "a room of")]
+            [(&knot, 100.0, "is an object"), (&knot, 1e-3, "across"), (&hall, 100.0, "is a room")]
         {
             let warning = scaled(scene, factor).unit_warning().expect("a warning");
             assert!(warning.contains(said) && warning.contains("metres") && !warning.contains('\n'), "{warning}");
@@ -98,7 +98,7 @@ mod tests {
             }
         }
         assert!(
-            told.len() <= 1 && told.iter().all(|warning| warning.starts_with("fox is an object of 165 m")),
+            told.len() <= 1 && told.iter().all(|warning| warning.starts_with("fox is an object 165 m")),
             "{told:?}"
         );
     }

@@ -41,7 +41,7 @@ pub fn scenes_folder() -> Option<PathBuf> {
 pub fn cases_folder() -> Option<PathBuf> {
     let found = scenes_folder()?.parent().map(|folder| folder.join("cases")).filter(|folder| folder.is_dir());
     if found.is_none() {
-        skip("there is no folder of cases beside that of test scenes");
+        skip("there is no folder `cases` next to that of the test scenes");
     }
     found
 }
@@ -66,7 +66,7 @@ pub fn skip_without_adapter() {
     let value = |name: &str| std::env::var(name).ok();
     assert!(
         !is_required(value(REQUIRE_ADAPTER).as_deref(), value("CI").as_deref()),
-        "no graphics adapter answers, and {REQUIRE_ADAPTER} or CI requires one: install the graphics card's Vulkan driver, \
+        "no graphics adapter was found, but {REQUIRE_ADAPTER} or CI requires one: install the graphics card's Vulkan driver, \
          or Mesa's software driver (Debian and Ubuntu: apt-get install mesa-vulkan-drivers libvulkan1)"
     );
     skip("no graphics adapter");

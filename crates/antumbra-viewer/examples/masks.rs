@@ -10,7 +10,10 @@ fn main() -> Result<(), String> {
     use antumbra::TechniqueKind;
     use antumbra_viewer::masks::{Case, Masks, cases};
 
-    let folder = std::env::args_os().nth(1).map(std::path::PathBuf::from).ok_or("name a folder to write to")?;
+    let folder = std::env::args_os()
+        .nth(1)
+        .map(std::path::PathBuf::from)
+        .ok_or("usage: masks FOLDER: give the folder to write to")?;
     let write = |name: String, bytes: &[u8]| {
         std::fs::write(folder.join(&name), bytes).map_err(|error| format!("{}: {error}", folder.join(&name).display()))
     };

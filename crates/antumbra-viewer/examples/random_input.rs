@@ -16,7 +16,7 @@ mod counting {
 
     static HELD_BYTES: AtomicI64 = AtomicI64::new(0);
 
-    #[allow(unsafe_code, reason = "an allocator that counts can be written in no other way")]
+    #[allow(unsafe_code, reason = "implementing GlobalAlloc requires unsafe code")]
     unsafe impl GlobalAlloc for Counting {
         unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
             HELD_BYTES.fetch_add(layout.size() as i64, Ordering::Relaxed);
@@ -45,8 +45,8 @@ fn main() -> Result<(), String> {
     use antumbra_viewer::random_input::{RandomInput, things_to_open};
 
     const BETWEEN_LINES: Duration = Duration::from_secs(30);
-    const USAGE: &str = "random_input SECONDS [SEED] [FOLDER] [TECHNIQUES]: SECONDS and SEED are whole numbers, SEED not 0, \
-                         TECHNIQUES names with commas between them";
+    const USAGE: &str = "usage: random_input SECONDS [SEED] [FOLDER] [TECHNIQUES]: SECONDS and SEED are whole numbers, SEED is \
+         not 0, TECHNIQUES are names separated by commas";
 
     let mut arguments = std::env::args().skip(1);
     let seconds: u64 = arguments.next().and_then(|text| text.parse().ok()).ok_or(USAGE)?;

@@ -22,7 +22,7 @@ use web_time::Instant;
 use self::history::History;
 use self::screenshot::Screenshot;
 use crate::file_dialog::FileDialog;
-use crate::loader::{Loader, Wanted};
+use crate::loader::{Loader, SceneRequest};
 use crate::message::one_line;
 use crate::options::ViewerOptions;
 use crate::poser::Poser;
@@ -40,17 +40,17 @@ const NARROW_WINDOW: f32 = 640.0;
 pub type Outcome = Arc<Mutex<Option<Ended>>>;
 
 /// Reason why a window has closed by itself.
-#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is not closed, but loaded anew"))]
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser page is reloaded, not closed"))]
 pub enum Ended {
     /// The task is complete, or it failed.
     Done(Result<(), String>),
     /// The graphics device is lost: the reason, and the state for the next window.
-    Lost(String, Box<Kept>),
+    Lost(String, Box<PersistentState>),
 }
 
 /// State that outlives a window and its device.
-#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page is loaded anew"))]
-pub struct Kept {
+#[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser page is reloaded"))]
+pub struct PersistentState {
     state: State,
     history: History,
     scene: Option<Arc<Scene>>,
@@ -103,7 +103,7 @@ impl App {
             app.state.sides[1] = against;
         }
         app.state.show = options.show;
-        let wanted = Wanted {
+        let wanted = SceneRequest {
             spec: options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned()),
             setup: options.setup,
             time_s: options.time_s,
@@ -153,13 +153,13 @@ impl App {
 
     /// Continues in a new window the application of one whose device was lost.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn kept(ctx: &egui::Context, render_state: RenderState, kept: Kept, outcome: Outcome) -> Self {
-        let Kept { state, history, scene, poser, panels, screenshot } = kept;
+    pub fn kept(ctx: &egui::Context, render_state: RenderState, kept: PersistentState, outcome: Outcome) -> Self {
+        let PersistentState { state, history, scene, poser, panels, screenshot } = kept;
         let mut app = Self::bare(ctx, render_state, screenshot, outcome);
         if let (Some(scene), Some(open)) = (&scene, &state.scene) {
             app.renderer.open(scene, open.generation);
         }
-        app.say("the graphics device was lost, and made anew");
+        app.say("the graphics device was lost and has been recreated");
         Self { state, history, scene, poser, panels, ..app }
     }
 
@@ -169,7 +169,7 @@ impl App {
         let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
         if outcome.is_none() {
             self.truth.want(None);
-            let kept = Kept {
+            let kept = PersistentState {
                 state: self.state.clone(),
                 history: std::mem::take(&mut self.history),
                 scene: self.scene.take(),

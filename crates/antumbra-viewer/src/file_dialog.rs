@@ -28,10 +28,10 @@ pub enum Purpose {
     #[default]
     Open,
     /// Save camera and lights.
-    #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser has a place for downloads"))]
+    #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser saves files as downloads"))]
     SaveSetup,
     /// Save the image.
-    #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser has a place for downloads"))]
+    #[cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a browser saves files as downloads"))]
     SavePicture,
 }
 

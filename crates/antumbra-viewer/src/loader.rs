@@ -37,7 +37,7 @@ pub struct Loaded {
 
 /// A request for a scene.
 #[derive(Clone, Debug, Default)]
-pub struct Wanted {
+pub struct SceneRequest {
     /// The scene's name.
     pub spec: String,
     /// A setup file.
@@ -48,7 +48,7 @@ pub struct Wanted {
     pub ground: Ground,
 }
 
-impl Wanted {
+impl SceneRequest {
     /// Request for a scene with default options.
     pub fn plain(spec: impl Into<String>) -> Self {
         Self { spec: spec.into(), ..Self::default() }
@@ -74,7 +74,7 @@ pub struct Loader {
 
 impl Loader {
     /// Loads a scene.
-    pub fn load(&mut self, wanted: Wanted, wake: Wake) {
+    pub fn load(&mut self, wanted: SceneRequest, wake: Wake) {
         let sender = self.expect(&wanted.spec);
         run_in_background(move || {
             // The receiver is gone if another scene was requested meanwhile.
@@ -126,7 +126,7 @@ impl Loader {
     }
 }
 
-fn load_now(wanted: Wanted) -> Result<Loaded, String> {
+fn load_now(wanted: SceneRequest) -> Result<Loaded, String> {
     // The setup comes first: reading it is fast, so its errors appear early.
     let setup = match &wanted.setup {
         Some(path) => Some((path.clone(), read_setup(path)?)),
@@ -139,7 +139,7 @@ fn load_now(wanted: Wanted) -> Result<Loaded, String> {
 
 /// Adds a ground if one is wanted, as the laboratory does, and moves the scene to its anchor.
 fn finished(
-    wanted: Wanted,
+    wanted: SceneRequest,
     setup: Option<(PathBuf, Setup)>,
     (mut scene, animations): (Scene, Option<Animations>),
 ) -> Loaded {
@@ -175,12 +175,13 @@ fn finished(
 fn open_bytes(name: String, bytes: &[u8]) -> Outcome {
     let why = |error: antumbra_scene::SceneError| one_line(&error.to_string());
     if is_setup(&name) {
-        let text = std::str::from_utf8(bytes).map_err(|_| format!("{name}: is no text; a setup is a file in TOML"))?;
+        let text =
+            std::str::from_utf8(bytes).map_err(|_| format!("{name}: is not UTF-8 text; a setup is a TOML file"))?;
         let setup = Setup::from_toml(text, Path::new(&name)).map_err(why)?;
         return Ok(Opened::Setup(name.into(), setup));
     }
     let loaded = antumbra_scene::load_chosen(bytes, &name, &LoadOptions::default()).map_err(why)?;
-    Ok(Opened::Scene(Box::new(finished(Wanted::plain(name), None, loaded))))
+    Ok(Opened::Scene(Box::new(finished(SceneRequest::plain(name), None, loaded))))
 }
 
 /// Whether a file name is that of a setup.
@@ -216,7 +217,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
     written.map_err(|error| {
         // If this fails, too, there is nothing to remove.
         let _ = std::fs::remove_file(&part);
-        format!("{}: cannot be written: {error}; choose a folder that can be written to", path.display())
+        format!("{}: cannot be written: {error}; choose a writable folder", path.display())
     })
 }
 
@@ -226,7 +227,8 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
 /// Fails with one line.
 #[cfg(target_arch = "wasm32")]
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    crate::download::download(path, bytes).ok_or_else(|| format!("{}: the browser takes no download", path.display()))
+    crate::download::download(path, bytes)
+        .ok_or_else(|| format!("{}: the browser refused the download", path.display()))
 }
 
 #[cfg(test)]
@@ -239,7 +241,7 @@ mod tests {
 
     #[test]
     fn a_setup_comes_back_as_it_was() {
-        let Loaded { spec, scene, .. } = load_now(Wanted::plain("builtin:knot")).unwrap();
+        let Loaded { spec, scene, .. } = load_now(SceneRequest::plain("builtin:knot")).unwrap();
         let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
         state.open(&spec, &scene, None);
         state.add_light();
@@ -271,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_far_from_the_origin_is_counted_from_its_camera() {
+    fn opened_far_scenes_are_relative_to_their_camera() {
         const AWAY: Vec3 = Vec3::new(10_000.0, 0.0, -7_300.0);
         let near = load("builtin:overlap", &LoadOptions::default()).unwrap();
         let mut far = near.clone();
@@ -293,7 +295,7 @@ mod tests {
     #[test]
     fn what_does_not_load_says_why_in_one_line() {
         for spec in ["builtin:nothing", "no-such-file.glb"] {
-            let why = load_now(Wanted::plain(spec)).unwrap_err();
+            let why = load_now(SceneRequest::plain(spec)).unwrap_err();
             assert!(!why.contains('\n') && why.len() > spec.len(), "{why}");
         }
     }

@@ -155,7 +155,7 @@ impl Masks {
             }
             rest().await;
         }
-        Err("the picture never stands still".into())
+        Err("the image does not become still".into())
     }
 
     fn fit_scene(&mut self, case: &Case) -> Result<(), String> {

@@ -37,12 +37,13 @@ pub struct ViewerOptions {
 pub enum ViewerError {
     /// There is no display, or no adapter that can draw to it.
     #[error(
-        "the window cannot be opened: {0}; the viewer needs a display and a graphics driver that can draw to it; `antumbra render` needs no display"
+        "the window cannot be opened: {0}; the viewer needs a display and a graphics driver that can draw to it, but `antumbra \
+         render` needs no display"
     )]
     Window(String),
     /// The device was lost, and its replacement was lost, too.
     #[error(
-        "the graphics device is lost ({0}), and was as soon as it was made anew; try again, or another `--adapter`"
+        "the graphics device was lost ({0}), again directly after it was recreated; try again, or choose another `--adapter`"
     )]
     Lost(String),
     /// The scene, the setup or a file is invalid.

@@ -23,7 +23,7 @@ const BACKGROUND: [u8; 3] = [150, 158, 168];
 /// State of a thumbnail.
 enum Thumbnail {
     /// Requested, not started.
-    Wanted,
+    Requested,
     Traced(egui::TextureHandle),
     /// Unavailable; the scene's name is shown alone.
     Missing,
@@ -47,8 +47,8 @@ impl Thumbnails {
     /// Returns a scene's thumbnail once it is traced. `wake` is called when asking again is worthwhile.
     pub fn of(&mut self, ctx: &egui::Context, name: &'static str, wake: &Wake) -> Option<&egui::TextureHandle> {
         self.take(ctx);
-        let known = self.known.entry(name).or_insert(Thumbnail::Wanted);
-        if matches!(known, Thumbnail::Wanted) && self.pending.is_none() {
+        let known = self.known.entry(name).or_insert(Thumbnail::Requested);
+        if matches!(known, Thumbnail::Requested) && self.pending.is_none() {
             let (sender, traced) = channel();
             let wake = wake.clone();
             run_in_background(move || {
@@ -145,7 +145,10 @@ mod tests {
             picture.pixels.iter().map(|c| u32::from(c.r()) + u32::from(c.g()) + u32::from(c.b())).collect::<Vec<_>>()
         };
         let of = levels(&overlap);
-        assert!(of.iter().max() > of.iter().min().map(|least| least + 200).as_ref(), "no light and shade");
+        assert!(
+            of.iter().max() > of.iter().min().map(|least| least + 200).as_ref(),
+            "the thumbnail has no light and no shadow"
+        );
         assert_ne!(of, levels(&traced_picture("stained-glass").unwrap()));
         assert!(traced_picture("nothing").is_none());
     }

@@ -41,7 +41,7 @@ impl Page {
             ..eframe::WebOptions::default()
         };
         let create = Box::new(move |creation: &eframe::CreationContext<'_>| {
-            let render_state = creation.wgpu_render_state.clone().ok_or("the canvas draws without wgpu")?;
+            let render_state = creation.wgpu_render_state.clone().ok_or("the canvas is not drawn by wgpu")?;
             let app = App::new(&creation.egui_ctx, render_state, options, Outcome::default());
             Ok(Box::new(app) as Box<dyn eframe::App>)
         });

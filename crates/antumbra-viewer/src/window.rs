@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use antumbra_scene::{LoadOptions, builtin, load};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 
-use crate::app::{App, Ended, Kept, Outcome};
+use crate::app::{App, Ended, Outcome, PersistentState};
 use crate::device::device_descriptor;
 use crate::loader::read_setup;
 use crate::message::one_line;
@@ -31,8 +31,8 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
         let made = Instant::now();
         match run_window(size, adapter.clone(), start)? {
             Some(Ended::Lost(why, kept)) if made.elapsed() >= MIN_LIFE => {
-                eprintln!("antumbra: the graphics device is lost ({why}); the window is opened again");
-                start = Start::Kept(kept);
+                eprintln!("antumbra: the graphics device was lost ({why}); reopening the window");
+                start = Start::Restored(kept);
             }
             Some(Ended::Lost(why, _)) => return Err(ViewerError::Lost(why)),
             Some(Ended::Done(outcome)) => return outcome.map_err(ViewerError::Input),
@@ -44,7 +44,7 @@ pub fn run(options: ViewerOptions) -> Result<(), ViewerError> {
 /// Initial state of a window.
 enum Start {
     Options(Box<ViewerOptions>),
-    Kept(Box<Kept>),
+    Restored(Box<PersistentState>),
 }
 
 /// Opens a window and returns once it is closed, by itself or by the user.
@@ -67,10 +67,10 @@ fn run_window(size: glam::UVec2, adapter: Option<String>, start: Start) -> Resul
     let outcome = Outcome::default();
     let for_app = outcome.clone();
     let create = Box::new(move |creation: &eframe::CreationContext<'_>| {
-        let render_state = creation.wgpu_render_state.clone().ok_or("the window draws without wgpu")?;
+        let render_state = creation.wgpu_render_state.clone().ok_or("the window is not drawn by wgpu")?;
         let app = match start {
             Start::Options(options) => App::new(&creation.egui_ctx, render_state, *options, for_app),
-            Start::Kept(kept) => App::kept(&creation.egui_ctx, render_state, *kept, for_app),
+            Start::Restored(kept) => App::kept(&creation.egui_ctx, render_state, *kept, for_app),
         };
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
@@ -139,8 +139,10 @@ fn select<'a>(
     adapters.iter().filter(is_wanted).filter(fits).min_by_key(rank).ok_or_else(|| {
         let names: Vec<_> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
         match &wanted {
-            Some(wanted) => format!("no adapter called `{wanted}` can draw to it; there are: {}", names.join(", ")),
-            None => format!("no adapter can draw to it; there are: {}", names.join(", ")),
+            Some(wanted) => {
+                format!("no adapter named `{wanted}` can draw to the window; available: {}", names.join(", "))
+            }
+            None => format!("no adapter can draw to the window; available: {}", names.join(", ")),
         }
     })
 }

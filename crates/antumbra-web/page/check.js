@@ -19,7 +19,7 @@ async function settled(viewer, what, is) {
       return;
     }
   }
-  throw new Error(`${what}: the picture does not come; last: ${last}`);
+  throw new Error(`${what}: no image was drawn; last: ${last}`);
 }
 
 /** Drops a file on the canvas as a hand does. */

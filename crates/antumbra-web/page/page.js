@@ -17,10 +17,10 @@ function showInstead(why) {
 
 /** What keeps WebGPU from this page; nothing where it works. */
 async function lackOfWebGpu() {
-  if (!window.isSecureContext) return "browsers offer it only to pages that came by https or from localhost";
+  if (!window.isSecureContext) return "browsers offer it only to pages loaded over https or from localhost";
   if (!navigator.gpu) return "this browser does not offer it";
   const adapter = await navigator.gpu.requestAdapter().catch(() => null);
-  return adapter ? null : "this browser offers it, but has no graphics adapter for it";
+  return adapter ? null : "this browser offers it, but found no suitable graphics adapter";
 }
 
 /** Puts a built-in scene and the technique of the image into the address. A quality in the address remains while its technique does. */

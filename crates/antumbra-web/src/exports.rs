@@ -32,7 +32,7 @@ impl Viewer {
         let show = match show {
             Some(name) => Show::from_name(&name).ok_or_else(|| {
                 let names: Vec<_> = Show::ALL.iter().map(|show| show.name()).collect();
-                format!("there is no view `{name}`; there are {}", names.join(", "))
+                format!("there is no view `{name}`; available: {}", names.join(", "))
             })?,
             None => Show::default(),
         };
@@ -72,7 +72,10 @@ impl Viewer {
 fn side_called(name: &str) -> Result<Side, String> {
     Side::from_name(name).ok_or_else(|| {
         let names: Vec<_> = TechniqueKind::ALL.iter().map(|kind| kind.name()).collect();
-        format!("there is no technique `{name}`; there are {}, each alone or as NAME:fast", names.join(", "))
+        format!(
+            "there is no technique `{name}`; available: {}, each optionally with a quality, such as NAME:fast",
+            names.join(", ")
+        )
     })
 }
 

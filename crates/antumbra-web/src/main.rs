@@ -11,6 +11,6 @@ fn main() {}
 #[cfg(not(target_arch = "wasm32"))]
 fn main() {
     println!(
-        "This program runs on a page: `cargo xtask web --serve` builds and serves it; `antumbra view` opens a window."
+        "This program runs in a browser: `cargo xtask web --serve` builds and serves the page; `antumbra view` opens a window."
     );
 }

@@ -30,8 +30,8 @@ mod validate;
 mod warm_up;
 
 use anchored::{Anchored, anchor_of};
-use conversions::{Ends, KeptEnds};
-use frame::{Asked, FrameCasters, prepared};
+use conversions::{Conversions, RetainedConversions};
+use frame::{FrameCasters, FrameRequest, prepared};
 use frame_key::FrameKey;
 use partitioned::{PartitionedPasses, PartitionedState};
 use shader_function::ShaderFunctions;
@@ -58,7 +58,7 @@ pub struct Shadow<T: Technique> {
     technique: T,
     /// State if several views are needed; created on demand and retained.
     parted: Option<PartitionedState<T>>,
-    ends: KeptEnds,
+    conversions: RetainedConversions,
     denoiser: Option<Denoiser>,
     half: Option<HalfResolution>,
     smoothing: Option<Smoothing>,
@@ -100,7 +100,7 @@ impl<T: Technique> Shadow<T> {
             half_resolution: false,
             technique: T::new(gpu)?,
             parted: None,
-            ends: KeptEnds::default(),
+            conversions: RetainedConversions::default(),
             denoiser: None,
             half: None,
             smoothing: None,
@@ -118,7 +118,7 @@ impl<T: Technique> Shadow<T> {
     /// # Errors
     /// If parameters, light or frame do not fit one another or the device. Then there is nothing to record.
     pub fn prepare<'a>(&'a mut self, frame: &Frame<'a>) -> Result<Prepared<'a>, Error> {
-        self.prepare_asked(Asked::Mask(*frame))
+        self.prepare_request(FrameRequest::Mask(*frame))
     }
 
     /// Prepares a frame of points in place of a depth buffer. Use one state for points and another for a light's mask, because each
@@ -129,21 +129,21 @@ impl<T: Technique> Shadow<T> {
     /// # Errors
     /// As [`prepare`](Self::prepare).
     pub fn prepare_points<'a>(&'a mut self, frame: &PointFrame<'a>) -> Result<Prepared<'a>, Error> {
-        self.prepare_asked(Asked::Points(*frame))
+        self.prepare_request(FrameRequest::Points(*frame))
     }
 
-    fn prepare_asked<'a>(&'a mut self, asked: Asked<'a>) -> Result<Prepared<'a>, Error> {
+    fn prepare_request<'a>(&'a mut self, request: FrameRequest<'a>) -> Result<Prepared<'a>, Error> {
         self.params.validate(T::NAME)?;
-        self.validator.check(T::NAME, &self.gpu, &asked, self.denoise.as_ref())?;
-        let casters = asked.casters().key();
+        self.validator.check(T::NAME, &self.gpu, &request, self.denoise.as_ref())?;
+        let casters = request.casters().key();
         let is_lost = self.commands.take_dropped() || !self.is_recorded;
         if is_lost {
             self.mask = Content::default();
         }
-        let key = self.key_of(&asked, casters);
+        let key = self.key_of(&request, casters);
         let is_same = self.mask.is_of(key.as_ref());
         if is_same && self.is_settled() {
-            return Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes: None }) });
+            return Ok(Prepared { work: Box::new(FrameWork { shadow: self, request, passes: None }) });
         }
         self.is_recorded = false;
         if is_lost {
@@ -159,24 +159,24 @@ impl<T: Technique> Shadow<T> {
         }
         let gpu = self.gpu.clone();
         let stage = Stage::new(&gpu, std::mem::take(&mut self.keep), casters)
-            .anchored(anchor_of(&asked))
+            .anchored(anchor_of(&request))
             .of_noise_frame(self.denoiser.as_ref().map_or(0, Denoiser::noise_frame));
-        let outcome = self.prepare_passes(&stage, &asked, is_same);
+        let outcome = self.prepare_passes(&stage, &request, is_same);
         let uploads;
         (self.keep, uploads) = stage.finish();
         let passes = Some((uploads, outcome?));
         self.mask.ask(key);
-        Ok(Prepared { work: Box::new(FrameWork { shadow: self, asked, passes }) })
+        Ok(Prepared { work: Box::new(FrameWork { shadow: self, request, passes }) })
     }
 
     /// Whether the mask already holds this frame, whose casters have the key `casters`, so that the frame would record nothing.
     pub(crate) fn holds(&self, frame: &Frame<'_>, casters: Option<CastersKey>) -> bool {
-        let key = self.key_of(&Asked::Mask(*frame), casters);
+        let key = self.key_of(&FrameRequest::Mask(*frame), casters);
         self.is_intact() && self.mask.is_of(key.as_ref()) && self.is_settled()
     }
 
-    fn key_of(&self, asked: &Asked<'_>, casters: Option<CastersKey>) -> Option<FrameKey<T::Params>> {
-        FrameKey::of(&self.params, (self.denoise.as_ref(), self.half_resolution), asked, casters)
+    fn key_of(&self, request: &FrameRequest<'_>, casters: Option<CastersKey>) -> Option<FrameKey<T::Params>> {
+        FrameKey::of(&self.params, (self.denoise.as_ref(), self.half_resolution), request, casters)
     }
 
     /// Whether the frame prepared last was recorded and its commands were not dropped.
@@ -195,14 +195,14 @@ impl<T: Technique> Shadow<T> {
     fn prepare_passes<'a>(
         &mut self,
         stage: &Stage<'_>,
-        asked: &Asked<'a>,
+        request: &FrameRequest<'a>,
         is_same: bool,
     ) -> Result<Passes<'a, T::Prepared>, Error> {
-        let casters = FrameCasters::of(asked.casters())?;
-        let ends = Ends::prepare(stage, asked, std::mem::take(&mut self.ends));
-        self.ends = ends.kept();
-        let (receivers, mask) = ends.inner();
-        let wide = prepared(asked.light(), &casters, receivers, mask);
+        let casters = FrameCasters::of(request.casters())?;
+        let conversions = Conversions::prepare(stage, request, std::mem::take(&mut self.conversions));
+        self.conversions = conversions.kept();
+        let (receivers, mask) = conversions.inner();
+        let wide = prepared(request.light(), &casters, receivers, mask);
 
         let in_world = casters.meshes();
         let host = wide;
@@ -240,19 +240,19 @@ impl<T: Technique> Shadow<T> {
             Some(parts) => LightPasses::Parts(Box::new(parts)),
             None => LightPasses::Whole(self.technique.prepare(stage, &of_technique, &self.params)?),
         };
-        Ok(Passes { casters, ends, light, smoothing, fade, half, denoise })
+        Ok(Passes { casters, conversions, light, smoothing, fade, half, denoise })
     }
 
     /// Records a frame's stages, in the order of the data: reading of points, halving of the receivers, the technique, smoothing of
     /// noisy visibility, the fade, upsampling of the mask, denoising, conversion of the mask.
-    fn record_passes(&self, recorder: &mut Recorder<'_>, asked: &Asked<'_>, passes: Passes<'_, T::Prepared>) {
-        let Passes { casters, ends, light, smoothing, fade, half, denoise } = passes;
-        let (receivers, wide) = ends.inner();
+    fn record_passes(&self, recorder: &mut Recorder<'_>, request: &FrameRequest<'_>, passes: Passes<'_, T::Prepared>) {
+        let Passes { casters, conversions, light, smoothing, fade, half, denoise } = passes;
+        let (receivers, wide) = conversions.inner();
         let mask = denoise.as_ref().map_or(wide, |denoise| &denoise.noisy);
-        let full = prepared(asked.light(), &casters, receivers, mask);
+        let full = prepared(request.light(), &casters, receivers, mask);
         let of_mask = half.as_ref().map_or(full, |half| half.frame_of(&full));
         let of_technique = PreparedFrame { noisy: smoothing.as_ref().map(PreparedSmoothing::noisy), ..of_mask };
-        ends.record_read(recorder);
+        conversions.record_read(recorder);
         if let Some(half) = &half {
             half.record_pick(recorder);
         }
@@ -278,7 +278,7 @@ impl<T: Technique> Shadow<T> {
         if let Some(denoise) = &denoise {
             denoise.record(recorder);
         }
-        ends.record_write(recorder);
+        conversions.record_write(recorder);
     }
 
     fn is_settled(&self) -> bool {
@@ -352,7 +352,7 @@ impl<T: Technique> Shadow<T> {
 /// Passes of one frame; `P` is the technique's prepared work.
 struct Passes<'a, P> {
     casters: FrameCasters<'a>,
-    ends: Ends<'a>,
+    conversions: Conversions<'a>,
     light: LightPasses<'a, P>,
     /// `Some` if the technique's visibility is noisy.
     smoothing: Option<PreparedSmoothing>,
@@ -373,14 +373,14 @@ enum LightPasses<'a, P> {
 }
 
 /// Prepared frame of one light. It must be dropped before what it borrows: declare a list of them after their casters.
-#[must_use = "nothing is drawn before it is recorded"]
+#[must_use = "`prepare` draws nothing until its result is recorded"]
 pub struct Prepared<'a> {
     work: Box<dyn Work + 'a>,
 }
 
 impl fmt::Debug for Prepared<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Prepared").field(self.work.asked()).finish()
+        f.debug_tuple("Prepared").field(self.work.request()).finish()
     }
 }
 
@@ -398,7 +398,7 @@ impl Prepared<'_> {
 
 /// Object-safe form of a frame's work.
 trait Work: wgpu::WasmNotSendSync {
-    fn asked(&self) -> &dyn fmt::Debug;
+    fn request(&self) -> &dyn fmt::Debug;
     fn overflow(&self) -> Option<Overflow>;
     fn record(self: Box<Self>, recorder: &mut Recorder<'_>);
 }
@@ -406,14 +406,14 @@ trait Work: wgpu::WasmNotSendSync {
 /// A light's state while a frame of it waits to be recorded.
 struct FrameWork<'a, T: Technique> {
     shadow: &'a mut Shadow<T>,
-    asked: Asked<'a>,
+    request: FrameRequest<'a>,
     /// `None` if the mask already holds the frame.
     passes: Option<(StagedUploads, Passes<'a, T::Prepared>)>,
 }
 
 impl<T: Technique> Work for FrameWork<'_, T> {
-    fn asked(&self) -> &dyn fmt::Debug {
-        &self.asked
+    fn request(&self) -> &dyn fmt::Debug {
+        &self.request
     }
     fn overflow(&self) -> Option<Overflow> {
         self.shadow.overflow()
@@ -425,6 +425,6 @@ impl<T: Technique> Work for FrameWork<'_, T> {
             return;
         }
         recorder.upload(uploads, self.shadow.commands.end());
-        recorder.joining_compute_passes(|recorder| self.shadow.record_passes(recorder, &self.asked, passes));
+        recorder.joining_compute_passes(|recorder| self.shadow.record_passes(recorder, &self.request, passes));
     }
 }

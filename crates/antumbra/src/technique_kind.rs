@@ -193,7 +193,7 @@ techniques! {
     "single_map", Pcf, "pcf", "single_map::pcf", {
         title: "Percentage-closer filtering",
         source: "Reeves, Salesin, Cook 1987, SIGGRAPH",
-        penumbra: "of one width",
+        penumbra: "constant width",
         light_maps: "1",
         good_for: "antialiased edges of one width",
         fails_where: "penumbrae of varying width",
@@ -204,7 +204,7 @@ techniques! {
         source: "Fernando 2005, SIGGRAPH sketches",
         penumbra: "from the mean blocker of each of three layers",
         light_maps: "3",
-        good_for: "occluders one behind another; sharp contacts",
+        good_for: "occluders behind one another; sharp contacts",
         fails_where: "near and far bars side by side: one mean depth per layer",
         worst_case: "window", "one mean depth for near and far bars; `means=ranges` reduces the error from .043 to .026",
     }
@@ -215,84 +215,84 @@ techniques! {
         light_maps: "3",
         good_for: "near and far occluders, side by side or behind one another",
         fails_where: "rays that pass behind the last layer; penumbrae narrower than a texel, which get a texel's width",
-        worst_case: "tree", "many small surfaces behind one another, which three layers do not hold",
+        worst_case: "tree", "many small surfaces behind one another, more than three layers contain",
     }
     "single_map", Bitmask, "bitmask", "single_map::bitmask", {
         title: "Bitmask soft shadows",
         source: "Schwarz, Stamminger 2007, CGF 26(3)",
-        penumbra: "from the texels of three layers, each a small square",
+        penumbra: "from the texels of three layers, projected onto the light",
         light_maps: "3",
-        good_for: "occluders at any depths, fused without double counting",
-        fails_where: "cost; staircases of texels where penumbrae are narrow; casters behind the last layer",
-        worst_case: "tree", "leaves behind the third layer are missing, and speckles of light remain",
+        good_for: "occluders at any depths, combined without double counting",
+        fails_where: "cost; stair-stepping by texels in narrow penumbrae; casters behind the last layer",
+        worst_case: "tree", "leaves behind the third layer are missing, which leaves speckles of light",
     }
     "single_map", Backprojection, "backprojection", "single_map::backprojection", {
         title: "Backprojection",
         source: "Guennebaud, Barthe, Paulin 2006, EGSR; 2007, CGF 26(3)",
-        penumbra: "from the area of the light inside outlines of the map's texels",
+        penumbra: "from the area of the light inside projected outlines of texels",
         light_maps: "1",
-        good_for: "one layer of occluders, without noise where texels are few",
-        fails_where: "occluders one behind another: light leaks in, or areas are counted twice",
-        worst_case: "tree", "leaves behind the first layer are missing, and those the map shows apart are added up",
+        good_for: "a single layer of occluders, without noise where it covers few texels",
+        fails_where: "occluders behind one another: light leaks, or areas are counted twice",
+        worst_case: "tree", "leaves behind the first layer are missing, and areas that several visible leaves hide are counted twice",
     }
     "light_views", MultiView, "multi_view", "light_views::multi_view", {
         title: "One depth map per light sample",
         source: "Heckbert, Herf 1997, CMU-CS-97-104",
         penumbra: "as exact as its samples",
         light_maps: "1 per sample",
-        good_for: "ground truth on the GPU; stills",
+        good_for: "ground truth on the GPU; still images",
         fails_where: "cost: one pass per sample; thin casters that hide one another in every view",
-        worst_case: "ring-in-grass", "surfaces behind several blades, within a few texels of the 1024² views, are guessed",
+        worst_case: "ring-in-grass", "surfaces behind several blades, within a few texels of the 1024² views, are estimated",
     }
     "filterable", Vsm, "vsm", "filterable::vsm", {
         title: "Variance shadow map",
         source: "Donnelly, Lauritzen 2006, I3D",
-        penumbra: "of one width",
+        penumbra: "constant width",
         light_maps: "1, filtered",
         good_for: "wide, smooth, cheap edges",
         fails_where: "light bleeding where occluders overlap",
-        worst_case: "overlap", "the shadow of the boards shows on the ground below the table",
+        worst_case: "overlap", "the boards' shadow bleeds light onto the ground below the table",
     }
     "filterable", Lvsm, "lvsm", "filterable::lvsm", {
         title: "Layered variance shadow map",
         source: "Lauritzen, McCool 2008, Graphics Interface",
-        penumbra: "of one width",
+        penumbra: "constant width",
         light_maps: "1, filtered, in layers",
         good_for: "wide, smooth edges without light bleeding: umbra leak .0007 on `overlap`, `vsm` .052",
         fails_where: "foliage without gaps in depth",
-        worst_case: "bench-under-tree", "one width for leaves far above; their depths leave no gaps between layers",
+        worst_case: "bench-under-tree", "one width of blur for leaves far above, whose depths have no gaps for splits between layers",
     }
     "filterable", Evsm, "evsm", "filterable::evsm", {
         title: "Exponential variance shadow map",
         source: "Lauritzen, McCool 2008, Graphics Interface",
-        penumbra: "of one width",
+        penumbra: "constant width",
         light_maps: "1, filtered",
         good_for: "little light bleeding from one map",
         fails_where: "foliage; large depth ranges",
-        worst_case: "tree", "leaves at many depths in one kernel, of which the warps keep only the outermost",
+        worst_case: "tree", "leaves at many depths in one kernel, of which the warps represent only the nearest and farthest",
     }
     "filterable", Esm, "esm", "filterable::esm", {
         title: "Exponential shadow map",
         source: "Annen et al. 2008, Graphics Interface; Salvi 2008",
-        penumbra: "of one width",
+        penumbra: "constant width",
         light_maps: "1, filtered",
-        good_for: "one channel of memory",
+        good_for: "memory: one channel per texel",
         fails_where: "contacts; silhouettes",
-        worst_case: "stacked-panels", "light at every contact, and on receivers that tilt away from the light",
+        worst_case: "stacked-panels", "light leaks at every contact and on receivers that are tilted away from the light",
     }
     "filterable", Convolution, "convolution", "filterable::convolution", {
         title: "Convolution shadow map",
         source: "Annen et al. 2007, EGSR",
-        penumbra: "of one width",
+        penumbra: "constant width",
         light_maps: "1, filtered",
         good_for: "8-bit storage",
-        fails_where: "contacts; ringing; reads every term of its series",
-        worst_case: "leaning-plank", "light within 1/(2M) of the depth range of every contact",
+        fails_where: "contacts; ringing; cost, since a lookup reads every term of the series",
+        worst_case: "leaning-plank", "light leaks within 1/(2M) of the depth range from every contact",
     }
     "filterable", Moment, "moment", "filterable::moment", {
         title: "Moment shadow map",
         source: "Peters, Klein 2015, I3D",
-        penumbra: "of one width",
+        penumbra: "constant width",
         light_maps: "1, filtered",
         good_for: "least light bleeding for 64 bits per texel",
         fails_where: "three or more occluders in one kernel",
@@ -301,16 +301,16 @@ techniques! {
     "single_map", PcssAnisotropic, "pcss_anisotropic", "single_map::pcss_anisotropic", {
         title: "Percentage-closer soft shadows over the pixel's footprint",
         source: "Shen, Guennebaud, Yang, Feng 2011, CGF 30(2)",
-        penumbra: "from one mean blocker, filtered over the pixel too",
+        penumbra: "from one mean blocker depth, also filtered over the pixel's footprint",
         light_maps: "1",
         good_for: "distant receivers without moiré, with as many samples as `pcss`",
         fails_where: "occluders behind one another",
-        worst_case: "tree", "64 samples over leaves at all depths, and one mean depth for them",
+        worst_case: "tree", "64 samples, and one mean depth, for leaves at all depths",
     }
     "summed", Essm, "essm", "summed::essm", {
         title: "Exponential soft shadow mapping",
         source: "Shen, Feng, Yang 2013, CGF 32(4)",
-        penumbra: "from one mean blocker, in constant time",
+        penumbra: "from one mean blocker depth, in constant time",
         light_maps: "1",
         good_for: "large kernels without noise",
         fails_where: "occluders behind one another",
@@ -332,7 +332,7 @@ techniques! {
         light_maps: "1",
         good_for: "as `savsm`; subdivides its kernel to reduce light bleeding",
         fails_where: "light bleeding where occluders overlap",
-        worst_case: "overlap", "light bleeds through the table, less where a part of the kernel holds a single depth",
+        worst_case: "overlap", "light bleeds through the table, though less where a part of the kernel contains a single depth",
     }
     "summed", Cssm, "cssm", "summed::cssm", {
         title: "Convolution soft shadow maps",
@@ -341,7 +341,7 @@ techniques! {
         light_maps: "1",
         good_for: "comparison with its paper",
         fails_where: "contacts; memory",
-        worst_case: "leaning-plank", "four terms rise over an eighth of the depth range, so contacts are lost",
+        worst_case: "leaning-plank", "the step of a series of four terms takes an eighth of the depth range, so contact shadows are lost",
     }
     "summed", Evssm, "evssm", "summed::evssm", {
         title: "Exponential variance soft shadow mapping",
@@ -350,7 +350,7 @@ techniques! {
         light_maps: "1",
         good_for: "less light bleeding than `vssm`",
         fails_where: "occluders behind one another",
-        worst_case: "tree", "its integers hold exponents up to 5, too few for leaves at all depths",
+        worst_case: "tree", "its integer tables limit the exponent to 5, too small for leaves at all depths",
     }
     "summed", Mssm, "mssm", "summed::mssm", {
         title: "Moment soft shadow mapping",
@@ -376,8 +376,8 @@ techniques! {
         penumbra: "as exact as its samples",
         light_maps: "1 central map",
         good_for: "many light samples from one rasterisation",
-        fails_where: "casters that the centre of the light does not see",
-        worst_case: "tree", "leaves hidden from the centre of the light are missing, and the crown lets light through",
+        fails_where: "casters that are not visible from the light's centre",
+        worst_case: "tree", "leaves hidden from the light's centre are missing, so light leaks through the crown",
     }
     "light_views", ReprojectionLayered, "reprojection_layered", "light_views::reprojection_layered", {
         title: "Fragment reprojection from layers",
@@ -385,8 +385,8 @@ techniques! {
         penumbra: "as exact as its samples",
         light_maps: "several layers of one view",
         good_for: "layered occluders; large lights",
-        fails_where: "about three times the arithmetic of `reprojection`; silhouettes within a texel",
-        worst_case: "tree", "nothing is known behind the fourth leaf",
+        fails_where: "cost, about three times the arithmetic of `reprojection`; silhouettes, within a texel",
+        worst_case: "tree", "leaves behind the fourth layer are missing",
     }
     "ray_traced", RayTraced, "ray_traced", "ray_traced", {
         title: "Rays through bounding volume hierarchies",
@@ -395,7 +395,7 @@ techniques! {
         light_maps: "none",
         good_for: "ground truth on the GPU; tinted casters along each ray; few rays with a denoiser",
         fails_where: "noise with few rays; cost of foliage near the light",
-        worst_case: "tree", "64 rays a pixel among leaves are noisy",
+        worst_case: "tree", "64 rays per pixel are noisy among leaves",
     }
     "receiver_lists", AliasFree, "alias_free", "receiver_lists::alias_free", {
         title: "Alias-free hard shadows",
@@ -404,16 +404,16 @@ techniques! {
         light_maps: "none",
         good_for: "exact hard shadows without a bias",
         fails_where: "every penumbra",
-        worst_case: "columns", "edges as sharp as the ray tracer's, and no penumbra",
+        worst_case: "columns", "exact hard edges, but no penumbra",
     }
     "receiver_lists", SampleBased, "sample_based", "receiver_lists::sample_based", {
         title: "Sample-based visibility",
         source: "Sintorn, Eisemann, Assarsson 2008, EGSR",
         penumbra: "exact at its samples",
         light_maps: "none",
-        good_for: "the ray tracer's result at its light samples, but for 1 in 10 000 on solids",
+        good_for: "the ray tracer's result for the same light samples, except for 1 sample in 10 000 on solids",
         fails_where: "many triangles between receivers and a large light",
-        worst_case: "stained-glass", "tint follows the fraction of the light that each pane covers, not each light sample",
+        worst_case: "stained-glass", "tint is computed from the fraction of the light that each pane covers, not per light sample",
     }
 }
 

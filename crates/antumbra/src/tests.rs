@@ -191,7 +191,7 @@ fn qualities_are_within_ranges_and_differ() {
 
 /// Published settings are valid and differ from the defaults, each with a text on what the default does instead.
 #[test]
-fn what_papers_print_is_within_ranges_and_differs() {
+fn published_settings_are_valid_and_differ_from_defaults() {
     let mut printed_count = 0;
     for kind in TechniqueKind::ALL {
         let set = kind.quality_settings(Quality::Paper);

@@ -57,7 +57,7 @@ fn load(path: &str) -> Result<Image, String> {
         (BitDepth::Eight, ColorType::Rgba) => {
             bytes.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
         }
-        other => return Err(format!("{path}: {other:?}, and should be of eight bits a channel, RGB or RGBA")),
+        other => return Err(format!("{path}: has the format {other:?}; expected RGB or RGBA with 8 bits per channel")),
     };
     Ok(Image { width: info.width, height: info.height, rgb })
 }
@@ -67,7 +67,7 @@ fn save(path: &str, frames: &[Image], delay_ms: u16) -> Result<(), String> {
     if let Some(other) = frames.iter().find(|frame| (frame.width, frame.height) != (first.width, first.height)) {
         let (w, h) = (first.width, first.height);
         return Err(format!(
-            "frames of {w} × {h} and of {} × {}: they should be of one size",
+            "frames have different sizes, {w} × {h} and {} × {}; give frames of equal size",
             other.width, other.height
         ));
     }
@@ -135,7 +135,7 @@ mod tests {
         frames[1].rgb[3 * (4 + 2)] = 200;
         frames[2].rgb[0] = 7;
         let mut bytes = Vec::new();
-        encode(&mut bytes, &frames, 80).expect("frames of one size");
+        encode(&mut bytes, &frames, 80).expect("frames of equal size");
 
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG");
         assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(3));

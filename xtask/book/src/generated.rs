@@ -14,7 +14,7 @@ const END: &str = "<!-- end of what is generated -->";
 pub fn renewed(text: &str) -> Result<String, String> {
     let (mut renewed, mut rest) = (String::new(), text);
     while let Some((before, begun)) = rest.split_once(BEGIN) {
-        let (what, behind) = begun.split_once(" -->\n").ok_or("a generated part's comment has no end")?;
+        let (what, behind) = begun.split_once(" -->\n").ok_or("the comment of a generated part has no end")?;
         let (_, after) = behind.split_once(END).ok_or_else(|| format!("`{what}` lacks the line {END}"))?;
         renewed.push_str(&format!("{before}{BEGIN}{what} -->\n{}{END}", part(what)?));
         rest = after;
@@ -37,7 +37,7 @@ fn part(what: &str) -> Result<String, String> {
         _ if what == "names" => Ok(names()),
         _ if what == "scenes" => Ok(scenes()),
         _ => Err(format!(
-            "nothing is made of `{what}`: there are `techniques NAME...`, `departures NAME...`, `worst cases`, `names` and `scenes`"
+            "there is no generated part `{what}`; expected `techniques NAME...`, `departures NAME...`, `worst cases`, `names` or `scenes`"
         )),
     }
 }
@@ -82,11 +82,11 @@ fn departures(kinds: &[TechniqueKind]) -> Result<String, String> {
         let set = kind.quality_settings(Quality::Paper);
         for departure in printed.departures {
             let value = set.iter().find(|(key, _)| *key == departure.key).map(|(_, value)| value.to_string());
-            let value = value.ok_or_else(|| format!("`{kind}:paper` leaves `{}` as it is", departure.key))?;
+            let value = value.ok_or_else(|| format!("`{kind}:paper` does not set `{}`", departure.key))?;
             text += &format!("| `{kind}` | {} | `{}={value}` |\n", departure.ours, departure.key);
         }
         for kept in printed.kept {
-            text += &format!("| `{kind}` | {kept} | none: it stays |\n");
+            text += &format!("| `{kind}` | {kept} | none |\n");
         }
     }
     Ok(text)

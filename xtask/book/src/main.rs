@@ -25,7 +25,7 @@ fn main() -> ExitCode {
             let [folder, work] = [folder, work].map(Path::new);
             site::write(folder, work, repository.first().copied()).map(|commands| print!("{commands}"))
         }
-        _ => Err("it takes nothing, or `site FOLDER WORK [REPOSITORY]`".into()),
+        _ => Err("expected no arguments, or `site FOLDER WORK [REPOSITORY]`".into()),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -105,7 +105,7 @@ fn scene_card(scene: &BuiltinInfo) -> String {
     );
     let animation = animation::SCENES.contains(&name).then(|| format!("images/{}", animation::image(name)));
     let made_by = if animation.is_some() {
-        "<p>The animation has twelve images with other setup files: <code>cargo xtask site</code> makes them.</p>"
+        "<p>The animation has twelve images with different setup files, made by <code>cargo xtask site</code>.</p>"
     } else {
         ""
     };

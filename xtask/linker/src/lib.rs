@@ -61,13 +61,13 @@ pub fn relink(library: &Path) -> Result<(), String> {
             .parent()
             .map_or(Ok(()), std::fs::create_dir_all)
             .and_then(|()| std::fs::write(&target, text))
-            .map_err(|error| format!("{}: cannot write it: {error}", target.display()))?;
+            .map_err(|error| format!("cannot write {}: {error}", target.display()))?;
         println!("linked {file}");
         written += 1;
     }
     for file in committed.keys().filter(|file| !linked.contains_key(*file)) {
         let stale = folder.join(file);
-        std::fs::remove_file(&stale).map_err(|error| format!("{}: cannot remove it: {error}", stale.display()))?;
+        std::fs::remove_file(&stale).map_err(|error| format!("cannot remove {}: {error}", stale.display()))?;
         println!("removed {file}");
         removed += 1;
     }
@@ -94,11 +94,13 @@ pub fn link(sources: &Path, shader: &Shader) -> Result<String, String> {
     }
     let module: ModulePath = format!("package::{}", path.replace('/', "::"))
         .parse()
-        .map_err(|error| format!("src/shaders.rs: `{path}` is no path of a shader: {error}"))?;
+        .map_err(|error| format!("src/shaders.rs: `{path}` is not the path of a shader: {error}"))?;
     let mut linked = compiler.compile(&module).map_err(|error| format!("src/{path}.wesl does not link:\n{error}"))?;
     order(&mut linked);
     if let Some(name) = first_twice(&linked) {
-        return Err(format!("src/{path}.wesl does not link: two files of one name both have `{name}`; rename a file"));
+        return Err(format!(
+            "src/{path}.wesl does not link: two files with the same name both declare `{name}`; rename one of the files"
+        ));
     }
     let with = if features.is_empty() { String::new() } else { format!(" with {features}") };
     Ok(format!("// Linked from src/{path}.wesl{with} by `{COMMAND}`: edit that, not this.\n\n{linked}"))
@@ -153,7 +155,7 @@ fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, String> {
     let mut folders = vec![String::new()];
     while let Some(inner) = folders.pop() {
         let path = folder.join(&inner);
-        let unreadable = |error: std::io::Error| format!("{}: cannot read it: {error}", path.display());
+        let unreadable = |error: std::io::Error| format!("cannot read {}: {error}", path.display());
         let entries = match std::fs::read_dir(&path) {
             Err(error) if error.kind() == ErrorKind::NotFound && inner.is_empty() => break,
             entries => entries.map_err(unreadable)?,
@@ -178,12 +180,12 @@ fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, String> {
 fn faults(linked: &BTreeMap<String, String>, committed: &BTreeMap<String, String>) -> Vec<String> {
     let fault = |file: &String, what: &str| format!("crates/antumbra/linked/{file} {what}: run `{COMMAND}`");
     let outdated = linked.iter().filter_map(|(file, text)| match committed.get(file) {
-        None => Some(fault(file, "is not there")),
-        Some(other) if other != text => Some(fault(file, "is not what its source links to")),
+        None => Some(fault(file, "is missing")),
+        Some(other) if other != text => Some(fault(file, "is out of date")),
         Some(_) => None,
     });
     let stale = committed.keys().filter(|file| !linked.contains_key(*file));
-    outdated.chain(stale.map(|file| fault(file, "belongs to no shader of src/shaders.rs"))).collect()
+    outdated.chain(stale.map(|file| fault(file, "is not listed in src/shaders.rs"))).collect()
 }
 
 #[cfg(test)]
@@ -213,9 +215,9 @@ mod tests {
         let linked = texts(&[("a.wgsl", "new"), ("b.wgsl", "same"), ("c.wgsl", "new")]);
         let committed = texts(&[("a.wgsl", "old"), ("b.wgsl", "same"), ("d.wgsl", "left over")]);
         let expected = [
-            "crates/antumbra/linked/a.wgsl is not what its source links to: run `cargo xtask shaders`",
-            "crates/antumbra/linked/c.wgsl is not there: run `cargo xtask shaders`",
-            "crates/antumbra/linked/d.wgsl belongs to no shader of src/shaders.rs: run `cargo xtask shaders`",
+            "crates/antumbra/linked/a.wgsl is out of date: run `cargo xtask shaders`",
+            "crates/antumbra/linked/c.wgsl is missing: run `cargo xtask shaders`",
+            "crates/antumbra/linked/d.wgsl is not listed in src/shaders.rs: run `cargo xtask shaders`",
         ];
         assert_eq!(faults(&linked, &committed), expected);
     }

@@ -117,7 +117,7 @@ pub fn judge(
         if known.is_none() {
             match suite.run(test, folder, false, limit)?.outcome {
                 Outcome::Passed => {}
-                Outcome::Failed => return Err(format!("`{}` fails with nothing changed", test.shown())),
+                Outcome::Failed => return Err(format!("`{}` fails without a mutation; fix it first", test.shown())),
                 Outcome::TimedOut => {
                     suite.keep(test, Measured { seconds: 2.0 * AT_FIRST_S, shaders: ran.shaders })?;
                     continue;

@@ -20,20 +20,20 @@ use std::process::ExitCode;
 const USAGE: &str = "\
 cargo xtask mutants [OPTIONS]
 
-Changes the library's shaders one operator, comparison or number at a time, runs the tests that use what is changed, and
-writes docs/mutants.md. A run that was ended is taken up where it was.
+Changes one operator, comparison or number of the library's shaders at a time, runs the tests that use the changed shader, and
+writes docs/mutants.md. A run that was stopped continues.
 
-    --count N       How many mutants that compile; 300.
-    --seed S        Which; 1.
-    --only PATH     Of sources whose path under src/ begins so.
-    --jobs N        How many at a time; 1.
-    --seconds S     How long tests are asked about a mutant at most; 60.
-    --wide          Asks the laboratory's tests of whole techniques too, which take long.
-    --again         Judges those that survived again, after a test was added or with more seconds.
-    --anew          Judges all again, and measures the tests again.
-    --report        Only writes the page, of what is judged.
-    --check         Writes no page, and keeps what it judges apart from what a page is made of; fails where a mutant survives that
-                    `xtask/mutants/reasons.toml` has no reason for.
+    --count N       Number of mutants that compile; default: 300.
+    --seed S        Seed that selects the mutants; default: 1.
+    --only PATH     Mutates only sources whose path under src/ begins with PATH.
+    --jobs N        Number of mutants tested at the same time; default: 1.
+    --seconds S     Time limit for the tests of one mutant; default: 60.
+    --wide          Also runs the laboratory's tests of whole techniques, which are slow.
+    --again         Repeats the survivors, after a test was added or with more seconds.
+    --anew          Repeats all mutants, and measures the tests again.
+    --report        Only writes the page from the results so far.
+    --check         Writes no page, and stores its results separately from those of the page; fails if a mutant survives for which
+                    `xtask/mutants/reasons.toml` has no reason.
 ";
 
 /// Options of the command line.
@@ -67,7 +67,7 @@ impl Options {
         };
         let mut args = args.iter();
         while let Some(arg) = args.next() {
-            let mut value = || args.next().ok_or_else(|| format!("`{arg}` wants a value"));
+            let mut value = || args.next().ok_or_else(|| format!("`{arg}` needs a value"));
             match arg.as_str() {
                 "--count" => options.count = number(arg, value()?)?,
                 "--seed" => options.seed = number(arg, value()?)?,
@@ -83,10 +83,10 @@ impl Options {
             }
         }
         if !(options.seconds.is_finite() && options.seconds > 0.0) {
-            return Err("`--seconds` is more than 0".to_owned());
+            return Err("`--seconds` must be more than 0".to_owned());
         }
         if options.count == 0 || options.jobs == 0 {
-            return Err("`--count` and `--jobs` are 1 or more".to_owned());
+            return Err("`--count` and `--jobs` must be at least 1".to_owned());
         }
         Ok(options)
     }
@@ -99,7 +99,7 @@ impl Options {
 }
 
 fn number<T: std::str::FromStr>(option: &str, value: &str) -> Result<T, String> {
-    value.parse().map_err(|_| format!("`{option} {value}`: that is no such number"))
+    value.parse().map_err(|_| format!("`{option} {value}`: expected a valid number"))
 }
 
 fn main() -> ExitCode {

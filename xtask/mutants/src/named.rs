@@ -44,7 +44,12 @@ impl Named {
         let found: Vec<usize> = text.match_indices(&self.from).map(|(at, _)| at).collect();
         match found[..] {
             [start] => Ok(Change { start, end: start + self.from.len(), to: self.to.clone() }),
-            _ => Err(format!("named.toml: `{}` stands {} times in {}", self.from, found.len(), self.file)),
+            _ => Err(format!(
+                "named.toml: `{}` occurs {} times in {}, but must occur once",
+                self.from,
+                found.len(),
+                self.file
+            )),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::results::{Fate, Mutant};
+use crate::results::{Mutant, MutantOutcome};
 use crate::sources::Sources;
 
 /// First line of the page's part that is written by other programs and kept.
@@ -36,10 +36,10 @@ pub struct Run<'a> {
     pub seconds: f64,
     pub sources: &'a Sources,
     /// Mutants that compile, with their verdicts.
-    pub judged: Vec<(&'a Mutant, &'a Fate)>,
+    pub judged: Vec<(&'a Mutant, &'a MutantOutcome)>,
     pub invalid: usize,
     /// Named changes, with their verdicts; `None` if not run.
-    pub named: Vec<(String, Option<Fate>)>,
+    pub named: Vec<(String, Option<MutantOutcome>)>,
 }
 
 impl Reasons {
@@ -82,12 +82,19 @@ pub fn check(root: &Path, run: &Run<'_>) -> Result<(), String> {
     println!("{}: {killed} of {} killed", run.command, run.judged.len());
     match &unexplained(&run.judged, &run.named, &Reasons::read(root)?)[..] {
         [] => Ok(()),
-        all => Err(format!("no test notices, and xtask/mutants/reasons.toml has no reason why: {}", all.join("; "))),
+        all => Err(format!(
+            "no test detects these, and xtask/mutants/reasons.toml has no reason for them: {}",
+            all.join("; ")
+        )),
     }
 }
 
 /// Returns the survivors without a reason, and the named changes that no test detects.
-fn unexplained(judged: &[(&Mutant, &Fate)], named: &[(String, Option<Fate>)], reasons: &Reasons) -> Vec<String> {
+fn unexplained(
+    judged: &[(&Mutant, &MutantOutcome)],
+    named: &[(String, Option<MutantOutcome>)],
+    reasons: &Reasons,
+) -> Vec<String> {
     let survivors = judged.iter().filter(|(mutant, fate)| !is_killed(fate) && reasons.of(mutant).is_none());
     let named = named.iter().filter(|(_, fate)| !fate.as_ref().is_some_and(is_killed));
     survivors
@@ -104,14 +111,14 @@ fn page(run: &Run<'_>, reasons: &Reasons) -> String {
     page
 }
 
-fn is_killed(fate: &Fate) -> bool {
-    matches!(fate, Fate::Killed(_) | Fate::Hangs(_))
+fn is_killed(fate: &MutantOutcome) -> bool {
+    matches!(fate, MutantOutcome::Killed(_) | MutantOutcome::Hangs(_))
 }
 
 fn head(run: &Run<'_>) -> String {
     let made = run.judged.len();
     let killed = run.judged.iter().filter(|(_, fate)| is_killed(fate)).count();
-    let hung = run.judged.iter().filter(|(_, fate)| matches!(fate, Fate::Hangs(_))).count();
+    let hung = run.judged.iter().filter(|(_, fate)| matches!(fate, MutantOutcome::Hangs(_))).count();
     let sources: std::collections::BTreeSet<_> = run.judged.iter().map(|(mutant, _)| &mutant.file).collect();
     format!(
         "\
@@ -139,9 +146,9 @@ fn table_of_named(page: &mut String, run: &Run<'_>) {
     page.push_str("## Changes that once passed all tests\n\n| change | killed by |\n|---|---|\n");
     for (what, fate) in &run.named {
         let by = match fate {
-            Some(Fate::Killed(by) | Fate::Hangs(by)) => format!("`{by}`"),
-            Some(Fate::Survived(asked)) => format!("none of {asked} tests"),
-            Some(Fate::Invalid(why)) => why.clone(),
+            Some(MutantOutcome::Killed(by) | MutantOutcome::Hangs(by)) => format!("`{by}`"),
+            Some(MutantOutcome::Survived(asked)) => format!("none of {asked} tests"),
+            Some(MutantOutcome::Invalid(why)) => why.clone(),
             None => "not run".to_owned(),
         };
         let _ = writeln!(page, "| {what} | {by} |");
@@ -160,7 +167,7 @@ fn table_of_survivors(page: &mut String, run: &Run<'_>, reasons: &Reasons) {
         let code = |text: &str| format!("`{}`", text.replace('|', "\\|"));
         let (from, to, text) = (code(&mutant.from), code(&mutant.to), code(&mutant.text));
         let column = mutant.column;
-        let asked = if let Fate::Survived(asked) = fate { *asked } else { 0 };
+        let asked = if let MutantOutcome::Survived(asked) = fate { *asked } else { 0 };
         let _ = writeln!(page, "| {} | {line}:{column} | {from} → {to} in {text} | {asked} | {why} |", mutant.file);
     }
 }
@@ -188,7 +195,7 @@ mod tests {
         let [file, text, from, to] = ["a.wesl", "let b = c + d;", "+", "-"].map(str::to_owned);
         let words = (file.clone(), text.clone(), from.clone(), to.clone());
         let mutant = Mutant { file, text, column: 11, repeat: 0, from, to };
-        let [killed, survived] = [Fate::Killed("a test".into()), Fate::Survived(3)];
+        let [killed, survived] = [MutantOutcome::Killed("a test".into()), MutantOutcome::Survived(3)];
         let none = Reasons { reason: Vec::new() };
         assert!(unexplained(&[(&mutant, &killed)], &[], &none).is_empty());
         assert_eq!(unexplained(&[(&mutant, &survived)], &[], &none), ["a.wesl: let b = c + d; @11 + → -"]);

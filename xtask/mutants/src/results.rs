@@ -48,7 +48,7 @@ impl Mutant {
 /// Verdict on a mutant.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Fate {
+pub enum MutantOutcome {
     /// It does not compile, or no shader changes. Contains the reason.
     Invalid(String),
     /// Killed by this test.
@@ -63,7 +63,7 @@ pub enum Fate {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Entry {
     pub mutant: Mutant,
-    pub fate: Fate,
+    pub fate: MutantOutcome,
     pub seconds: f64,
 }
 
@@ -87,7 +87,7 @@ impl Results {
         Ok(results)
     }
 
-    pub fn fate_of(&self, mutant: &Mutant) -> Option<&Fate> {
+    pub fn fate_of(&self, mutant: &Mutant) -> Option<&MutantOutcome> {
         self.entries.iter().find(|entry| entry.mutant == *mutant).map(|entry| &entry.fate)
     }
 
@@ -107,7 +107,7 @@ impl Results {
             .append(true)
             .open(&self.path)
             .and_then(|mut file| writeln!(file, "{line}"))
-            .map_err(|error| format!("{}: cannot write it: {error}", self.path.display()))?;
+            .map_err(|error| format!("cannot write {}: {error}", self.path.display()))?;
         self.put(entry);
         Ok(())
     }
@@ -131,18 +131,18 @@ mod tests {
     }
 
     #[test]
-    fn the_last_word_counts() {
+    fn the_newest_result_replaces_earlier_ones() {
         let path = std::env::temp_dir().join(format!("antumbra-mutants-{}", std::process::id()));
         let change = Change { start: 0, end: 2, to: String::new() };
         let mutant = Mutant::new("a.wesl", SOURCE, &change);
         let mut results = Results::read(&path).expect("none yet");
-        for fate in [Fate::Survived(3), Fate::Killed("a test".to_owned())] {
-            results.add(Entry { mutant: mutant.clone(), fate, seconds: 1.0 }).expect("a folder for files");
+        for fate in [MutantOutcome::Survived(3), MutantOutcome::Killed("a test".to_owned())] {
+            results.add(Entry { mutant: mutant.clone(), fate, seconds: 1.0 }).expect("a temporary folder");
         }
         let read = Results::read(&path);
         std::fs::remove_file(&path).expect("ours");
         let read = read.expect("ours");
         assert_eq!(read.entries.len(), 1);
-        assert_eq!(read.fate_of(&mutant), Some(&Fate::Killed("a test".to_owned())));
+        assert_eq!(read.fate_of(&mutant), Some(&MutantOutcome::Killed("a test".to_owned())));
     }
 }

@@ -12,8 +12,8 @@ use crate::judge::{Record, Verdict, judge};
 use crate::named;
 use crate::places::{Change, changes_of};
 use crate::report;
-use crate::results::{Entry, Fate, Mutant, Results};
-use crate::sources::{Folder, Made, Sources};
+use crate::results::{Entry, Mutant, MutantOutcome, Results};
+use crate::sources::{Folder, MutationEffect, Sources};
 use crate::suite::Suite;
 
 /// Returns the workspace's root.
@@ -114,7 +114,7 @@ impl Work<'_> {
     fn all(&self, suite: &Suite, store: &Path) -> Result<(), String> {
         let record = Record::default();
         for entry in &self.state().results.entries {
-            if let Fate::Killed(by) | Fate::Hangs(by) = &entry.fate {
+            if let MutantOutcome::Killed(by) | MutantOutcome::Hangs(by) = &entry.fate {
                 record.note(by, true);
             }
         }
@@ -139,7 +139,7 @@ impl Work<'_> {
             let mut state = self.state();
             state.judged += 1;
             self.tell(&state, &entry);
-            if matches!(entry.fate, Fate::Invalid(_)) && !candidate.is_named {
+            if matches!(entry.fate, MutantOutcome::Invalid(_)) && !candidate.is_named {
                 state.taken -= 1;
             }
             state.results.add(entry)?;
@@ -157,30 +157,36 @@ impl Work<'_> {
             }
             state.next += 1;
             let known = state.results.fate_of(&candidate.mutant).cloned();
-            let is_mutant = !matches!(known, Some(Fate::Invalid(_)));
+            let is_mutant = !matches!(known, Some(MutantOutcome::Invalid(_)));
             state.taken += usize::from(is_mutant && !candidate.is_named);
             match known {
                 None => return Some(candidate),
-                Some(Fate::Survived(_)) if self.options.again => return Some(candidate),
+                Some(MutantOutcome::Survived(_)) if self.options.again => return Some(candidate),
                 Some(_) => {}
             }
         }
     }
 
-    fn fate(&self, suite: &Suite, record: &Record, folder: &Folder, candidate: &Candidate) -> Result<Fate, String> {
+    fn fate(
+        &self,
+        suite: &Suite,
+        record: &Record,
+        folder: &Folder,
+        candidate: &Candidate,
+    ) -> Result<MutantOutcome, String> {
         let file = &candidate.mutant.file;
         let shaders = match self.sources.make(folder, file, &candidate.change)? {
-            Made::Nothing(why) => return Ok(Fate::Invalid(why.to_owned())),
-            Made::Shaders(shaders) => shaders,
+            MutationEffect::Nothing(why) => return Ok(MutantOutcome::Invalid(why.to_owned())),
+            MutationEffect::Shaders(shaders) => shaders,
         };
         folder.put(&shaders)?;
         // The named changes are known to be hard to detect, so their tests get more time.
         let seconds = if candidate.is_named { 20.0 } else { 1.0 } * self.options.seconds;
         let names: BTreeSet<String> = shaders.into_keys().collect();
         Ok(match judge(suite, record, folder, file, &names, seconds)? {
-            Verdict::Killed { by, hangs: false } => Fate::Killed(by),
-            Verdict::Killed { by, hangs: true } => Fate::Hangs(by),
-            Verdict::Survived { asked } => Fate::Survived(asked),
+            Verdict::Killed { by, hangs: false } => MutantOutcome::Killed(by),
+            Verdict::Killed { by, hangs: true } => MutantOutcome::Hangs(by),
+            Verdict::Survived { asked } => MutantOutcome::Survived(asked),
         })
     }
 
@@ -189,10 +195,10 @@ impl Work<'_> {
         let each = state.begun.elapsed().as_secs_f64() / state.judged as f64;
         let left = each * (self.options.count - state.taken.min(self.options.count)) as f64 / 60.0;
         let fate = match &entry.fate {
-            Fate::Invalid(why) => why.clone(),
-            Fate::Killed(by) => format!("killed by {by}"),
-            Fate::Hangs(by) => format!("ran on in {by}"),
-            Fate::Survived(asked) => format!("SURVIVED {asked} tests"),
+            MutantOutcome::Invalid(why) => why.clone(),
+            MutantOutcome::Killed(by) => format!("killed by {by}"),
+            MutantOutcome::Hangs(by) => format!("ran on in {by}"),
+            MutantOutcome::Survived(asked) => format!("SURVIVED {asked} tests"),
         };
         let (taken, count) = (state.taken, self.options.count);
         eprintln!(
@@ -225,7 +231,7 @@ fn outcome<'a>(
             break;
         }
         match state.results.fate_of(&candidate.mutant) {
-            Some(Fate::Invalid(_)) => run.invalid += 1,
+            Some(MutantOutcome::Invalid(_)) => run.invalid += 1,
             Some(fate) => run.judged.push((&candidate.mutant, fate)),
             None => {}
         }

@@ -19,7 +19,7 @@ pub struct Sources {
 }
 
 /// Effect of a change on the shaders.
-pub enum Made {
+pub enum MutationEffect {
     /// New texts, by the library's names of the changed shaders: see [`changed_name`].
     Shaders(BTreeMap<String, String>),
     /// Not a mutant: one of the shaders does not compile, or none changes.
@@ -41,7 +41,7 @@ impl Sources {
                     folders.push(path);
                 } else if path.extension().is_some_and(|ending| ending == "wesl") {
                     let text = std::fs::read_to_string(&path).map_err(unreadable)?;
-                    let name = path.strip_prefix(&root).expect("under the root").to_string_lossy().replace('\\', "/");
+                    let name = path.strip_prefix(&root).expect("below the root").to_string_lossy().replace('\\', "/");
                     texts.insert(name, text);
                 }
             }
@@ -55,7 +55,7 @@ impl Sources {
     ///
     /// # Errors
     /// If the folder cannot be written.
-    pub fn make(&self, folder: &Folder, file: &str, change: &Change) -> Result<Made, String> {
+    pub fn make(&self, folder: &Folder, file: &str, change: &Change) -> Result<MutationEffect, String> {
         let mut text = self.texts[file].clone();
         text.replace_range(change.start..change.end, &change.to);
         folder.write(file, &text)?;
@@ -64,19 +64,19 @@ impl Sources {
         Ok(made)
     }
 
-    fn link_changed(&self, folder: &Folder, file: &str) -> Made {
+    fn link_changed(&self, folder: &Folder, file: &str) -> MutationEffect {
         let mut shaders = BTreeMap::new();
         for (i, shader) in SHADERS.iter().enumerate().filter(|(i, _)| self.parts[*i].contains(file)) {
-            let Ok(text) = link(&folder.sources, shader) else { return Made::Nothing("does not link") };
+            let Ok(text) = link(&folder.sources, shader) else { return MutationEffect::Nothing("does not link") };
             if text == self.linked[i] {
                 continue;
             }
             if !is_valid(&text) {
-                return Made::Nothing("does not compile");
+                return MutationEffect::Nothing("does not compile");
             }
             shaders.insert(changed_name(shader), text);
         }
-        if shaders.is_empty() { Made::Nothing("changes no shader") } else { Made::Shaders(shaders) }
+        if shaders.is_empty() { MutationEffect::Nothing("changes no shader") } else { MutationEffect::Shaders(shaders) }
     }
 }
 
@@ -144,7 +144,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
     path.parent()
         .map_or(Ok(()), std::fs::create_dir_all)
         .and_then(|()| std::fs::write(path, text))
-        .map_err(|error| format!("{}: cannot write it: {error}", path.display()))
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
 /// Returns the name of a shader in the library's feature `mutants` (`gpu/mutants.rs`): its path and its features.

@@ -60,7 +60,7 @@ pub enum Outcome {
 
 /// Run of a test.
 #[derive(Debug)]
-pub struct Ran {
+pub struct TestRun {
     pub outcome: Outcome,
     /// Shaders that it used until it ended.
     pub shaders: BTreeSet<String>,
@@ -133,7 +133,7 @@ impl Suite {
         let is_new = |test: &&Test| test.is_golden() && self.known(test).is_none();
         for test in self.tests.iter().filter(is_new) {
             if self.run(test, folder, false, Duration::from_secs(600))?.outcome != Outcome::Passed {
-                return Err(format!("`{}` fails with nothing changed", test.shown()));
+                return Err(format!("`{}` fails without a mutation; fix it first", test.shown()));
             }
         }
         Ok(())
@@ -155,7 +155,7 @@ impl Suite {
     ///
     /// # Errors
     /// If its program cannot be run.
-    pub fn run(&self, test: &Test, folder: &Folder, is_changed: bool, limit: Duration) -> Result<Ran, String> {
+    pub fn run(&self, test: &Test, folder: &Folder, is_changed: bool, limit: Duration) -> Result<TestRun, String> {
         let program = &self.programs[&test.program];
         let unable = |error: std::io::Error| format!("{}: {error}", program.path.display());
         folder.clear_seen()?;
@@ -173,7 +173,7 @@ impl Suite {
         if outcome == Outcome::Passed && self.known(test).is_none() {
             self.keep(test, Measured { seconds: begun.elapsed().as_secs_f64(), shaders: shaders.clone() })?;
         }
-        Ok(Ran { outcome, shaders })
+        Ok(TestRun { outcome, shaders })
     }
 }
 
@@ -205,9 +205,9 @@ fn build(root: &Path, is_wide: bool) -> Result<BTreeMap<String, Program>, String
         .current_dir(root)
         .stderr(Stdio::inherit())
         .output()
-        .map_err(|error| format!("cargo cannot be run: {error}"))?;
+        .map_err(|error| format!("cannot run cargo: {error}"))?;
     if !output.status.success() {
-        return Err("the tests do not build".to_owned());
+        return Err("the tests do not compile".to_owned());
     }
     let mut programs = BTreeMap::new();
     for line in String::from_utf8_lossy(&output.stdout).lines() {
@@ -230,7 +230,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_runs_on_is_ended() {
+    fn tests_are_stopped_at_the_time_limit() {
         let end = |program: &str, args: &[&str], limit_ms| {
             end_of(Command::new(program).args(args), Duration::from_millis(limit_ms)).expect("every system has it")
         };

@@ -39,7 +39,7 @@ impl Wrapped {
     /// # Panics
     /// If there is no such driver, because Vulkan cannot report which one is missing.
     fn load() -> Self {
-        let path = std::env::var_os(DRIVER).unwrap_or_else(|| panic!("{DRIVER} names no driver"));
+        let path = std::env::var_os(DRIVER).unwrap_or_else(|| panic!("{DRIVER} does not name a driver"));
         // SAFETY: loading a driver's library has no conditions; its functions have these types by the loader's specification. It
         // stays loaded for the whole process.
         unsafe {

@@ -44,7 +44,7 @@ fn add_linked(programs: &mut Programs, folder: &Path) -> Result<(), String> {
         missing.extend(entries.into_iter().filter(is_missing).map(|(_, entry)| format!("{name}: {entry}")));
     }
     if !missing.is_empty() {
-        eprintln!("programs: the modules of these are made, and no pipeline:\n{}", missing.join("\n"));
+        eprintln!("programs: no pipeline was created for the modules of:\n{}", missing.join("\n"));
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use antumbra::programs::Made;
+use antumbra::programs::CreatedObject;
 use serde_json::{Map, Value, json};
 
 /// Everything that was created, without duplicates. Modules and layouts are referred to by their indices in these lists.
@@ -45,7 +45,7 @@ impl<T: Clone + Eq + std::hash::Hash> Listed<T> {
     /// # Panics
     /// If the object was not recorded.
     fn place_of(&self, thing: &T) -> usize {
-        *self.things.get(thing).expect("made by `antumbra::programs` as all is that a pipeline is made of")
+        *self.things.get(thing).expect("created by `antumbra::programs`, as all parts of a pipeline are")
     }
 }
 
@@ -62,25 +62,25 @@ pub struct Entry<'a> {
 
 impl Programs {
     /// Records a created object.
-    pub fn add(&mut self, made: Made<'_>) {
+    pub fn add(&mut self, made: CreatedObject<'_>) {
         match made {
-            Made::Module(module, label, wgsl) => self.modules.add(module, &json!({ "code": wgsl }), label),
-            Made::BindGroupLayout(layout, entries) => {
+            CreatedObject::Module(module, label, wgsl) => self.modules.add(module, &json!({ "code": wgsl }), label),
+            CreatedObject::BindGroupLayout(layout, entries) => {
                 let entries: Vec<_> = entries.iter().map(bind_group_layout_entry).collect();
                 self.bind_group_layouts.add(layout, &json!({ "entries": entries }), "");
             }
-            Made::PipelineLayout(layout, groups) => {
+            CreatedObject::PipelineLayout(layout, groups) => {
                 let groups: Vec<_> =
                     groups.iter().map(|group| group.map(|group| self.bind_group_layouts.place_of(group))).collect();
                 self.pipeline_layouts.add(layout, &json!({ "bindGroupLayouts": groups }), "");
             }
-            Made::Compute(descriptor) => {
+            CreatedObject::Compute(descriptor) => {
                 let wgpu::ComputePipelineDescriptor { module, entry_point, compilation_options, .. } = descriptor;
                 let compute = self.stage(module, *entry_point, compilation_options);
                 let what = json!({ "layout": self.layout(descriptor.layout), "compute": compute });
                 self.pipelines.add(&(), &what, descriptor.label.unwrap_or_default());
             }
-            Made::Render(descriptor) => {
+            CreatedObject::Render(descriptor) => {
                 let what = self.render_pipeline(descriptor);
                 self.pipelines.add(&(), &what, descriptor.label.unwrap_or_default());
             }
@@ -124,7 +124,7 @@ impl Programs {
     }
 
     fn layout(&self, layout: Option<&wgpu::PipelineLayout>) -> usize {
-        self.pipeline_layouts.place_of(layout.expect("our pipelines have layouts of our own"))
+        self.pipeline_layouts.place_of(layout.expect("all pipelines have explicit layouts"))
     }
 
     fn stage(

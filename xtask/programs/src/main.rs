@@ -51,7 +51,7 @@ fn run(words: &[OsString]) -> Result<(), String> {
                 None => Ok(()),
                 Some(message) => {
                     print!("{message}");
-                    Err("refused by DXC".to_owned())
+                    Err("DXC reports errors".to_owned())
                 }
             }
         }
@@ -78,7 +78,7 @@ fn options<const N: usize>(words: &[OsString], names: [&str; N]) -> Result<[Opti
     while let Some(word) = words.next() {
         let place = names.iter().position(|name| word.to_str() == Some(*name));
         let place = place.ok_or_else(|| format!("there is no option `{}`\n{USAGE}", word.display()))?;
-        let value = words.next().ok_or_else(|| format!("`{}` takes a value", names[place]))?;
+        let value = words.next().ok_or_else(|| format!("`{}` needs a value", names[place]))?;
         values[place] = Some(value.clone());
     }
     Ok(values)

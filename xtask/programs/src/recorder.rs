@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use antumbra::programs::Made;
+use antumbra::programs::CreatedObject;
 use naga::ShaderStage;
 
 /// Pipeline with its programs and state.
@@ -63,19 +63,19 @@ impl Recorder {
     ///
     /// # Panics
     /// For a pipeline whose module was not recorded: `antumbra::programs` creates all of them.
-    pub fn record(&mut self, made: &Made<'_>) -> Option<Pipeline> {
+    pub fn record(&mut self, made: &CreatedObject<'_>) -> Option<Pipeline> {
         match made {
-            Made::Module(module, label, wgsl) => {
+            CreatedObject::Module(module, label, wgsl) => {
                 self.add(module, label, wgsl);
                 None
             }
-            Made::Compute(descriptor) => {
+            CreatedObject::Compute(descriptor) => {
                 let wgpu::ComputePipelineDescriptor { module, entry_point, compilation_options, .. } = descriptor;
                 let program = self.program(ShaderStage::Compute, module, *entry_point, compilation_options);
                 Some(Pipeline { label: label_of(descriptor.label), programs: vec![program], state: String::new() })
             }
-            Made::Render(descriptor) => Some(self.render_pipeline(descriptor)),
-            Made::BindGroupLayout(..) | Made::PipelineLayout(..) => None,
+            CreatedObject::Render(descriptor) => Some(self.render_pipeline(descriptor)),
+            CreatedObject::BindGroupLayout(..) | CreatedObject::PipelineLayout(..) => None,
         }
     }
 
@@ -101,7 +101,7 @@ impl Recorder {
         entry: Option<&str>,
         options: &wgpu::PipelineCompilationOptions<'_>,
     ) -> Program {
-        let (module, wgsl) = self.modules.get(module).cloned().expect("made by `antumbra::programs`");
+        let (module, wgsl) = self.modules.get(module).cloned().expect("created by `antumbra::programs`");
         let entry = entry.map_or_else(|| only_entry(&wgsl, stage), str::to_owned);
         let constants = options.constants.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
         Program { stage, module, wgsl, entry, constants }

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::web::browser::{self, Patience};
+use crate::web::browser::{self, PageTimeouts};
 
 /// Folder of the crawler page, below the root of the workspace.
 const CRAWLER: &str = "xtask/site";
@@ -13,7 +13,7 @@ const CRAWLER: &str = "xtask/site";
 const PATH: &str = "some/path/";
 
 /// Time limits. A software adapter compiles the viewer's shaders slowly.
-const PATIENCE: Patience = Patience { silence: Duration::from_secs(400), all: Duration::from_secs(1800) };
+const TIMEOUTS: PageTimeouts = PageTimeouts { silence: Duration::from_secs(400), all: Duration::from_secs(1800) };
 
 /// Crawls the site, if there is a browser or one can be installed.
 ///
@@ -37,9 +37,9 @@ fn check_in(program: &Path, site: &Path) -> Result<(), String> {
     let (address, posts) = browser::serve_both_aside(&crate::root().join(CRAWLER), PATH, site)?;
     let running = browser::launch(program, &profile, &log, &format!("{address}crawl.html?{PATH}"))?;
     let mut faults = Vec::new();
-    browser::follow(&posts, &PATIENCE, |path, body| {
+    browser::follow(&posts, &TIMEOUTS, |path, body| {
         if path != "/fault" {
-            return Err(format!("the page posts to {path}"));
+            return Err(format!("the page posted to an unknown path, {path}"));
         }
         let fault = String::from_utf8_lossy(body).into_owned();
         eprintln!("xtask: FAULT {fault}");
@@ -48,7 +48,7 @@ fn check_in(program: &Path, site: &Path) -> Result<(), String> {
     })?;
     drop(running);
     match faults.first() {
-        Some(first) => Err(format!("the site has {} faults, the first: {first}", faults.len())),
+        Some(first) => Err(format!("the site has {} faults; the first is: {first}", faults.len())),
         None => browser::clean_console(&log),
     }
 }

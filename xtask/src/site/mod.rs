@@ -63,7 +63,7 @@ fn build(folder: &Path) -> Result<(), String> {
     pages.arg("site").arg(&folder).arg(&work);
     match repository()? {
         Some(address) => drop(pages.arg(address)),
-        None => eprintln!("xtask: Cargo.toml has no `repository`: the site has no link to one"),
+        None => eprintln!("xtask: Cargo.toml has no `repository`, so the site has no link to it"),
     }
     make_images(&shell::output(&mut pages)?, &work, &images)?;
     let viewer = folder.join("viewer");

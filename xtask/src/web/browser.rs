@@ -20,7 +20,7 @@ const BROWSER_FOLDERS: [&str; 4] =
     ["/usr/lib/chromium", "/usr/lib/chromium-browser", "/opt/google/chrome", "/opt/microsoft/msedge"];
 
 const BROWSER: [Need; 1] = [Need {
-    why: "a browser with WebGPU, to try the page in",
+    why: "a browser with WebGPU, in which the page is tested",
     met: || browser().is_some(),
     packages: &["chromium"],
     otherwise: "install Chromium or Chrome",
@@ -82,7 +82,7 @@ pub fn launch(browser: &Path, profile: &Path, log: &Path, address: &str) -> Resu
         .stderr(file)
         .spawn()
         .map(Running)
-        .map_err(|error| format!("{} cannot be run: {error}", browser.display()))
+        .map_err(|error| format!("cannot run {}: {error}", browser.display()))
 }
 
 /// Posts of pages: path and body.
@@ -127,7 +127,7 @@ pub fn make_anew(folder: &Path) -> Result<(), String> {
 }
 
 /// Time limits of a page.
-pub struct Patience {
+pub struct PageTimeouts {
     /// Maximum time between two posts of the page.
     pub silence: Duration,
     /// Maximum total time.
@@ -140,16 +140,19 @@ pub struct Patience {
 /// The failure that the page reports, or a time limit.
 pub fn follow(
     posts: &Posts,
-    patience: &Patience,
+    timeouts: &PageTimeouts,
     mut take: impl FnMut(&str, &[u8]) -> Result<(), String>,
 ) -> Result<(), String> {
     let began = Instant::now();
     let mut last = "nothing yet".to_owned();
-    while began.elapsed() < patience.all {
-        let (path, body) = match posts.recv_timeout(patience.silence) {
+    while began.elapsed() < timeouts.all {
+        let (path, body) = match posts.recv_timeout(timeouts.silence) {
             Ok(post) => post,
             Err(RecvTimeoutError::Timeout) => {
-                return Err(format!("the page says nothing for {} s; last: {last}", patience.silence.as_secs()));
+                return Err(format!(
+                    "the page reported nothing for {} s; last report: {last}",
+                    timeouts.silence.as_secs()
+                ));
             }
             Err(RecvTimeoutError::Disconnected) => return Err("the server has ended".into()),
         };
@@ -164,7 +167,7 @@ pub fn follow(
             _ => take(&path, &body)?,
         }
     }
-    Err(format!("the page is not done after {} s; last: {last}", patience.all.as_secs()))
+    Err(format!("the page is not finished after {} s; last report: {last}", timeouts.all.as_secs()))
 }
 
 /// Checks that the page's console is empty.
@@ -176,7 +179,7 @@ pub fn clean_console(log: &Path) -> Result<(), String> {
     let text = String::from_utf8_lossy(&bytes);
     let words: Vec<&str> = text.lines().filter(|line| line.contains("CONSOLE")).collect();
     match words.first() {
-        Some(first) => Err(format!("{} words on the page's console, the first: {first}", words.len())),
+        Some(first) => Err(format!("{} messages on the page's console; the first is: {first}", words.len())),
         None => Ok(()),
     }
 }

@@ -51,14 +51,14 @@ pub fn build(folder: &Path) -> Result<(), String> {
     let bytes = std::fs::metadata(&program).map_err(|error| format!("{}: {error}", program.display()))?.len();
     let glue = folder.join("antumbra.js");
     eprintln!(
-        "xtask: the page is in {}, built in {} s: program {}, its JavaScript {}",
+        "xtask: built the page in {} ({} s): program {}, JavaScript {}",
         folder.display(),
         began.elapsed().as_secs(),
         sizes(&program),
         sizes(&glue)
     );
     if bytes > MAX_WASM_BYTES {
-        return Err(format!("the page's program has {bytes} bytes, and may have {MAX_WASM_BYTES}"));
+        return Err(format!("the page's program has {bytes} bytes; at most {MAX_WASM_BYTES} are allowed"));
     }
     Ok(())
 }
@@ -69,7 +69,7 @@ fn sizes(file: &Path) -> String {
     let whole = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
     let compressed = Command::new("gzip").args(["-9", "-c"]).arg(file).output();
     match compressed {
-        Ok(output) if output.status.success() => format!("{}, {} by gzip", mb(whole), mb(output.stdout.len() as u64)),
+        Ok(output) if output.status.success() => format!("{}, {} with gzip", mb(whole), mb(output.stdout.len() as u64)),
         _ => mb(whole),
     }
 }
@@ -78,7 +78,7 @@ fn sizes(file: &Path) -> String {
 fn bindgen() -> Result<PathBuf, String> {
     let lock = crate::root().join("Cargo.lock");
     let text = std::fs::read_to_string(&lock).map_err(|error| format!("{}: {error}", lock.display()))?;
-    let version = locked_version(&text, "wasm-bindgen").ok_or("Cargo.lock has no wasm-bindgen")?;
+    let version = locked_version(&text, "wasm-bindgen").ok_or("Cargo.lock does not contain wasm-bindgen")?;
     let tools = crate::root().join("target/tools");
     let own = tools.join(format!("bin/wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
     let is_right = |program: &PathBuf| {
@@ -88,13 +88,16 @@ fn bindgen() -> Result<PathBuf, String> {
     if let Some(right) = find("wasm-bindgen").into_iter().chain([own.clone()]).find(is_right) {
         return Ok(right);
     }
-    eprintln!("xtask: installing wasm-bindgen-cli {version} in {}, by cargo: a few minutes", tools.display());
+    eprintln!(
+        "xtask: installing wasm-bindgen-cli {version} in {} with cargo, which takes a few minutes",
+        tools.display()
+    );
     let install = ["install", "--quiet", "--force", "wasm-bindgen-cli", "--version", version, "--root"];
     shell::run(cargo().args(install).arg(&tools))?;
     if is_right(&own) {
         Ok(own)
     } else {
-        Err(format!("installed wasm-bindgen-cli {version}, and {} is not it", own.display()))
+        Err(format!("installed wasm-bindgen-cli {version}, but {} has another version", own.display()))
     }
 }
 

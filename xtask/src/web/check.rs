@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use super::browser::{self, Patience, Posts};
+use super::browser::{self, PageTimeouts, Posts};
 use super::compare;
 use crate::shell::{self, cargo};
 
@@ -18,7 +18,7 @@ pub enum Extent {
 }
 
 /// Time limits. A software adapter takes minutes for some masks.
-const PATIENCE: Patience = Patience { silence: Duration::from_secs(600), all: Duration::from_secs(10_800) };
+const TIMEOUTS: PageTimeouts = PageTimeouts { silence: Duration::from_secs(600), all: Duration::from_secs(10_800) };
 
 /// Draws all masks on the system's adapter, has the page test itself, and compares its masks with the system's.
 ///
@@ -34,19 +34,19 @@ pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> 
     }
     let log = folder.join("browser.log");
     let (address, posts) = browser::serve_aside(page)?;
-    let mut told = Told::default();
+    let mut posted = PostedState::default();
     loop {
-        let from = told.begun.map_or(0, |index| index + 1);
+        let from = posted.begun.map_or(0, |index| index + 1);
         let outcome = {
             let address = format!("{address}?test={test}&from={from}");
             let _running = browser::launch(program, &profile, &log, &address)?;
-            follow(&posts, &web, &mut told)
+            follow(&posts, &web, &mut posted)
         };
         // The console of a browser that ended early may contain messages about its end.
         match outcome {
             Ok(()) => break browser::clean_console(&log)?,
-            Err(why) if told.begun.is_some_and(|index| index >= from) => {
-                eprintln!("xtask: {why}; another browser goes on after that mask");
+            Err(why) if posted.begun.is_some_and(|index| index >= from) => {
+                eprintln!("xtask: {why}; continuing after that mask in a new browser");
                 while posts.try_recv().is_ok() {}
             }
             Err(why) => return Err(why),
@@ -59,15 +59,15 @@ pub fn check(page: &Path, program: &Path, extent: Extent) -> Result<(), String> 
         draw_natively(&same, extent, Some(&driver))?;
         natives.insert(0, same);
     }
-    compare::compare(&natives, &web, &told.adapter, &folder.join("masks.md"))?;
-    eprintln!("xtask: the page tried in {} s", began.elapsed().as_secs());
+    compare::compare(&natives, &web, &posted.adapter, &folder.join("masks.md"))?;
+    eprintln!("xtask: tested the page in {} s", began.elapsed().as_secs());
     Ok(())
 }
 
 /// Draws masks with the system's driver or another. The whole workspace is built, so that features are the same everywhere.
 fn draw_natively(folder: &Path, extent: Extent, driver: Option<&Path>) -> Result<(), String> {
     shell::run(cargo().args(["build", "--locked", "--workspace", "--example", "masks"]))?;
-    let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program lies: {error}"))?;
+    let own = std::env::current_exe().map_err(|error| format!("cannot find the path of this program: {error}"))?;
     let program = own.with_file_name("examples").join(format!("masks{}", std::env::consts::EXE_SUFFIX));
     let extent = if extent == Extent::Variants { "all" } else { "techniques" };
     let mut command = Command::new(program);
@@ -80,22 +80,22 @@ fn draw_natively(folder: &Path, extent: Extent, driver: Option<&Path>) -> Result
 
 /// State that the page has posted, from one browser after another.
 #[derive(Debug, Default)]
-struct Told {
+struct PostedState {
     adapter: String,
     /// Index of the mask that it started last.
     begun: Option<usize>,
 }
 
 /// Writes the masks that arrive, and prints steps, until the page is done.
-fn follow(posts: &Posts, folder: &Path, told: &mut Told) -> Result<(), String> {
-    browser::follow(posts, &PATIENCE, |path, body| {
+fn follow(posts: &Posts, folder: &Path, posted: &mut PostedState) -> Result<(), String> {
+    browser::follow(posts, &TIMEOUTS, |path, body| {
         let text = || String::from_utf8_lossy(body).into_owned();
         match path {
-            "/adapter" => told.adapter = text(),
-            "/begun" => told.begun = text().parse().ok(),
+            "/adapter" => posted.adapter = text(),
+            "/begun" => posted.begun = text().parse().ok(),
             _ => {
                 let index = path.strip_prefix("/mask/").and_then(|index| index.parse::<usize>().ok());
-                let index = index.ok_or_else(|| format!("the page posts to {path}"))?;
+                let index = index.ok_or_else(|| format!("the page posted to an unknown path, {path}"))?;
                 let file = folder.join(format!("{index}.f32"));
                 std::fs::write(&file, body).map_err(|error| format!("{}: {error}", file.display()))?;
             }

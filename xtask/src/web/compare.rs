@@ -79,23 +79,23 @@ fn compare_with(native: &Path, web: &Path, adapter: &str) -> Result<(String, usi
 }
 
 fn read(file: &Path) -> Result<Vec<f32>, String> {
-    let bytes = std::fs::read(file).map_err(|_| "there is none".to_owned())?;
+    let bytes = std::fs::read(file).map_err(|_| "it is missing".to_owned())?;
     Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
 }
 
 /// Returns the mean of |ΔV|; an error if the masks cannot be compared or contain no shadow.
 fn difference(ours: &[f32], theirs: &[f32]) -> Result<f64, String> {
     if ours.len() != theirs.len() || ours.is_empty() {
-        return Err(format!("{} pixels and {}", ours.len(), theirs.len()));
+        return Err(format!("{} and {} pixels", ours.len(), theirs.len()));
     }
     let low = ours.iter().copied().fold(f32::INFINITY, f32::min);
     let high = ours.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     if high - low < 0.5 {
-        return Err(format!("no shadow: visibility is {low} to {high}"));
+        return Err(format!("it has no shadow: visibility is {low} to {high}"));
     }
     let sum: f64 = ours.iter().zip(theirs).map(|(a, b)| f64::from((a - b).abs())).sum();
     let mean = sum / ours.len() as f64;
-    if mean.is_finite() { Ok(mean) } else { Err("visibility that is no number".into()) }
+    if mean.is_finite() { Ok(mean) } else { Err("visibility is not a number".into()) }
 }
 
 /// Returns a line per technique: its defaults on each scene, and its worst choice.
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn masks_that_hold_nothing_are_no_agreement() {
+    fn masks_without_shadow_are_not_compared() {
         assert_eq!(difference(&[0.0, 1.0], &[0.5, 1.0]), Ok(0.25));
         assert!(difference(&[1.0, 1.0], &[1.0, 1.0]).is_err());
         assert!(difference(&[0.0, 1.0], &[0.0]).is_err());

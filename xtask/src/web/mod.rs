@@ -37,10 +37,10 @@ pub fn run(arguments: &[String]) -> Result<(), String> {
         ["--pipelines"] => check_programs(Programs::Pipelines),
         ["--check"] => check(Extent::Techniques),
         ["--check-all"] => check(Extent::Variants),
-        _ => {
-            Err("`cargo xtask web` takes `--serve`, `--shaders`, `--pipelines`, `--check`, `--check-all` or nothing"
-                .into())
-        }
+        _ => Err(
+            "`cargo xtask web` takes only one of `--serve`, `--shaders`, `--pipelines`, `--check` and `--check-all`"
+                .into(),
+        ),
     }
 }
 
@@ -55,10 +55,10 @@ fn folder() -> PathBuf {
 /// If no port is available.
 pub fn serve(folder: &Path, port: u16, by: &str) -> Result<(), String> {
     let server = Server::new(folder, port).or_else(|problem| {
-        eprintln!("xtask: {problem}; taking another port");
+        eprintln!("xtask: {problem}; using another port");
         Server::new(folder, 0)
     })?;
-    eprintln!("xtask: open {} in {by}; Ctrl+C ends it", server.address()?);
+    eprintln!("xtask: open {} in {by}; Ctrl+C stops the server", server.address()?);
     server.run(Arc::new(|_, _| {}));
     Ok(())
 }

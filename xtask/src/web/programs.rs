@@ -6,14 +6,14 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use super::browser::{self, Patience};
+use super::browser::{self, PageTimeouts};
 use crate::shell;
 
 /// Files of the page, from `xtask/programs/page`.
 const PAGE: [&str; 2] = ["index.html", "make.js"];
 
 /// Time limits. The page itself waits at most twenty seconds for a pipeline.
-const PATIENCE: Patience = Patience { silence: Duration::from_secs(300), all: Duration::from_secs(1800) };
+const TIMEOUTS: PageTimeouts = PageTimeouts { silence: Duration::from_secs(300), all: Duration::from_secs(1800) };
 
 /// Extent of what the browser creates.
 #[derive(Clone, Copy, PartialEq)]
@@ -51,15 +51,15 @@ fn check_in(browser: &Path, extent: Extent) -> Result<(), String> {
     }
     let describer = shell::built_of_workspace("antumbra-programs")?;
     shell::run(Command::new(describer).arg("describe").arg(page.join("programs.json")))?;
-    eprintln!("xtask: programs described after {} s", began.elapsed().as_secs());
+    eprintln!("xtask: described programs after {} s", began.elapsed().as_secs());
     let log = folder.join("browser.log");
     let (address, posts) = browser::serve_aside(&page)?;
     let address = if extent == Extent::Pipelines { format!("{address}?pipelines") } else { address };
     let mut adapter = String::new();
     let running = browser::launch(browser, &profile, &log, &address)?;
-    browser::follow(&posts, &PATIENCE, |path, body| {
+    browser::follow(&posts, &TIMEOUTS, |path, body| {
         if path != "/adapter" {
-            return Err(format!("the page posts to {path}"));
+            return Err(format!("the page posted to an unknown path, {path}"));
         }
         adapter = String::from_utf8_lossy(body).into_owned();
         Ok(())
@@ -67,6 +67,6 @@ fn check_in(browser: &Path, extent: Extent) -> Result<(), String> {
     drop(running);
     browser::clean_console(&log)?;
     let what = if extent == Extent::Pipelines { "shader and pipeline" } else { "shader" };
-    eprintln!("xtask: every {what} is made by {adapter}; {} s", began.elapsed().as_secs());
+    eprintln!("xtask: {adapter} created every {what}; {} s", began.elapsed().as_secs());
     Ok(())
 }

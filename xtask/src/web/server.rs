@@ -46,7 +46,7 @@ impl Server {
     /// # Errors
     /// If the system does not know it.
     pub fn address(&self) -> Result<String, String> {
-        let address = self.listener.local_addr().map_err(|error| format!("cannot tell the server's port: {error}"))?;
+        let address = self.listener.local_addr().map_err(|error| format!("cannot find the server's port: {error}"))?;
         Ok(format!("http://{address}/"))
     }
 
@@ -91,7 +91,7 @@ fn answer(mut connection: TcpStream, folders: &Folders, on_post: &OnPost) -> std
     let path = target.split(['?', '#']).next().unwrap_or_default();
     match file(folders, path).and_then(|file| Some((kind_of(&file), std::fs::read(&file).ok()?))) {
         Some((kind, bytes)) => respond(&mut connection, "200 OK", kind, &bytes),
-        None => respond(&mut connection, "404 Not Found", "text/plain", b"there is no such file"),
+        None => respond(&mut connection, "404 Not Found", "text/plain", b"file not found"),
     }
 }
 

@@ -19,12 +19,13 @@ Examples:
   antumbra advise builtin:tree --budget 4x --size 240x135 --techniques pcss,essm,multi_layer
   antumbra render scene.glb --technique advice/advice.toml -o picture.png
 
-Searches techniques, qualities and parameters, on small images first, and prints what to take, why, the next best, and what more quality costs. The \
-budget is for one frame's shadows of one light: in milliseconds on this adapter, or in multiples of the time of pcf at its defaults (4x). With \
-several setups or times, one answer holds for all: the slowest view must keep the budget, and the mean square error is minimised.
+Searches techniques, qualities and parameters, on small images first. Prints the recommendation with reasons, the next best candidates, \
+and the cost of more quality. The budget is for one frame's shadows of one light: in milliseconds on this adapter, or in multiples of \
+the time of pcf at its defaults (4x). With several setups or times, one recommendation is made for all: the slowest view must keep the \
+budget, and the mean square error is minimised.
 
-Open DIR/index.html. DIR/advice.toml is a preset for render, compare and view. DIR/measurements.json has all measurements: run the same line again to \
-continue. See docs/advise.md.")]
+Open DIR/index.html. DIR/advice.toml is a preset for render, compare and view. DIR/measurements.json has all measurements: run the same \
+command again to continue. See docs/advise.md.")]
 pub struct AdviseArgs {
     /// A .glb or .gltf file, or builtin:NAME
     #[arg(value_name = "SCENE", value_parser = values::scene)]
@@ -44,7 +45,7 @@ pub struct AdviseArgs {
     /// Time at which animations are sampled, in seconds; may be given several times
     #[arg(long = "time", value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub times: Vec<f32>,
-    /// Adds a ground below the scene; auto: if the scene is an object that stands on nothing
+    /// Adds a ground plane below the scene; auto: only if the scene is an object without ground
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
     /// Light to compare and time, by name; default: the first
@@ -62,7 +63,7 @@ pub struct AdviseArgs {
     /// Light samples per pixel of the ground truth
     #[arg(long, value_name = "N", default_value = "1024", value_parser = values::samples)]
     pub samples: u32,
-    /// Measures every combination of a grid instead of searching: slow, for checking the search
+    /// Measures all combinations of a grid instead of searching: slow, to verify the search
     #[arg(long)]
     pub exhaustive: bool,
     /// Folder for the page, the preset and the measurements; an earlier search on the same view is resumed

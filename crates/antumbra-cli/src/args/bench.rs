@@ -22,18 +22,19 @@ Examples:
   antumbra bench builtin:street --baseline other.json
   antumbra bench --share card.json
 
-Prints medians, with the number of timed frames and of warm-up frames, in which pipelines are compiled and lists grow. --minutes is shared equally \
-among the measurements: slow ones time fewer frames, and those without time are reported as skipped. The JSON also has adapter, driver and commit; \
-it is written as it grows, and --resume continues it.
+Prints medians, with the numbers of timed frames and of warm-up frames, in which pipelines are compiled and lists grow. --minutes is \
+divided equally among the measurements: slow ones time fewer frames, and those without time are reported as skipped. The JSON also has \
+adapter, driver and commit. It is updated after each measurement, and --resume continues it.
 
---share measures columns and street at 1920x1080, unless scenes and sizes are named, and writes one file for bench/cards: what the device says of \
-itself, versions, and times; no paths and no names. --cards prints the page of all such files.
+--share measures columns and street at 1920x1080, unless scenes and sizes are given, and writes one file for bench/cards: adapter, \
+driver, versions and times, but no paths and no user names. --cards prints the page of all such files.
 
   antumbra bench --suite results.json --minutes 7
   antumbra bench --suite results.json --minutes 7 --parts times,growth
   antumbra bench --tables results.json > BENCHMARKS.md
 
---suite measures everything in BENCHMARKS.md, for --minutes, into one file; run the same line again to continue. --tables prints the page.")]
+--suite measures everything in BENCHMARKS.md, for --minutes, into one file; run the same command again to continue. --tables prints the \
+page.")]
 pub struct BenchArgs {
     /// Scenes: .glb or .gltf files, or builtin:NAME; default: overlap, knot and street
     #[arg(value_name = "SCENE", value_parser = values::scene)]

@@ -16,7 +16,7 @@ pub struct SceneArgs {
     /// Time at which animations are sampled, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
-    /// Adds a ground below the scene; auto: if the scene is an object that stands on nothing
+    /// Adds a ground plane below the scene; auto: only if the scene is an object without ground
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
 }

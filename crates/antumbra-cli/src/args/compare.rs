@@ -26,16 +26,17 @@ Examples:
   antumbra compare builtin:street --deadline 60 --technique-limit 10 --resume -o out
   antumbra compare builtin:street --baseline other/metrics.json -o out
 
-Open DIR/index.html; DIR/metrics.json has the numbers. Both are written as they are made: if the command is stopped, DIR keeps what was measured, and \
---resume continues it. --baseline is the metrics.json of another run, or, of several scenes, its folder.
+Open DIR/index.html; DIR/metrics.json has the numbers. Results are written while the command runs: if it is stopped, DIR keeps them, \
+and --resume continues. --baseline takes the metrics.json of another run or, for several scenes, its folder.
 
-A technique may have a quality: fast, balanced, high or best; `all:fast` is every technique at fast. `essm:paper` is as its paper publishes it; --preset is a \
-paper's whole comparison. With `+half` masks are drawn at half the width and height and interpolated; with `+denoised` (pcss:fast+denoised) they are denoised over --frames frames. `--set NAME.KEY=VALUE` sets a parameter of one \
-technique, `--set KEY=VALUE` of every technique that has it.
+A technique may have a quality: fast, balanced, high or best; `all:fast` is every technique at fast. `essm:paper` is the technique as \
+published; --preset selects all techniques of a paper's comparison. With `+half` masks are drawn at half the width and height and \
+interpolated; with `+denoised` (pcss:fast+denoised) they are denoised over --frames frames. `--set NAME.KEY=VALUE` sets a parameter of \
+one technique, `--set KEY=VALUE` of every technique that has it.
 
---motion measures what happens while one thing moves, to the camera's right, until it is where the scene and the setup place it: flicker, the rms of \
-the mask's change from frame to frame minus the truth's, and the number of frames that the mask lags after everything has stopped. Each frame is \
-traced, so use small images.")]
+--motion moves one thing to the camera's right, so that it ends where the scene and the setup place it, and measures flicker (rms of \
+the mask's change from frame to frame minus the truth's) and lag (the number of frames until the mask is settled after the stop). Each \
+frame is traced, so use small images.")]
 pub struct CompareArgs {
     /// .glb or .gltf files, or builtin:NAME; several scenes get a folder each in DIR
     #[arg(value_name = "SCENE", required = true, value_parser = values::scene)]
@@ -83,7 +84,7 @@ pub struct CompareArgs {
 /// Motion to measure.
 #[derive(Debug, Args)]
 pub struct MotionArgs {
-    /// Also measures flicker and lag while these move, one after the other
+    /// Also measures flicker and lag in motion; of several, each moves separately
     #[arg(long, value_name = "camera,light,caster|all", value_parser = values::motions)]
     pub motion: Option<values::Motions>,
     /// Number of frames in which each moves

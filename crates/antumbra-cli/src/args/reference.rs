@@ -30,7 +30,7 @@ pub struct ReferenceArgs {
     /// Image to write: .png or .jpg
     #[arg(short, long, value_name = "ref.png")]
     pub output: PathBuf,
-    /// Also writes the visibility (OpenEXR, 32-bit float; channel V, or V.R, V.G, V.B where occluders tint)
+    /// Also writes the visibility (OpenEXR, 32-bit float; channel V, or V.R, V.G, V.B if occluders are tinted)
     #[arg(long, value_name = "v.exr")]
     pub visibility: Option<PathBuf>,
     /// Light that --visibility writes, by name; default: all

@@ -27,8 +27,8 @@ Examples:
 
 `antumbra techniques NAME` lists the parameters for --set.
 
---visibility writes the mask as 32-bit float OpenEXR, channel V, 1 lit to 0 umbra. With several lights a.exr is the first one's and a.NAME.exr \
-each other's; --light NAME writes only that one's.")]
+--visibility writes the mask as 32-bit float OpenEXR, channel V: 1 is lit, 0 is umbra. With several lights, a.exr is the mask of the \
+first and a.NAME.exr that of each other; --light NAME writes only that of NAME.")]
 pub struct RenderArgs {
     /// A .glb or .gltf file, or builtin:NAME
     #[arg(value_name = "SCENE", value_parser = values::scene)]

@@ -13,14 +13,13 @@ use crate::values;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  antumbra reproduce                             every entry, and which can be run
-  antumbra reproduce marrs-2014/figure1          that figure: the paper's numbers beside ours
-  antumbra reproduce --all -o reproduced         everything, as a page for each paper; started again, it goes on
+  antumbra reproduce                             lists all entries, and which can be run
+  antumbra reproduce marrs-2014/figure1          runs one figure: the paper's numbers beside ours
+  antumbra reproduce --all -o reproduced         runs everything; run again to continue
   antumbra reproduce selgrad-2014 -o reproduced --dear
   antumbra reproduce --all --deadline 300 --technique-limit 20
 
-Scenes that are files lie in the folder that the environment variable ANTUMBRA_SCENES names; rows whose scene is not
-there are not ready.")]
+Scene files are read from the folder in the environment variable ANTUMBRA_SCENES. Rows whose scene file is missing are not ready.")]
 pub struct ReproduceArgs {
     /// Entries such as marrs-2014/figure1, papers such as marrs-2014, or `all`; without any, lists them
     #[arg(value_name = "ID")]

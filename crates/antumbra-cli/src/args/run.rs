@@ -11,10 +11,10 @@ use crate::values;
 /// Limits of a run, and whether it resumes an earlier one.
 #[derive(Debug, Args)]
 pub struct RunArgs {
-    /// Time limit: starts nothing that is not expected to end within it, names what is missing and exits with code 4
+    /// Time limit: starts no measurement that is not expected to end within it, lists what is missing and exits with code 4
     #[arg(long, value_name = "SECONDS", value_parser = values::seconds)]
     pub deadline: Option<Duration>,
-    /// Time limit for each technique on one scene and size: starts no further frames after it, and reports that
+    /// Time limit for each technique on one scene and size: starts no further frames after it, and reports the cut
     #[arg(long, value_name = "SECONDS", value_parser = values::seconds)]
     pub technique_limit: Option<Duration>,
     /// Resumes an earlier run of the same command line, even an interrupted one: measures only what is missing

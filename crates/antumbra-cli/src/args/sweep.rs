@@ -17,7 +17,7 @@ Examples:
   antumbra sweep run sweep --shard 1/4
   antumbra sweep merge sweep -o results.json
 
-A shard runs those of its jobs that have no result yet: if it was stopped, run the same line again. Errors equal those of `compare`. \
+A shard runs those of its jobs that have no result yet: if it was stopped, run the same command again. Errors equal those of `compare`. \
 docs/sweep.md has recipes for Slurm, GNU parallel and Kubernetes.")]
 pub struct SweepArgs {
     #[command(subcommand)]

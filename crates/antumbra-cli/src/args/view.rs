@@ -17,8 +17,9 @@ Examples:
   antumbra view builtin:street --technique pcss --against vsm:fast --set map_size=2048
   antumbra view builtin:overlap --show error --screenshot error.png
 
-Controls: drag turns the camera, Shift-drag moves it, the wheel goes nearer, W A S D Q E fly, F shows the whole scene, Space plays animations, \
-I inspects the pixel under the pointer. Drop a scene or a setup on the window to open it. Save the view as a setup for the other commands.")]
+Controls: drag to rotate the camera, Shift-drag to move it sideways, wheel to zoom, W A S D Q E to fly, F to show the whole scene, \
+Space to play animations, I to inspect the pixel under the pointer. Drop a scene or a setup on the window to open it. Save the view as \
+a setup for the other commands.")]
 pub struct WindowArgs {
     /// A .glb or .gltf file, or builtin:NAME; default: a built-in scene
     #[arg(value_name = "SCENE", value_parser = values::scene)]
@@ -29,7 +30,7 @@ pub struct WindowArgs {
     /// Initial time of an animated scene, in seconds
     #[arg(long, value_name = "T", default_value = "0", allow_negative_numbers = true, value_parser = values::time)]
     pub time: f32,
-    /// Adds a ground below the scene; auto: if the scene is an object that stands on nothing
+    /// Adds a ground plane below the scene; auto: only if the scene is an object without ground
     #[arg(long, value_name = "WHEN", value_enum, ignore_case = true, num_args = 0..=1, require_equals = true, default_value = "auto", default_missing_value = "yes")]
     pub ground: Ground,
     /// Technique with optional quality: pcss, pcss:fast; or a preset file: advice.toml

@@ -23,7 +23,7 @@ use crate::table;
 pub fn advise(args: &AdviseArgs, bars: &Bars) -> Result<(), Failure> {
     // Checks come before the long search.
     if let Some(dir) = &args.output {
-        check_folder(dir, MEASUREMENTS_NAME, "no measurements of an advice")?;
+        check_folder(dir, MEASUREMENTS_NAME, "no measurements of `advise`")?;
     }
     let (scenes, views) = load(args, bars)?;
     let lab = open_device(&args.adapter)?;
@@ -98,7 +98,7 @@ fn print(advice: &Advice) {
     let [low, high] = best.worst_spread_ms();
     let verb = if advice.keeps_budget { "Take" } else { "Nearest:" };
     say!(
-        "\n{verb} {}: rmse {:.4}, roughness {:.4}, {:.2} ms ({low:.2} to {high:.2}), {:.2} of the budget, {:.1} MiB",
+        "\n{verb} {}: rmse {:.4}, roughness {:.4}, {:.2} ms ({low:.2} to {high:.2}), {:.2} times the budget, {:.1} MiB",
         best.name,
         best.rmse,
         best.roughness,
@@ -108,7 +108,7 @@ fn print(advice: &Advice) {
     );
     let of_view =
         if advice.views.len() > 1 { format!(" for {}", advice.views[best.heaviest_view]) } else { String::new() };
-    say!("  (its time is a {}{of_view})", best.counted());
+    say!("  (time: {}{of_view})", best.counted());
     advice.reasons.iter().for_each(|reason| say!("  - {reason}"));
     let mut rows = vec![
         ["NEXT BEST", "RMSE", "ROUGHNESS", "MS", "TIMED FRAMES", "MS / BUDGET", "MIB"].map(str::to_owned).to_vec(),
@@ -137,14 +137,14 @@ fn print(advice: &Advice) {
     }
     match &advice.next_step {
         Some(step) => say!(
-            "\nA step up: {} has an error of {:.4}, {:.0} % less, for {:.2} ms, {:.2} times the budget.",
+            "\nHigher quality: {} has an error of {:.4}, {:.0} % less, and takes {:.2} ms, {:.2} times the budget.",
             step.name,
             step.rmse,
             100.0 * (1.0 - step.rmse / best.rmse),
             step.worst_ms(),
             step.load
         ),
-        None => say!("\nNo slower setting that was measured has clearly less error."),
+        None => say!("\nNo slower configuration that was measured has clearly less error."),
     }
     let spent = &advice.spent;
     let left_out = if spent.left_out > 0 { format!(", {} skipped as too slow", spent.left_out) } else { String::new() };

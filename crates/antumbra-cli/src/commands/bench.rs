@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use antumbra_lab::baseline::{Against, Baseline, Source, of_bench};
+use antumbra_lab::baseline::{Baseline, BaselineComparison, Source, of_bench};
 use antumbra_lab::bench::{
     BenchOutcome, BenchRequest, BenchRow, BenchRows, BenchScene, Frames, bench as measure, file_json, rows_to_resume,
 };
@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 
 use crate::args::BenchArgs;
 use crate::commands::{COMMIT, LoadedScene, choices, light_index, load_scene, narrowest, open_device, put_json};
-use crate::failure::{Failure, Kept};
+use crate::failure::{Failure, SavedResults};
 use crate::keep;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -67,8 +67,8 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
     }
     match limits.deadline {
         Some(_) if !rows.missing.is_empty() => {
-            let shared = args.share.as_deref().map_or(Kept::Nothing, Kept::Alone);
-            let kept = args.json.as_deref().map_or(shared, Kept::ToResume);
+            let shared = args.share.as_deref().map_or(SavedResults::Nothing, SavedResults::NotResumable);
+            let kept = args.json.as_deref().map_or(shared, SavedResults::Resumable);
             Err(Failure::incomplete(&rows.missing_names(), rows.all().len(), &kept))
         }
         _ => Ok(()),
@@ -78,7 +78,7 @@ pub fn bench(args: &BenchArgs, bars: &Bars) -> Result<(), Failure> {
 /// Validates the options before anything is loaded. Returns the baseline, if any.
 fn check(args: &BenchArgs) -> Result<Option<Baseline>, Failure> {
     if args.run.resume && args.json.is_none() {
-        return Err(Failure::Input("--resume: bench resumes the file of --json; add --json times.json".into()));
+        return Err(Failure::Input("--resume: `bench` resumes the file given by --json; add --json times.json".into()));
     }
     for path in args.json.iter().chain(&args.share) {
         check_json_path(path)?;
@@ -125,7 +125,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn measure(&self, limits: Limits, bars: &Bars) -> Result<(BenchRows, Option<Against>), Failure> {
+    fn measure(&self, limits: Limits, bars: &Bars) -> Result<(BenchRows, Option<BaselineComparison>), Failure> {
         let Self { args, lab, scenes, choices, ref sizes, ref baseline } = *self;
         let minutes = args.minutes.map(|minutes| Duration::from_secs(60 * u64::from(minutes)));
         let until = args.run.deadline;
@@ -188,8 +188,12 @@ fn suite(args: &BenchArgs, path: &Path, bars: &Bars) -> Result<(), Failure> {
     let at_most = Duration::from_secs(60 * u64::from(args.minutes.unwrap_or(DEFAULT_MINUTES)));
     let plan = if args.parts.is_empty() { Plan::whole() } else { Plan::whole().only(&args.parts) };
     let Done { jobs, of } = run_slice(&lab, &plan, path, COMMIT, at_most, bars)?;
-    let again = if jobs < of { "the same line again goes on" } else { "`antumbra bench --tables` makes the page" };
-    say!("{jobs} of {of} measurements are in {}; {again}", path.display());
+    let again = if jobs < of {
+        "run the same command again to continue"
+    } else {
+        "print the page with `antumbra bench --tables`"
+    };
+    say!("{jobs} of {of} measurements are done, in {}; {again}", path.display());
     Ok(())
 }
 
@@ -201,7 +205,7 @@ fn plan(scenes: &[BenchScene], techniques: usize, sizes: &[UVec2], at_most: Dura
     let each_s = seconds / (scenes.len() * techniques * sizes.len()) as f64;
     let within = if seconds % 60.0 == 0.0 { counted(seconds as usize / 60, "minute") } else { format!("{seconds} s") };
     format!(
-        "{} of {} at {} on {adapter}: done within {within}, up to {each_s:.0} s for each and more where others take less",
+        "{} on {} at {} on {adapter}: takes at most {within}, on average up to {each_s:.0} s per measurement",
         counted(techniques, "technique"),
         counted(scenes.len(), "scene"),
         sizes_text.join(", "),
@@ -246,10 +250,10 @@ fn figures(row: &BenchRow) -> Vec<String> {
     let passes: Vec<_> = timings.passes.iter().map(|pass| format!("{} {:.3}", pass.label, pass.ms)).collect();
     let mut passes = match timings.clock {
         Clock::GpuTimestamps | Clock::SoftwareTimestamps => passes.join(", "),
-        Clock::SubmitToDone => "no timestamps here: from submission to completion".to_owned(),
+        Clock::SubmitToDone => "no timestamps on this adapter: measured from submission to completion".to_owned(),
     };
     if let Some(limit_s) = row.cut_short_s {
-        passes += &format!(" (cut short by the limit of {limit_s} s for a technique)");
+        passes += &format!(" (cut short by the limit of {limit_s} s per technique)");
     }
     let [compile, first] = [start_up.map(|start| start.compile_ms), start_up.map(|start| start.first_frame_ms)]
         .map(|ms| ms.map_or_else(none, |ms| format!("{ms:.1}")));

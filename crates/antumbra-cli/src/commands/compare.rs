@@ -23,7 +23,7 @@ use crate::commands::{
     COMMIT, LoadedScene, choices, command_line, end_shadows, light_index, load_scene, narrowest, open_device,
     scene_arguments,
 };
-use crate::failure::{Failure, Kept};
+use crate::failure::{Failure, SavedResults};
 use crate::keep;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -66,7 +66,7 @@ pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
     }
     let Site { out, .. } = site;
     if entries.is_empty() {
-        return Err(Failure::incomplete(&missing, missing.len(), &Kept::Nothing));
+        return Err(Failure::incomplete(&missing, missing.len(), &SavedResults::Nothing));
     }
     if args.scenes.len() > 1 {
         write_index(out.path(), &entries)?;
@@ -75,7 +75,11 @@ pub fn compare(args: &CompareArgs, bars: &Bars) -> Result<(), Failure> {
     say!("{}", dir.join("index.html").display());
     let motions = motion.as_ref().map_or(0, |options| options.motions.len());
     let planned = args.scenes.len() * choices.len() * (1 + motions);
-    if missing.is_empty() { Ok(()) } else { Err(Failure::incomplete(&missing, planned, &Kept::ToResume(&args.output))) }
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::incomplete(&missing, planned, &SavedResults::Resumable(&args.output)))
+    }
 }
 
 /// Name of a missing result, prefixed by its folder if there are several.
@@ -220,7 +224,7 @@ fn motion_options(args: &MotionArgs, shadow_distance_m: Option<f32>) -> Result<O
     let Some(Motions(motions)) = &args.motion else { return Ok(None) };
     let needs = |option: &str, motion: Motion| {
         let name = motion.name();
-        Err(Failure::Input(format!("{option}: the {name} does not move; add `{name}` to --motion")))
+        Err(Failure::Input(format!("{option} needs the motion `{name}`; add `{name}` to --motion")))
     };
     if args.caster.is_some() && !motions.contains(&Motion::Caster) {
         return needs("--caster", Motion::Caster);
@@ -319,7 +323,7 @@ fn print(report: &Report) {
 fn print_motion(report: &Report, info: &MotionInfo) {
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.4}"));
     say!(
-        "\nIn motion, {} frames of {} m; flicker, its ratio to the truth's change, frames of lag:\n",
+        "\nMotion, {} frames of {} m each: flicker, its ratio to the truth's change, and lag in frames:\n",
         info.frames,
         info.step_m
     );

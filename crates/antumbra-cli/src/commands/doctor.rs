@@ -13,17 +13,17 @@ use crate::table;
 
 /// Features beyond WebGPU's core, with names and uses.
 const FEATURES: [(wgpu::Features, &str, &str); 4] = [
-    (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without it, of whole frames"),
-    (wgpu::Features::DEPTH_CLIP_CONTROL, "depth clip control", "casters nearer than a light map's near plane"),
+    (wgpu::Features::TIMESTAMP_QUERY, "timestamps", "times of single passes; without it, only of whole frames"),
+    (wgpu::Features::DEPTH_CLIP_CONTROL, "depth clip control", "casters in front of a shadow map's near plane"),
     (
         wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES,
-        "adapter's own formats",
-        "light maps of 2 and 8 samples a texel",
+        "adapter-specific formats",
+        "shadow maps with 2 and 8 samples per texel",
     ),
     (
         wgpu::Features::SHADER_EARLY_DEPTH_TEST,
         "early depth test",
-        "reprojection's path=fragment_two_pass leaves out hidden fragments, alias_free's stencil empty lists",
+        "reprojection's path=fragment_two_pass skips hidden fragments, alias_free's stencil skips empty lists",
     ),
 ];
 
@@ -31,13 +31,13 @@ const FEATURES: [(wgpu::Features, &str, &str); 4] = [
 type NamedLimit = (&'static str, fn(&wgpu::Limits) -> u64);
 
 const LIMITS: [NamedLimit; 7] = [
-    ("side of a texture, texels", |limits| limits.max_texture_dimension_2d.into()),
-    ("layers of a texture", |limits| limits.max_texture_array_layers.into()),
-    ("size of a buffer, bytes", |limits| limits.max_buffer_size),
-    ("size of a storage binding, bytes", |limits| limits.max_storage_buffer_binding_size),
-    ("storage buffers a stage", |limits| limits.max_storage_buffers_per_shader_stage.into()),
-    ("invocations a workgroup", |limits| limits.max_compute_invocations_per_workgroup.into()),
-    ("shared memory a workgroup, bytes", |limits| limits.max_compute_workgroup_storage_size.into()),
+    ("texture side, texels", |limits| limits.max_texture_dimension_2d.into()),
+    ("texture layers", |limits| limits.max_texture_array_layers.into()),
+    ("buffer size, bytes", |limits| limits.max_buffer_size),
+    ("storage binding size, bytes", |limits| limits.max_storage_buffer_binding_size),
+    ("storage buffers per stage", |limits| limits.max_storage_buffers_per_shader_stage.into()),
+    ("invocations per workgroup", |limits| limits.max_compute_invocations_per_workgroup.into()),
+    ("shared memory per workgroup, bytes", |limits| limits.max_compute_workgroup_storage_size.into()),
 ];
 
 /// Lists adapters, features and limits, and reasons why techniques are unavailable here.
@@ -68,14 +68,14 @@ pub fn doctor(args: &DoctorArgs) -> Result<(), Failure> {
 
 fn print_device(adapter: &AdapterReport, problems: &[(TechniqueKind, Option<String>)]) {
     say!("\nIn use: {} ({})", adapter.name, adapter.backend);
-    say!("\nFeatures beyond WebGPU's core that the library or the laboratory uses:");
+    say!("\nOptional WebGPU and native features that the library or the laboratory uses:");
     let has = |feature| if adapter.features.contains(feature) { "yes" } else { "no" };
     let mut rows: Vec<Vec<String>> = vec![["FEATURE", "AVAILABLE", "USED FOR"].map(str::to_owned).to_vec()];
     rows.extend(FEATURES.map(|(feature, name, used_for)| [name, has(feature), used_for].map(str::to_owned).to_vec()));
     table::print(&rows);
 
     let least = wgpu::Limits::default();
-    say!("\nLimits (every technique stays within WebGPU's guaranteed minimum):");
+    say!("\nLimits (every technique works within WebGPU's guaranteed minimum):");
     let mut rows = vec![["LIMIT", "THIS ADAPTER", "WEBGPU MINIMUM"].map(str::to_owned).to_vec()];
     rows.extend(
         LIMITS.map(|(name, of)| vec![name.to_owned(), of(&adapter.limits).to_string(), of(&least).to_string()]),

@@ -13,7 +13,8 @@ use crate::stdout::say;
 /// Writes a manual page for the program and one per command.
 pub fn man(args: &ManArgs) -> Result<(), Failure> {
     let folder = &args.output;
-    fs::create_dir_all(folder).map_err(|error| Failure::Input(format!("cannot make {}: {error}", folder.display())))?;
+    fs::create_dir_all(folder)
+        .map_err(|error| Failure::Input(format!("cannot create {}: {error}", folder.display())))?;
     let mut program = Cli::command();
     program.build();
     let mut commands = vec![program];
@@ -23,10 +24,10 @@ pub fn man(args: &ManArgs) -> Result<(), Failure> {
         // For example, `antumbra sweep plan` has the page antumbra-sweep-plan(1).
         let name = command.get_display_name().unwrap_or_else(|| command.get_name()).to_owned();
         let mut page = Vec::new();
-        Man::new(command).render(&mut page).expect("memory takes a page");
+        Man::new(command).render(&mut page).expect("writing to memory does not fail");
         write_atomically(&folder.join(format!("{name}.1")), &page)?;
         pages += 1;
     }
-    say!("{pages} pages in {}", folder.display());
+    say!("wrote {pages} pages to {}", folder.display());
     Ok(())
 }

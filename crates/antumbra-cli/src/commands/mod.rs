@@ -122,7 +122,7 @@ fn check_folder(dir: &Path, own: &str, of: &str) -> Result<(), Failure> {
     }
     let mut entries = std::fs::read_dir(dir).into_iter().flatten();
     if entries.next().is_some() && !dir.join(own).is_file() {
-        return Err(not_written(dir, &format!("it is not empty and holds {of}")));
+        return Err(not_written(dir, &format!("it is not empty and contains {of}")));
     }
     Ok(())
 }
@@ -180,7 +180,7 @@ fn light_index(lights: &[Light], name: Option<&str>) -> Result<usize, Failure> {
     found.ok_or_else(|| {
         let known = || lights.iter().map(|light| light.name.as_str());
         let list = known().collect::<Vec<_>>().join(", ");
-        Failure::Input(format!("--light: there is no light `{name}`{}; there are {list}", did_you_mean(name, known())))
+        Failure::Input(format!("--light: there is no light `{name}`{}; available: {list}", did_you_mean(name, known())))
     })
 }
 
@@ -201,7 +201,7 @@ fn write_visibilities(
     for (light, visibility) in lights.iter().zip(visibilities).skip(1) {
         let path = beside(path, &light.name, &taken);
         write_visibility_exr(&path, visibility)?;
-        progress.note(&format!("the visibility of the light {} is in {}", light.name, path.display()));
+        progress.note(&format!("wrote the visibility of light `{}` to {}", light.name, path.display()));
         taken.push(path);
     }
     Ok(())
@@ -218,7 +218,7 @@ fn beside(path: &Path, name: &str, taken: &[PathBuf]) -> PathBuf {
     std::iter::once(named(String::new()))
         .chain(numbered)
         .find(|path| !taken.contains(path))
-        .expect("numbers do not end")
+        .expect("there is always another number")
 }
 
 /// Assigns the settings to the techniques to which they apply. Each must apply to at least one.
@@ -270,7 +270,7 @@ fn why_unused(techniques: &[Technique], setting: &Setting) -> String {
     let names: Vec<_> = meant.iter().map(|kind| kind.name()).collect();
     let hint = did_you_mean(key, keys.iter().copied());
     let verb = if names.len() == 1 { "has" } else { "have" };
-    format!("--set: {} {verb} no parameter `{key}`{hint}; there are {}", names.join(", "), keys.join(", "))
+    format!("--set: {} {verb} no parameter `{key}`{hint}; available: {}", names.join(", "), keys.join(", "))
 }
 
 /// Whether a technique has a parameter of that name, ignoring case.

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use crate::args::ReproduceArgs;
 use crate::commands::{COMMIT, check_folder, open_device, put_json, quoted};
-use crate::failure::{Failure, Kept};
+use crate::failure::{Failure, SavedResults};
 use crate::keep;
 use crate::progress::Bars;
 use crate::stdout::say;
@@ -29,7 +29,7 @@ type Named = (String, &'static Paper, &'static Exhibit);
 pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     if args.ids.is_empty() && !args.all {
         if args.output.is_some() || args.json.is_some() {
-            let why = "reproduce: -o and --json want exhibits to run; name some, or all of them by --all";
+            let why = "reproduce: -o and --json need entries to run; name some, or use --all";
             return Err(Failure::Input(why.into()));
         }
         list();
@@ -43,7 +43,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     say!("Adapter: {}", lab.adapter.name);
     let mut options = RunOptions { size_px: args.size, ..RunOptions::for_device(&lab, args.frames) };
     options.samples = args.samples.unwrap_or(options.samples);
-    options.dear |= args.dear;
+    options.runs_slow |= args.dear;
     let mut session = Session::open(&lab, options, limits, dir.as_deref(), COMMIT)?;
     let info = ReproductionInfo {
         adapter: AdapterInfo::of(&lab.adapter),
@@ -92,20 +92,20 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     if session.missing().is_empty() {
         return Ok(());
     }
-    let alone = args.json.as_deref().map_or(Kept::Nothing, Kept::Alone);
-    Err(Failure::incomplete(session.missing(), all, &dir.as_deref().map_or(alone, Kept::ToResume)))
+    let alone = args.json.as_deref().map_or(SavedResults::Nothing, SavedResults::NotResumable);
+    Err(Failure::incomplete(session.missing(), all, &dir.as_deref().map_or(alone, SavedResults::Resumable)))
 }
 
 /// Validates the options before the long work. Returns the baseline, if any.
 fn check(args: &ReproduceArgs, dir: Option<&Path>) -> Result<Option<Baseline>, Failure> {
     if args.run.resume && dir.is_none() {
-        return Err(Failure::Input("--resume: reproduce resumes a folder; name it by -o DIR".into()));
+        return Err(Failure::Input("--resume: `reproduce` resumes a folder; add -o DIR".into()));
     }
     if let Some(path) = &args.json {
         antumbra_lab::output_files::check_json_path(path)?;
     }
     if let Some(dir) = dir {
-        check_folder(dir, REPRODUCED_NAME, "nothing that was reproduced")?;
+        check_folder(dir, REPRODUCED_NAME, "no results of `reproduce`")?;
     }
     Ok(args.run.baseline.as_deref().map(|path| Baseline::read(path, Source::Reproduce)).transpose()?)
 }
@@ -129,11 +129,17 @@ fn arguments(args: &ReproduceArgs, dir: Option<&Path>) -> String {
 
 fn print(result: &ExhibitResult) {
     let ExhibitResult { name, paper, exhibit, rows, judged } = result;
-    say!("\n{name}: {}\n{}; there: {}, {} GB/s\n", exhibit.shows, paper.citation, paper.hardware, paper.bandwidth_gb_s);
+    say!(
+        "\n{name}: {}\n{}; measured on {}, {} GB/s\n",
+        exhibit.shows,
+        paper.citation,
+        paper.hardware,
+        paper.bandwidth_gb_s
+    );
     if !exhibit.note.is_empty() {
-        say!("  not shown here: {}", exhibit.note);
+        say!("  not covered: {}", exhibit.note);
     } else if rows.is_empty() {
-        say!("  a drawing: nothing to run");
+        say!("  a drawing, so there is nothing to run");
     }
     if rows.is_empty() {
         return;
@@ -173,7 +179,7 @@ fn list() {
                 let state = match exhibit.readiness() {
                     Readiness::Drawing => "a drawing".to_owned(),
                     Readiness::Ready => "ready".to_owned(),
-                    Readiness::Partly(missing) => format!("ready in part; needs {}", missing.join(", ")),
+                    Readiness::Partly(missing) => format!("partly ready; needs {}", missing.join(", ")),
                     Readiness::NotYet(missing) => format!("not ready: needs {}", missing.join(", ")),
                 };
                 vec![format!("  {}/{}", paper.id, exhibit.id), exhibit.shows.into(), state]
@@ -183,7 +189,7 @@ fn list() {
         say!("");
     }
     say!(
-        "`antumbra reproduce ID...` runs what can be run; scenes that are files lie where {SCENES_VARIABLE} says: {SCENES_HINT}."
+        "`antumbra reproduce ID...` runs what is ready. Scene files are read from the folder in {SCENES_VARIABLE}: {SCENES_HINT}."
     );
 }
 

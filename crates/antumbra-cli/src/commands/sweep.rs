@@ -40,7 +40,7 @@ fn plan(args: &SweepPlanArgs, bars: &Bars) -> Result<(), Failure> {
     plan.write(out.path())?;
     out.finish()?;
     let dir = quoted(&args.output.display().to_string());
-    say!("{} jobs in {dir}. All of them, or the first of four parts:", plan.jobs.len());
+    say!("Planned {} jobs in {dir}. To run all of them, or the first of four shards:", plan.jobs.len());
     say!("  antumbra sweep run {dir}\n  antumbra sweep run {dir} --shard 1/4");
     Ok(())
 }

@@ -64,7 +64,7 @@ fn print_one(kind: TechniqueKind) {
 /// Prints a technique's departures from its paper, and the settings that undo them.
 fn print_departures(kind: TechniqueKind) {
     let Some(printed) = kind.published() else { return };
-    say!("\nAs published: {kind}:{}. What ours does instead:", Quality::Paper);
+    say!("\nAs published: {kind}:{}. Its settings, and what ours does instead:", Quality::Paper);
     let set = kind.quality_settings(Quality::Paper);
     for departure in printed.departures {
         let value = set.iter().find(|(key, _)| *key == departure.key).map(|(_, value)| value.to_string());
@@ -72,7 +72,7 @@ fn print_departures(kind: TechniqueKind) {
         say!("      {}", departure.ours);
     }
     if !printed.kept.is_empty() {
-        say!("\nDepartures that no parameter turns off:");
+        say!("\nDepartures from the paper without a parameter:");
         printed.kept.iter().for_each(|text| say!("  {text}"));
     }
 }

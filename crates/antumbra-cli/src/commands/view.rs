@@ -14,7 +14,7 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
     use crate::commands::choices;
 
     if let Some(path) = &args.screenshot {
-        check_ending(path, "a picture of the window", &["png"])?;
+        check_ending(path, "an image of the window", &["png"])?;
         check_writable(path)?;
     }
     let techniques: Vec<_> = [Some(args.technique), args.against].into_iter().flatten().collect();
@@ -48,6 +48,6 @@ pub fn view(args: WindowArgs) -> Result<(), Failure> {
 /// Reports that this build has no window, and how to get it.
 #[cfg(not(feature = "viewer"))]
 pub fn view(_args: WindowArgs) -> Result<(), Failure> {
-    let what = "this program was built without its window; build it with `cargo build --bin antumbra`, which has it";
+    let what = "this program was built without the viewer; build it with `cargo build --bin antumbra`";
     Err(Failure::Other(what.into()))
 }

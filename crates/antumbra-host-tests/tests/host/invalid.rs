@@ -87,13 +87,13 @@ fn lights_and_cameras() {
         it.view_from_world = Mat4::from_scale(Vec3::splat(2.0)) * it.view_from_world;
     });
     seen_by(&mut good, &["the camera's matrix", "singular"], |it| it.clip_from_view = Mat4::ZERO);
-    seen_by(&mut good, &["the depth convention", "Reversed, as the projection"], |it| {
+    seen_by(&mut good, &["the depth convention", "Reversed, as in the projection"], |it| {
         it.depth_convention = DepthConvention::Standard;
     });
-    seen_by(&mut good, &["the receivers' box", "not a number"], |it| {
+    seen_by(&mut good, &["the receivers' bounding box", "not a number"], |it| {
         it.bounds = Some(Aabb { min: Vec3::NAN, max: Vec3::ONE });
     });
-    seen_by(&mut good, &["the receivers' box", "empty"], |it| {
+    seen_by(&mut good, &["the receivers' bounding box", "empty"], |it| {
         it.bounds = Some(Aabb { min: Vec3::ONE, max: Vec3::ZERO });
     });
     seen_by(&mut good, &["`hull`", "point 1"], |it| it.hull = &[Vec3::ZERO, Vec3::NAN, Vec3::X]);
@@ -129,7 +129,7 @@ fn textures() {
         (view(device, Format::Depth16Unorm, bound), &["the depth buffer", "Depth16Unorm", "16 bits"]),
         (view(device, Format::Rgba8Unorm, bound), &["the depth buffer", "Rgba8Unorm", "Depth32Float or R32Float"]),
         (view(device, Format::Depth32Float, wgpu::TextureUsages::empty()), &["the depth buffer", "TEXTURE_BINDING"]),
-        (view(device, Format::Depth24PlusStencil8, bound), &["the depth buffer", "the depth aspect alone"]),
+        (view(device, Format::Depth24PlusStencil8, bound), &["the depth buffer", "only the depth aspect"]),
         (array, &["the depth buffer", "D2Array"]),
         (view(&other, Format::Depth32Float, bound), &["the depth buffer", "cannot be bound"]),
     ];
@@ -151,7 +151,7 @@ fn textures() {
     let in_depth = texture(device, SIZE, 1, Mask::FORMAT, Mask::usages(Mask::FORMAT));
     let depth = in_depth.create_view(&wgpu::TextureViewDescriptor::default());
     let mask = Mask::of_layers(&in_depth, 0, MaskChannels::One).expect("a mask's texture");
-    good.is_refused(&["the mask", "in one of its own"], |frame| Frame {
+    good.is_refused(&["the mask", "in a separate texture"], |frame| Frame {
         mask: long(&mask),
         receivers: in_depth_of(frame.receivers, long(&depth)),
         ..frame
@@ -159,8 +159,8 @@ fn textures() {
     let wrong =
         Denoise { motion: Some(half.create_view(&wgpu::TextureViewDescriptor::default())), ..Denoise::default() };
     for (denoise, words) in [
-        (Denoise { max_frames: 0, motion: None }, "the denoiser's frames is 0, and must be 1 to 64"),
-        (wrong, "the motion vectors' texture is of [8, 4]"),
+        (Denoise { max_frames: 0, motion: None }, "the denoiser's `max_frames` is 0, and must be 1 to 64"),
+        (wrong, "the motion vectors' texture is [8, 4] texels large"),
     ] {
         let mut shadow = small_shadow(device, TechniqueKind::Pcss);
         shadow.set_denoise(Some(denoise));
@@ -194,10 +194,15 @@ fn masks_in_textures() {
             &["format", "Rgba32Float", "R32Float"],
         ),
         (&of(format, wgpu::TextureUsages::TEXTURE_BINDING), place, MaskChannels::One, &["usage", "STORAGE_BINDING"]),
-        (&fits, MaskPlace { layer: 2, ..place }, MaskChannels::One, &["last layer is 2", "below 2"]),
-        (&fits, place, MaskChannels::Three, &["last layer is 2", "below 2"]),
+        (&fits, MaskPlace { layer: 2, ..place }, MaskChannels::One, &["last layer is 2", "number of layers, 2"]),
+        (&fits, place, MaskChannels::Three, &["last layer is 2", "number of layers, 2"]),
         (&fits, MaskPlace { origin_px: UVec2::new(1, 0), ..place }, MaskChannels::One, &["far corner", "[17, 9]"]),
-        (&four, MaskPlace { component: 4, ..whole(&four) }, MaskChannels::One, &["component is 4", "below 4"]),
+        (
+            &four,
+            MaskPlace { component: 4, ..whole(&four) },
+            MaskChannels::One,
+            &["component is 4", "number of components, 4"],
+        ),
     ];
     for (texture, place, channels, words) in bad {
         let message = Mask::within(texture, place, channels).expect_err("no mask").to_string();
@@ -233,10 +238,10 @@ fn casters_of_a_frame() {
         (mesh.with_bounds(Aabb::EMPTY), &["`bounds`", "empty", "caster 1"]),
         (mesh.with_bounds(Aabb { min: Vec3::NAN, ..mesh.bounds }), &["`bounds`", "not a number"]),
         (of(buffer, buffer, 4), &["`index_count`", "a multiple of three"]),
-        (mesh.with_first_triangle(12), &["indices", "up to byte 156 of a buffer of 144"]),
-        (mesh.with_instances(2..3), &["instances", "up to byte 192 of a buffer of 144"]),
-        (of(unusable, buffer, 3), &["positions", "VERTEX", "caster 1"]),
-        (of(buffer, unusable, 3), &["indices", "INDEX", "caster 1"]),
+        (mesh.with_first_triangle(12), &["index buffer", "144 bytes long", "at least 156"]),
+        (mesh.with_instances(2..3), &["instance buffer", "144 bytes long", "at least 192"]),
+        (of(unusable, buffer, 3), &["position buffer", "VERTEX", "caster 1"]),
+        (of(buffer, unusable, 3), &["index buffer", "INDEX", "caster 1"]),
     ];
     for (caster, words) in bad {
         let casters: &'static [MeshCaster<'static>] = Box::leak(Box::new([mesh, caster]));
@@ -285,8 +290,11 @@ fn casters_of_a_set() {
     for (mesh, words) in [
         (LibraryMesh { topology: Topology::TriangleList, ..mesh }, ["the number of indices is 4", "multiple of three"]),
         (LibraryMesh { topology: Topology::PointList, ..mesh }, ["PointList", "TriangleList or TriangleStrip"]),
-        (LibraryMesh { bounds: Aabb::EMPTY, ..mesh }, ["the mesh's box is empty", "least corner first"]),
-        (LibraryMesh { bounds: Aabb { min: Vec3::NAN, max: Vec3::ONE }, ..mesh }, ["not a number", "infinite where"]),
+        (
+            LibraryMesh { bounds: Aabb::EMPTY, ..mesh },
+            ["the mesh's bounding box is empty", "first corner is the minimum"],
+        ),
+        (LibraryMesh { bounds: Aabb { min: Vec3::NAN, max: Vec3::ONE }, ..mesh }, ["not a number", "infinite bounds"]),
     ] {
         expect(set.add_mesh(&mesh).map(drop), &words);
     }
@@ -298,7 +306,7 @@ fn casters_of_a_set() {
         (Aabb { min: Vec3::NAN, max: Vec3::ONE }, "not a number"),
     ] {
         let instances = Instances::Buffer(placed(Some(bounds)));
-        expect(set.add(&Caster::new(id, instances)).map(drop), &["the instances' box", word]);
+        expect(set.add(&Caster::new(id, instances)).map(drop), &["the instances' bounding box", word]);
     }
     for bounds in [None, Some(Aabb::EVERYTHING), Some(Aabb { min: Vec3::splat(-1e6), max: Vec3::splat(1e6) })] {
         set.add(&Caster::new(id, Instances::Buffer(placed(bounds)))).expect("may be anywhere");

@@ -24,28 +24,28 @@ use crate::view::View;
 
 /// Size of a measurement: fraction of the image's side (1 / `part`), maximum light samples of the ground truth, number of timed frames.
 #[derive(Clone, Copy, Debug)]
-struct Rung {
+struct MeasurementSize {
     part: u32,
     samples: u32,
     frames: u32,
 }
 
 /// Sizes from small and coarse to the requested one.
-const RUNGS: [Rung; 3] = [
-    Rung { part: 4, samples: 64, frames: 1 },
-    Rung { part: 2, samples: 256, frames: 2 },
-    Rung { part: 1, samples: u32::MAX, frames: 3 },
+const MEASUREMENT_SIZES: [MeasurementSize; 3] = [
+    MeasurementSize { part: 4, samples: 64, frames: 1 },
+    MeasurementSize { part: 2, samples: 256, frames: 2 },
+    MeasurementSize { part: 1, samples: u32::MAX, frames: 3 },
 ];
 
-/// Index of the last rung: the requested size.
-pub(super) const FULL: usize = RUNGS.len() - 1;
+/// Index of the last entry: the requested size.
+pub(super) const FULL: usize = MEASUREMENT_SIZES.len() - 1;
 
 /// Time after which no further frame is timed. Scheduling noise is milliseconds: it matters for frames of a few
 /// milliseconds, not for frames of a hundred.
 const LONG_ENOUGH: Duration = Duration::from_millis(150);
 
 /// Multiple of the budget after which no further frame of a configuration is started.
-const PATIENCE: f64 = 5.0;
+const MAX_BUDGETS: f64 = 5.0;
 
 /// Minimum width and height of an image, pixels.
 const MIN_SIDE_PX: u32 = 24;
@@ -64,7 +64,7 @@ pub(super) struct Bench<'a> {
     progress: &'a dyn Progress,
     uploaded: Vec<Rc<GpuScene>>,
     tracers: Vec<Tracer>,
-    rungs: [OnceCell<Vec<Scene<'a>>>; RUNGS.len()],
+    scenes_by_size: [OnceCell<Vec<Scene<'a>>>; MEASUREMENT_SIZES.len()],
     /// Largest budget of all views, milliseconds; infinite until it is known. It bounds the time spent on a slow configuration.
     pub(super) max_ms: Cell<f64>,
 }
@@ -75,45 +75,46 @@ impl<'a> Bench<'a> {
         request: &'a AdviseRequest<'a>,
         progress: &'a dyn Progress,
     ) -> Result<Self, LabError> {
-        progress.begin("building the ray tracer's trees", 0);
+        progress.begin("building acceleration structures", 0);
         let uploaded = request.scenes.iter().map(|scene| Rc::new(GpuScene::upload(lab, scene))).collect();
         let tracers = request.scenes.iter().map(Tracer::new).collect::<Result<_, _>>()?;
         progress.end();
         let max_ms = Cell::new(f64::INFINITY);
-        Ok(Self { lab, request, progress, uploaded, tracers, rungs: Default::default(), max_ms })
+        Ok(Self { lab, request, progress, uploaded, tracers, scenes_by_size: Default::default(), max_ms })
     }
 
-    /// Returns the image size of a rung, pixels.
-    pub(super) fn size_px(&self, rung: usize) -> UVec2 {
+    /// Returns the image size of an entry of [`MEASUREMENT_SIZES`], pixels.
+    pub(super) fn size_px(&self, size_index: usize) -> UVec2 {
         let full = self.request.size_px;
-        (full / RUNGS[rung].part).max(UVec2::splat(MIN_SIDE_PX)).min(full)
+        (full / MEASUREMENT_SIZES[size_index].part).max(UVec2::splat(MIN_SIDE_PX)).min(full)
     }
 
-    fn samples(&self, rung: usize) -> u32 {
-        RUNGS[rung].samples.min(self.request.samples)
+    fn samples(&self, size_index: usize) -> u32 {
+        MEASUREMENT_SIZES[size_index].samples.min(self.request.samples)
     }
 
-    /// Returns the part of the store's key that describes a rung: image size and light samples.
-    pub(super) fn place(&self, rung: usize) -> String {
-        let size_px = self.size_px(rung);
-        format!("{}x{}/{}", size_px.x, size_px.y, self.samples(rung))
+    /// Returns the part of the store's key that describes a measurement size: image size and light samples.
+    pub(super) fn place(&self, size_index: usize) -> String {
+        let size_px = self.size_px(size_index);
+        format!("{}x{}/{}", size_px.x, size_px.y, self.samples(size_index))
     }
 
-    fn scenes(&self, rung: usize) -> Result<&[Scene<'a>], LabError> {
-        if self.rungs[rung].get().is_none() {
-            let made = self.request.views.iter().map(|view| self.scene(view, rung)).collect::<Result<Vec<_>, _>>()?;
-            let _ = self.rungs[rung].set(made);
+    fn scenes(&self, size_index: usize) -> Result<&[Scene<'a>], LabError> {
+        if self.scenes_by_size[size_index].get().is_none() {
+            let made =
+                self.request.views.iter().map(|view| self.scene(view, size_index)).collect::<Result<Vec<_>, _>>()?;
+            let _ = self.scenes_by_size[size_index].set(made);
         }
-        Ok(self.rungs[rung].get().map_or(&[], Vec::as_slice))
+        Ok(self.scenes_by_size[size_index].get().map_or(&[], Vec::as_slice))
     }
 
-    fn scene(&self, asked: &'a AdviseView, rung: usize) -> Result<Scene<'a>, LabError> {
-        let size_px = self.size_px(rung);
+    fn scene(&self, asked: &'a AdviseView, size_index: usize) -> Result<Scene<'a>, LabError> {
+        let size_px = self.size_px(size_index);
         let setup = &asked.setup;
         let view = View::of_uploaded(self.lab, &self.uploaded[asked.scene], setup, size_px)?;
         let tracer = &self.tracers[asked.scene];
         let receivers = tracer.primary(&setup.camera, size_px);
-        let options = VisibilityOptions { samples: self.samples(rung), ..VisibilityOptions::default() };
+        let options = VisibilityOptions { samples: self.samples(size_index), ..VisibilityOptions::default() };
         let lights = std::slice::from_ref(&setup.lights[asked.light]);
         let mut truth = trace_lights(tracer, &receivers, lights, &options, self.progress)?.swap_remove(0);
         truth.unjudge_mismatched_surfaces(&view.surface_points()?, setup.camera.eye);
@@ -125,18 +126,18 @@ impl<'a> Bench<'a> {
         Ok(self.scenes(FULL)?.iter().all(|scene| scene.truth.judged.contains(&true)))
     }
 
-    /// Measures a configuration with the rung's number of frames.
-    pub(super) fn measure(&self, config: &Config, rung: usize) -> Result<Measured, LabError> {
-        self.measure_frames(config, rung, RUNGS[rung].frames)
+    /// Measures a configuration with the number of frames of the measurement size.
+    pub(super) fn measure(&self, config: &Config, size_index: usize) -> Result<Measured, LabError> {
+        self.measure_frames(config, size_index, MEASUREMENT_SIZES[size_index].frames)
     }
 
     /// Measures a configuration with the given number of timed frames.
-    pub(super) fn measure_frames(&self, config: &Config, rung: usize, frames: u32) -> Result<Measured, LabError> {
-        let scenes = self.scenes(rung)?;
+    pub(super) fn measure_frames(&self, config: &Config, size_index: usize, frames: u32) -> Result<Measured, LabError> {
+        let scenes = self.scenes(size_index)?;
         let began = Instant::now();
         let mut measured = Measured::default();
-        let patience = Duration::from_secs_f64((PATIENCE * 1e-3 * self.max_ms.get()).clamp(0.02, 3.0));
-        let at_most = LONG_ENOUGH.min(patience);
+        let max_time = Duration::from_secs_f64((MAX_BUDGETS * 1e-3 * self.max_ms.get()).clamp(0.02, 3.0));
+        let at_most = LONG_ENOUGH.min(max_time);
         let timing = Timing { warm_up: 1, frames, at_least: Duration::ZERO, at_most, end: None };
         let mut counts = Vec::new();
         for (scene, asked) in scenes.iter().zip(&self.request.views) {

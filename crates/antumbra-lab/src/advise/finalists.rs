@@ -6,7 +6,7 @@ use super::reasons::reasons;
 use super::search::Search;
 use super::simplify::{simplest_candidate, simplified};
 use super::turns::in_turns;
-use super::{Advice, Candidate, Config, Prefer, Spent};
+use super::{Advice, Candidate, Config, Prefer, SearchCost};
 use crate::adapter_info::AdapterInfo;
 use crate::color_maps::signed_error_map;
 use crate::date::utc_now;
@@ -59,7 +59,7 @@ pub(super) fn choose(
     let front = plain_front(search, &best, others)?;
     let (true_picture, picture, error_picture) = pictures(search, &best.config)?;
     let facts = search.bench.facts()?.into_iter().map(|(_, facts)| facts).collect();
-    let spent = Spent {
+    let spent = SearchCost {
         measurements: search.store.rows().count(),
         seconds: search.store.rows().map(|row| row.spent_s).sum(),
         left_out,
@@ -103,7 +103,7 @@ fn candidates(search: &Search<'_, '_>) -> Result<Vec<Candidate>, LabError> {
     // `pcf` is measured for the budget; it is a candidate only if it was requested.
     candidates.retain(|one| search.bench.request.kinds.contains(&one.config.kind));
     if candidates.is_empty() {
-        let why = "none of these techniques runs here; `antumbra doctor` says what each lacks";
+        let why = "none of these techniques runs on this adapter; `antumbra doctor` lists what each needs";
         return Err(LabError::Request(why.into()));
     }
     candidates.sort_by(|a, b| a.rmse.total_cmp(&b.rmse));
@@ -255,12 +255,12 @@ fn surest<'c>(fitting: &[&'c Candidate]) -> Option<&'c Candidate> {
 
 /// Measures at full size the cheapest configuration that, on smaller images, errs clearly less than those within the budget.
 fn look_above(search: &mut Search<'_, '_>) -> Result<(), LabError> {
-    for rung in (0..FULL).rev() {
-        let known: Vec<(Config, f64, f64)> = search.tried[rung]
+    for size_index in (0..FULL).rev() {
+        let known: Vec<(Config, f64, f64)> = search.tried[size_index]
             .iter()
             .filter_map(|config| {
-                let measured = search.known(config, rung)?;
-                Some((config.clone(), measured.error(), search.load(config.kind, rung, measured)))
+                let measured = search.known(config, size_index)?;
+                Some((config.clone(), measured.error(), search.load(config.kind, size_index, measured)))
             })
             .collect();
         let within = known.iter().filter(|one| one.2 <= 1.0).map(|one| one.1).fold(f64::INFINITY, f64::min);
@@ -289,7 +289,7 @@ fn look_in_motion(lab: &LabDevice, search: &Search<'_, '_>, finalists: &mut [Can
         let size_px = search.bench.size_px(FULL - 1);
         let mut moving = MovingScene::new(lab, scene, &view.setup, view.light, size_px, &options)?;
         let truth = moving.trace(Motion::Camera, MOTION_SAMPLES.min(request.samples), search.progress)?;
-        search.progress.begin("the last few in motion", finalists.len() as u64);
+        search.progress.begin("finalists in motion", finalists.len() as u64);
         for (done, (one, square)) in (1..).zip(finalists.iter().zip(&mut squares)) {
             let figures = moving.run(&truth, &mut create(&lab.gpu(), &one.config.choice())?)?;
             *square += figures.flicker.unwrap_or(0.0).powi(2);
@@ -340,7 +340,7 @@ mod tests {
 
     /// A candidate that keeps the budget in every turn is preferred unless its error is much larger.
     #[test]
-    fn what_surely_fits_is_taken_where_it_is_nearly_as_good() {
+    fn a_sure_candidate_is_preferred_at_similar_error() {
         let (noisy, near, far) = (timed(0.100, 1.1), timed(0.104, 0.9), timed(0.2, 0.5));
         let chosen = |among: &[&Candidate]| surest(among).map(|one| one.rmse);
         assert_eq!(chosen(&[&noisy, &near, &far]), Some(0.104));

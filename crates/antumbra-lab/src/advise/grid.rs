@@ -23,14 +23,14 @@ impl Search<'_, '_> {
         self.progress.begin(&format!("a grid of {count}"), count as u64);
         let (mut done, mut left_out) = (0, 0);
         for (kind, grid) in grids {
-            let mut too_dear: Vec<Config> = Vec::new();
+            let mut too_slow: Vec<Config> = Vec::new();
             for config in grid {
-                if too_dear.iter().any(|cheaper| is_at_most(cheaper, &config)) {
+                if too_slow.iter().any(|cheaper| is_at_most(cheaper, &config)) {
                     left_out += 1;
                 } else {
                     let measured = self.measure(&config, FULL)?;
                     if measured.refused.is_none() && self.load(kind, FULL, &measured) > BEYOND {
-                        too_dear.push(config);
+                        too_slow.push(config);
                     }
                 }
                 done += 1;

@@ -186,7 +186,7 @@ impl Candidate {
     pub fn counted(&self) -> String {
         match self.turns {
             0 | 1 => self.count.to_string(),
-            turns => format!("median of {turns} turns, each {}", self.count),
+            turns => format!("median of {turns} rounds of {}", self.count),
         }
     }
 
@@ -216,7 +216,7 @@ impl Candidate {
 
 /// Cost of the advice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spent {
+pub struct SearchCost {
     /// Number of measured configurations at any size, in this run and in those that it resumes.
     pub measurements: usize,
     /// Run time of techniques, seconds, without the ground truth.
@@ -271,7 +271,7 @@ pub struct Advice {
     /// Pareto front of error and time among all candidates measured at full size.
     pub front: Vec<Candidate>,
     /// Cost of the search.
-    pub spent: Spent,
+    pub spent: SearchCost,
     /// First view, shaded with the ground truth.
     #[serde(skip)]
     pub true_picture: RgbImage,
@@ -296,14 +296,16 @@ pub fn advise(
     let mut store = Store::open(dir, about(lab, request))?;
     let bench = Bench::new(lab, request, progress)?;
     if !bench.judges_something()? {
-        let why = "the light shines on nothing that a camera sees: there is nothing to choose a technique by";
+        let why = "the light reaches no visible surface, so techniques cannot be compared; choose another camera or light with --setup";
         return Err(LabError::Request(why.into()));
     }
     let mut warm =
         Search::new(&bench, &mut store, progress, vec![f64::INFINITY; request.views.len()], Limits::default());
     let base = warm.measure_base()?;
     if let (Some(why), Budget::TimesPcf(_)) = (&base.refused, request.budget) {
-        return Err(LabError::Request(format!("--budget: pcf does not run here ({why}); give milliseconds")));
+        return Err(LabError::Request(format!(
+            "--budget: pcf does not run on this adapter ({why}); give the budget in milliseconds"
+        )));
     }
     let budget_ms: Vec<f64> = match request.budget {
         Budget::Ms(ms) => vec![ms; request.views.len()],

@@ -109,54 +109,54 @@ impl fmt::Display for Reason {
         let layered = |several: f64| format!("two or more depths of occluders in {} of the penumbra", percent(several));
         match self {
             Self::OverBudget => {
-                f.write_str("nothing that was measured keeps the budget and the limits; this comes nearest")
+                f.write_str("no measured configuration keeps the budget and the limits; this one is closest")
             }
             Self::PointsForDepths { several } => {
-                write!(f, "{}: it tests light samples one by one and needs no mean depth", layered(*several))
+                write!(f, "{}: this technique tests each light sample and needs no mean depth", layered(*several))
             }
-            Self::Points => f.write_str("the budget is enough to test light samples one by one"),
+            Self::Points => f.write_str("the budget is large enough to test each light sample"),
             Self::SeveralDepths { several } => {
-                write!(f, "{}: one mean depth is not enough, and it uses several", layered(*several))
+                write!(f, "{}: one mean depth is not enough, and this technique uses several", layered(*several))
             }
             Self::OneDepthIsEnough { one } => {
                 write!(f, "one depth of occluders in {} of the penumbra: a mean depth is enough", percent(*one))
             }
             Self::OneDepthMisses { several } => write!(
                 f,
-                "{}, which one mean depth cannot represent; techniques that can take longer or have more error",
+                "{}, which one mean depth cannot represent; techniques that represent several take longer or have more error",
                 layered(*several)
             ),
             Self::OneWidthFits { median_px, p90_px } => write!(
                 f,
-                "penumbrae have similar widths (median {median_px:.1} px, 90th percentile {p90_px:.1}): one width of blur is enough"
+                "penumbrae have similar widths (median {median_px:.1} px, 90th percentile {p90_px:.1}): a constant blur is enough"
             ),
             Self::OneWidthAnyway { median_px, p90_px } => write!(
                 f,
-                "penumbrae vary in width (median {median_px:.1} px, 90th percentile {p90_px:.1}), but techniques that follow them take \
-                 longer or have more error than one width of blur"
+                "penumbrae vary in width (median {median_px:.1} px, 90th percentile {p90_px:.1}), but techniques that adapt to \
+                 the width take longer or have more error than a constant blur"
             ),
             Self::WidthsAreFollowed { median_px, p90_px } => write!(
                 f,
-                "penumbrae vary in width (median {median_px:.1} px, 90th percentile {p90_px:.1}): a blur of one width does not fit"
+                "penumbrae vary in width (median {median_px:.1} px, 90th percentile {p90_px:.1}): a constant blur does not match them"
             ),
             Self::SharpFits { p90_px } => {
-                write!(f, "90 % of penumbrae are narrower than {p90_px:.1} px: sharp edges are enough")
+                write!(f, "90 % of penumbrae are narrower than {p90_px:.1} px: hard edges are enough")
             }
             Self::SharpAnyway { median_px, p90_px } => write!(
                 f,
-                "penumbrae are wide (median {median_px:.1} px, 90th percentile {p90_px:.1}), and it draws sharp edges: techniques that \
-                 draw them take longer or have more error"
+                "penumbrae are wide (median {median_px:.1} px, 90th percentile {p90_px:.1}), but this technique draws hard \
+                 edges: techniques with penumbrae take longer or have more error"
             ),
             Self::Thin { share } => write!(
                 f,
                 "{} of the occluders are narrower than a texel of a {DEFAULT_MAP_TEXELS}² map: the error depends on the map's resolution",
                 percent(*share)
             ),
-            Self::Tinted { share } => write!(f, "{} of the occluders let some light through", percent(*share)),
+            Self::Tinted { share } => write!(f, "{} of the occluders are partly transparent", percent(*share)),
             Self::NextBest { name, errs, best_errs } => {
                 write!(
                     f,
-                    "{name}, the next best technique within the budget, has an error of {errs:.4}, this one {best_errs:.4}"
+                    "the next best technique within the budget, {name}, has an error of {errs:.4}; this one has {best_errs:.4}"
                 )
             }
             Self::Pays { key, value, default, error, time } => {
@@ -169,11 +169,11 @@ impl fmt::Display for Reason {
                         .into_iter()
                         .flatten()
                         .collect();
-                write!(f, "{key} {value} instead of {default}: {}", changes.join(", "))
+                write!(f, "{key} = {value} instead of {default}: {}", changes.join(", "))
             }
             Self::TooNoisyToTell { low_ms, high_ms } => write!(
                 f,
-                "times are too noisy to tell whether it keeps the budget: from {low_ms:.2} to {high_ms:.2} ms; measure on an idle machine"
+                "times vary too much to decide whether it keeps the budget, from {low_ms:.2} to {high_ms:.2} ms; measure on an idle machine"
             ),
         }
     }
@@ -271,11 +271,11 @@ mod tests {
         for kind in TechniqueKind::ALL.iter().copied() {
             let declared = match kind.facts().penumbra {
                 "none" => Some(Assumes::NoWidth),
-                "of one width" => Some(Assumes::OneWidth),
+                "constant width" => Some(Assumes::OneWidth),
                 _ => None,
             };
             for config in QUALITIES.map(|quality| Config::of_quality(kind, quality)) {
-                let assumes = Assumes::of(&config).unwrap_or_else(|| panic!("nothing is known of {kind}"));
+                let assumes = Assumes::of(&config).unwrap_or_else(|| panic!("{kind} has no assumption in the list"));
                 let is_fixed = matches!(assumes, Assumes::NoWidth | Assumes::OneWidth);
                 assert_eq!(is_fixed.then_some(assumes), declared, "{config}: {}", kind.facts().penumbra);
             }

@@ -48,7 +48,7 @@ pub(super) struct Search<'s, 'a> {
     /// Budget of each view at full size, milliseconds.
     pub(super) budget_ms: Vec<f64>,
     pub(super) limits: Limits,
-    /// Ratio of a technique's pass times at full size to those on a rung.
+    /// Ratio of a technique's pass times at full size to those at a smaller size.
     scale: HashMap<(TechniqueKind, usize), Growth>,
     /// First time of `pcf`, by view, if the budget is a multiple of it. All times are scaled to it.
     pub(super) pcf_ms: Option<Vec<f64>>,
@@ -57,7 +57,7 @@ pub(super) struct Search<'s, 'a> {
     paces: Vec<f64>,
     /// Measurements left until the pace is measured again.
     until_pace: usize,
-    /// All measured configurations, by rung.
+    /// All measured configurations, by measurement size.
     pub(super) tried: [Vec<Config>; FULL + 1],
 }
 
@@ -85,16 +85,16 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// Returns a measurement from the store, or makes it.
-    pub(super) fn measure(&mut self, config: &Config, rung: usize) -> Result<Measured, LabError> {
-        let place = self.bench.place(rung);
-        if !self.tried[rung].contains(config) {
-            self.tried[rung].push(config.clone());
+    pub(super) fn measure(&mut self, config: &Config, size_index: usize) -> Result<Measured, LabError> {
+        let place = self.bench.place(size_index);
+        if !self.tried[size_index].contains(config) {
+            self.tried[size_index].push(config.clone());
         }
         if let Some(known) = self.store.get(config, &place) {
             return Ok(known.clone());
         }
         self.look_at_pace()?;
-        let measured = Measured { pace: self.pace, ..self.bench.measure(config, rung)? };
+        let measured = Measured { pace: self.pace, ..self.bench.measure(config, size_index)? };
         self.store.insert(config, &place, measured.clone())?;
         Ok(measured)
     }
@@ -133,28 +133,28 @@ impl<'s, 'a> Search<'s, 'a> {
         Ok(())
     }
 
-    pub(super) fn known(&self, config: &Config, rung: usize) -> Option<&Measured> {
-        self.store.get(config, &self.bench.place(rung)).filter(|measured| measured.refused.is_none())
+    pub(super) fn known(&self, config: &Config, size_index: usize) -> Option<&Measured> {
+        self.store.get(config, &self.bench.place(size_index)).filter(|measured| measured.refused.is_none())
     }
 
     /// Returns the expected load (fraction of the budget) of a configuration at full size.
-    pub(super) fn load(&self, kind: TechniqueKind, rung: usize, measured: &Measured) -> f64 {
-        let growth = self.scale.get(&(kind, rung)).map_or(1.0, |growth| growth.of(measured));
+    pub(super) fn load(&self, kind: TechniqueKind, size_index: usize, measured: &Measured) -> f64 {
+        let growth = self.scale.get(&(kind, size_index)).map_or(1.0, |growth| growth.of(measured));
         measured.load(&self.budget_ms) * growth
     }
 
     /// Returns the error times the excesses over budget and limits. (Error falls with the root of the number of samples, so a
     /// configuration far beyond the budget seldom pays.)
-    fn score(&self, kind: TechniqueKind, rung: usize, measured: &Measured) -> f64 {
+    fn score(&self, kind: TechniqueKind, size_index: usize, measured: &Measured) -> f64 {
         let excess = self.limits.excess(measured.memory_bytes, measured.roughness());
-        measured.error() * self.load(kind, rung, measured).max(1.0) * excess.max(1.0)
+        measured.error() * self.load(kind, size_index, measured).max(1.0) * excess.max(1.0)
     }
 
-    /// Returns the best `count` configurations of a technique on a rung, with their scores.
-    pub(super) fn best(&self, kind: TechniqueKind, rung: usize, count: usize) -> Vec<(Config, f64)> {
-        let scored = self.tried[rung].iter().filter(|config| config.kind == kind);
+    /// Returns the best `count` configurations of a technique at a measurement size, with their scores.
+    pub(super) fn best(&self, kind: TechniqueKind, size_index: usize, count: usize) -> Vec<(Config, f64)> {
+        let scored = self.tried[size_index].iter().filter(|config| config.kind == kind);
         let mut scored: Vec<(Config, f64)> = scored
-            .filter_map(|config| Some((config.clone(), self.score(kind, rung, self.known(config, rung)?))))
+            .filter_map(|config| Some((config.clone(), self.score(kind, size_index, self.known(config, size_index)?))))
             .collect();
         scored.sort_by(|a, b| a.1.total_cmp(&b.1));
         scored.truncate(count);
@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_slow_look_changes_no_pace() {
+    fn the_median_ignores_a_single_slow_measurement() {
         assert_eq!(median_of_last(&[1.0, 1.1, 3.0]), 1.1);
         assert_eq!(median_of_last(&[9.0, 9.0, 1.0, 1.2, 1.1]), 1.1, "what was long ago is past");
         assert_eq!(median_of_last(&[1.3]), 1.3);

@@ -38,14 +38,14 @@ pub(super) fn simplest(search: &mut Search<'_, '_>, config: &Config) -> Result<C
     without_idle(search, config, &[0, FULL])
 }
 
-/// Drops idle settings, comparing masks on the given rungs.
-fn without_idle(search: &mut Search<'_, '_>, config: &Config, rungs: &[usize]) -> Result<Config, LabError> {
+/// Drops idle settings, comparing masks at the given sizes.
+fn without_idle(search: &mut Search<'_, '_>, config: &Config, size_indices: &[usize]) -> Result<Config, LabError> {
     let mut plain = config.clone();
     loop {
         let before = plain.clone();
         for (key, _) in &before.settings {
             let other = plain.without(key);
-            if draws_the_same(search, &plain, &other, rungs)? && !saves_time(search, &plain, &other)? {
+            if draws_the_same(search, &plain, &other, size_indices)? && !saves_time(search, &plain, &other)? {
                 plain = other;
             }
         }
@@ -56,9 +56,14 @@ fn without_idle(search: &mut Search<'_, '_>, config: &Config, rungs: &[usize]) -
     }
 }
 
-fn draws_the_same(search: &mut Search<'_, '_>, a: &Config, b: &Config, rungs: &[usize]) -> Result<bool, LabError> {
-    for rung in rungs {
-        let [a, b] = [search.measure(a, *rung)?, search.measure(b, *rung)?];
+fn draws_the_same(
+    search: &mut Search<'_, '_>,
+    a: &Config,
+    b: &Config,
+    size_indices: &[usize],
+) -> Result<bool, LabError> {
+    for size_index in size_indices {
+        let [a, b] = [search.measure(a, *size_index)?, search.measure(b, *size_index)?];
         let has_room = search.limits.memory_bytes.is_none_or(|most| b.memory_bytes <= most.max(a.memory_bytes));
         if a.refused.is_some() || b.refused.is_some() || a.masks != b.masks || !has_room {
             return Ok(false);
@@ -174,7 +179,7 @@ mod tests {
 
     /// Without contact attachment, `pcss` has one layer whatever is requested; with it, `layers` takes effect.
     #[test]
-    fn a_setting_that_hangs_on_another_is_dropped() {
+    fn settings_without_effect_are_dropped() {
         let Some(lab) = lab_or_skip() else { return };
         let request = request("builtin:overlap", &[TechniqueKind::Pcss], Budget::Ms(1e3));
         let bench = Bench::new(lab, &request, &Silent).unwrap();

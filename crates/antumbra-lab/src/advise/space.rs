@@ -126,7 +126,7 @@ pub(super) fn set_by_qualities(kind: TechniqueKind) -> Vec<(&'static ParamSpec, 
 
 /// Size of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stride {
+pub(super) enum StepSize {
     Whole,
     /// Half a step, for numbers only: a choice has no half.
     Half,
@@ -134,10 +134,10 @@ pub(super) enum Stride {
 
 /// Returns the neighbours of a value. For whole numbers on a logarithmic scale: half and double. For other numbers: two thirds and 1.5
 /// times. For a choice: all other values. For a name in place of a number: numbers around the middle of the range.
-pub(super) fn steps(spec: &ParamSpec, value: &str, stride: Stride) -> Vec<String> {
+pub(super) fn steps(spec: &ParamSpec, value: &str, stride: StepSize) -> Vec<String> {
     let Some((low, high)) = spec.range else {
         return match spec.default {
-            _ if stride == Stride::Half => Vec::new(),
+            _ if stride == StepSize::Half => Vec::new(),
             ParamValue::Bool(_) => vec![if value == "true" { "false" } else { "true" }.into()],
             ParamValue::Choice(_) => others(spec, value),
             _ => Vec::new(),
@@ -145,10 +145,10 @@ pub(super) fn steps(spec: &ParamSpec, value: &str, stride: Stride) -> Vec<String
     };
     let Ok(v) = value.parse::<f64>() else {
         let middle = (low.max(1.0) * high).sqrt();
-        return if stride == Stride::Half { Vec::new() } else { numbers(spec, &FACTORS.map(|f| f * middle), value) };
+        return if stride == StepSize::Half { Vec::new() } else { numbers(spec, &FACTORS.map(|f| f * middle), value) };
     };
     let ratio: f64 = if spec.scale == ParamScale::Log && spec.is_whole() { 2.0 } else { 1.5 };
-    let ratio = if stride == Stride::Half { ratio.sqrt() } else { ratio };
+    let ratio = if stride == StepSize::Half { ratio.sqrt() } else { ratio };
     let up = if v == 0.0 { (high - low) / 16.0 } else { v * ratio };
     let (down, up) =
         if spec.is_whole() { ((v / ratio).ceil().min(v - 1.0), up.floor().max(v + 1.0)) } else { (v / ratio, up) };
@@ -219,17 +219,17 @@ mod tests {
     #[test]
     fn steps_follow_the_declaration() {
         let pcss = TechniqueKind::Pcss;
-        assert_eq!(steps(spec(pcss, "map_size"), "1024", Stride::Whole), ["512", "2048"]);
-        assert_eq!(steps(spec(pcss, "map_size"), "8192", Stride::Whole), ["4096"]);
-        assert_eq!(steps(spec(pcss, "map_size"), "1024", Stride::Half), ["725", "1448"]);
-        assert_eq!(steps(spec(pcss, "layers"), "2", Stride::Half), ["1", "3"]);
-        assert!(steps(spec(pcss, "rotate"), "true", Stride::Half).is_empty());
-        assert_eq!(steps(spec(pcss, "layers"), "1", Stride::Whole), ["2"]);
-        assert_eq!(steps(spec(pcss, "layers"), "3", Stride::Whole), ["2", "4"]);
-        assert_eq!(steps(spec(pcss, "rotate"), "true", Stride::Whole), ["false"]);
-        assert_eq!(steps(spec(pcss, "means"), "layers", Stride::Whole), ["ranges"]);
-        assert_eq!(steps(spec(pcss, "bias_scale"), "1", Stride::Whole), ["0.667", "1.5"]);
-        assert_eq!(steps(spec(TechniqueKind::Vsm, "bleeding_reduction"), "0", Stride::Whole), ["0.0594"]);
+        assert_eq!(steps(spec(pcss, "map_size"), "1024", StepSize::Whole), ["512", "2048"]);
+        assert_eq!(steps(spec(pcss, "map_size"), "8192", StepSize::Whole), ["4096"]);
+        assert_eq!(steps(spec(pcss, "map_size"), "1024", StepSize::Half), ["725", "1448"]);
+        assert_eq!(steps(spec(pcss, "layers"), "2", StepSize::Half), ["1", "3"]);
+        assert!(steps(spec(pcss, "rotate"), "true", StepSize::Half).is_empty());
+        assert_eq!(steps(spec(pcss, "layers"), "1", StepSize::Whole), ["2"]);
+        assert_eq!(steps(spec(pcss, "layers"), "3", StepSize::Whole), ["2", "4"]);
+        assert_eq!(steps(spec(pcss, "rotate"), "true", StepSize::Whole), ["false"]);
+        assert_eq!(steps(spec(pcss, "means"), "layers", StepSize::Whole), ["ranges"]);
+        assert_eq!(steps(spec(pcss, "bias_scale"), "1", StepSize::Whole), ["0.667", "1.5"]);
+        assert_eq!(steps(spec(TechniqueKind::Vsm, "bleeding_reduction"), "0", StepSize::Whole), ["0.0594"]);
     }
 
     /// Techniques accept every step of every parameter.
@@ -240,11 +240,11 @@ mod tests {
             for config in QUALITIES.map(|quality| Config::of_quality(kind, quality)) {
                 for spec in axes(kind) {
                     let value = config.value(spec);
-                    for next in steps(spec, &value, Stride::Whole).iter().chain(&ladder(spec, &[], true)) {
+                    for next in steps(spec, &value, StepSize::Whole).iter().chain(&ladder(spec, &[], true)) {
                         kind.check(spec.key, next).unwrap();
                         taken += 1;
                     }
-                    assert!(!steps(spec, &value, Stride::Whole).contains(&value), "{kind}.{}", spec.key);
+                    assert!(!steps(spec, &value, StepSize::Whole).contains(&value), "{kind}.{}", spec.key);
                 }
             }
         }

@@ -103,7 +103,7 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
 
     let other = AdviseRequest { samples: 32, ..request };
     let why = advise(lab, &other, Some(dir.path()), &Silent).unwrap_err().to_string();
-    assert!(why.contains("its samples is 64, and here it is 32; name another folder"), "{why}");
+    assert!(why.contains("its samples is 64, but this run has 32; name another folder"), "{why}");
 
     let page_dir = tempfile::tempdir().unwrap();
     let preset = crate::report::write_advice(page_dir.path(), &advice).unwrap();
@@ -117,7 +117,7 @@ fn the_least_error_within_the_budget_wins_and_work_goes_on_from_its_file() {
 
 /// If nothing keeps a budget of a thousandth of a millisecond, the nearest is named, with the fact that it exceeds the budget.
 #[test]
-fn what_nothing_keeps_is_said() {
+fn an_impossible_budget_is_reported() {
     let Some(lab) = lab_or_skip() else { return };
     let kinds = [TechniqueKind::Hard];
     let advice = advise(lab, &request("builtin:overlap", &kinds, Budget::Ms(1e-3)), None, &Silent).unwrap();

@@ -69,7 +69,7 @@ pub(super) fn in_turns(search: &Search<'_, '_>, configs: &[&Config]) -> Result<V
     let pcf = Config::default_of(TechniqueKind::Pcf);
     let mut times: Vec<Times> =
         configs.iter().map(|_| Times { by_turn: Vec::new(), count: FrameCount::default() }).collect();
-    search.progress.begin("timing in turns", (TURNS * configs.len()) as u64);
+    search.progress.begin("timing in alternation", (TURNS * configs.len()) as u64);
     for turn in 0..TURNS {
         let paces = match &search.pcf_ms {
             None => Vec::new(),

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{CompareRequest, Each, name_missing};
+use super::{CompareRequest, ReportCallback, name_missing};
 use crate::device::LabDevice;
 use crate::error::LabError;
 use crate::limits::{Pace, Planned};
@@ -21,7 +21,7 @@ pub(super) fn measure(
     request: &CompareRequest<'_>,
     report: &mut Report,
     pace: &mut Pace,
-    each: Each<'_>,
+    each: ReportCallback<'_>,
     progress: &dyn Progress,
 ) -> Result<(), LabError> {
     let (motions, left_out) = moving.motions();
@@ -79,7 +79,7 @@ fn run(
         Ok(figures) => {
             if figures.lacking_room > 0 {
                 row.warnings.push(format!(
-                    "While the {name} moved, {} of {frames} frames lacked room for their lists, which counts as flicker.",
+                    "While the {name} moved, lists exceeded their capacity in {} of {frames} frames, which counts as flicker.",
                     figures.lacking_room
                 ));
             }

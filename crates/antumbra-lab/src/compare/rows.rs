@@ -27,7 +27,7 @@ pub(super) fn planned(request: &CompareRequest<'_>, choice: &TechniqueChoice, ma
             choice.settings.iter().map(|(key, value)| format!(" --set {key}={value}")).collect::<String>(),
             choice.name().replace(':', "-"),
         ),
-        outcome: Outcome::Skipped("no time was left for it".into()),
+        outcome: Outcome::Skipped("no time was left".into()),
         warnings: Vec::new(),
         notes: Vec::new(),
         is_missing: true,
@@ -52,7 +52,7 @@ pub(super) fn measure_row(
         let own_truths = match request.truth {
             Truth::Traced => None,
             Truth::Filtered => {
-                let why = || format!("{} has no kernel of fixed width to be held against", choice.kind);
+                let why = || format!("{} has no kernel of constant width to compare with", choice.kind);
                 let Some(exact) = choice.filtered_truth() else { return Ok(Err(why())) };
                 Some(filtered_truths(view, &exact, &judge.truths)?)
             }
@@ -89,13 +89,13 @@ fn note_clock(row: &mut Row, run: &TechniqueRun) {
     let timings = &run.timings;
     if timings.clock == Clock::SubmitToDone {
         row.notes.push(format!(
-            "The adapter has no timestamps; from submission to completion it took {:.2} ms ({}).",
+            "The adapter has no timestamps. From submission to completion, a frame took {:.2} ms ({}).",
             timings.total_ms,
             timings.count()
         ));
     }
     if let Some(limit_s) = run.cut_short_s {
-        row.notes.push(format!("Cut short by the limit of {limit_s} s for a technique: fewer frames are timed."));
+        row.notes.push(format!("Cut short by the limit of {limit_s} s per technique: fewer frames are timed."));
     }
 }
 
@@ -116,7 +116,7 @@ fn run_all_lights(
             others.push(view.draw_until(technique, light, 1, end)?.visibility);
         }
     }
-    let judged = judged.expect("the light that is judged is the setup's");
+    let judged = judged.expect("the measured light is in the setup");
     Ok(Runs { judged, others })
 }
 

@@ -37,7 +37,7 @@ impl Judge {
         // For a filtered reference, the tracer only determines which pixels are judged.
         let samples = if request.truth == Truth::Traced { request.samples } else { 1 };
         let options = VisibilityOptions { samples, ..VisibilityOptions::default() };
-        progress.begin("building the ray tracer's tree", 0);
+        progress.begin("building the acceleration structure", 0);
         let tracer = Tracer::new(request.scene)?;
         let (camera, lights) = (&request.setup.camera, &request.setup.lights);
         let receivers = tracer.primary(camera, request.size_px);
@@ -48,8 +48,8 @@ impl Judge {
             truths.iter_mut().map(|truth| truth.unjudge_mismatched_surfaces(&seen, camera.eye)).collect();
         if others[request.light] > 0 {
             warnings.push(format!(
-                "{} pixels are not judged: an edge passes through their centres, and the depth buffer shows another face \
-                 there than the ray meets.",
+                "{} pixels are not measured: an edge passes through their centres, where the depth buffer shows another \
+                 surface than the ray hits.",
                 others[request.light]
             ));
         }
@@ -109,14 +109,14 @@ fn filtered(
 ) -> Result<(Vec<LightTruth>, String), LabError> {
     let Some(exact) = request.choices.iter().find_map(TechniqueChoice::filtered_truth) else {
         return Err(LabError::Request(
-            "none of these techniques has a kernel of fixed width to be held against; a filtered truth is for vsm, \
-             lvsm, evsm, esm, convolution and moment"
+            "none of these techniques has a kernel of constant width to compare with; `--truth filtered` works for vsm, lvsm, \
+             evsm, esm, convolution and moment"
                 .into(),
         ));
     };
     let warning = format!(
-        "Each technique is held against exact percentage-closer filtering of its own light map by its own kernel, \
-         not against traced light. The truth shown is {}'s.",
+        "Each technique is compared with exact percentage-closer filtering of its own shadow map by its own kernel, not with \
+         traced visibility. The reference shown is that of {}.",
         exact.kind
     );
     Ok((filtered_truths(view, &exact, judged)?, warning))

@@ -29,7 +29,7 @@ pub fn write_visibility_exr(path: &Path, visibility: &Visibility) -> Result<(), 
     let mut file = AtomicFile::create(path)?;
     Image::from_layer(layer).write().non_parallel().to_buffered(file.writer()).map_err(|error| match error {
         exr::error::Error::Io(error) => FileError::from_write(path, &error),
-        error => FileError::bad_path("write", path, one_line(&error.to_string()), "render at another size"),
+        error => FileError::bad_path("write", path, one_line(&error.to_string()), "choose another size"),
     })?;
     file.finish()
 }

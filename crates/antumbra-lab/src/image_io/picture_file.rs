@@ -41,7 +41,7 @@ pub fn check_picture_path(path: &Path) -> Result<(), FileError> {
 /// # Errors
 /// If the extension is not that of OpenEXR, or the path is not writable.
 pub fn check_visibility_path(path: &Path) -> Result<(), FileError> {
-    check_ending(path, "visibility, 32-bit float OpenEXR,", &["exr"])?;
+    check_ending(path, "visibility (32-bit float OpenEXR)", &["exr"])?;
     check_writable(path)
 }
 

@@ -11,7 +11,7 @@ use crate::output_files::{AtomicFile, FileError};
 /// Writes an 8-bit sRGB image. [`Picture::to_srgb8`](crate::picture::Picture::to_srgb8) creates one from linear colours.
 pub fn write_png(path: &Path, picture: &RgbImage) -> Result<(), FileError> {
     let mut file = AtomicFile::create(path)?;
-    let png = encode_png(picture).map_err(|why| FileError::bad_path("write", path, why, "render at another size"))?;
+    let png = encode_png(picture).map_err(|why| FileError::bad_path("write", path, why, "choose another size"))?;
     file.writer().write_all(&png).map_err(|error| FileError::from_write(path, &error))?;
     file.finish()
 }
@@ -37,7 +37,7 @@ pub fn read_png(path: &Path) -> Result<RgbImage, FileError> {
     let reader = ImageReader::open(path).map_err(|error| FileError::from_read(path, &error))?;
     let image = reader.with_guessed_format().map_err(|error| FileError::from_read(path, &error))?.decode();
     let why = |error: image::ImageError| crate::output_files::one_line(&error.to_string());
-    image.map(|image| image.into_rgb8()).map_err(|error| FileError::bad_content(path, why(error), "give a PNG picture"))
+    image.map(|image| image.into_rgb8()).map_err(|error| FileError::bad_content(path, why(error), "give a PNG image"))
 }
 
 #[cfg(test)]
@@ -65,7 +65,7 @@ mod tests {
         assert!(read_png(&path).unwrap_err().to_string().ends_with("there is no such file; check the path"));
         std::fs::write(&path, "not a picture").unwrap();
         let error = read_png(&path).unwrap_err().to_string();
-        assert!(error.ends_with("give a PNG picture") && !error.contains('\n'), "{error}");
+        assert!(error.ends_with("give a PNG image") && !error.contains('\n'), "{error}");
         assert!(write_png(&folder.path().join("b.png"), &RgbImage::new(0, 0)).is_err());
         assert!(!folder.path().join("b.png").exists());
     }

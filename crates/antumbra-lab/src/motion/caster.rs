@@ -39,7 +39,7 @@ pub fn named_caster(scene: &Scene, name: &str) -> Result<MovingCaster, LabError>
     }
     if instances.is_empty() {
         return Err(LabError::Request(format!(
-            "--caster: there is no mesh `{name}` in the scene; there are {}",
+            "--caster: there is no mesh `{name}` in the scene; available: {}",
             names(scene)
         )));
     }

@@ -107,7 +107,7 @@ fn channels(truth: &TrueFrame, mask: &Visibility) -> usize {
 /// # Panics
 /// If there is no frame.
 pub fn touched_pixels(truths: &[TrueFrame]) -> Vec<usize> {
-    let last = truths.last().expect("a motion has a frame at least");
+    let last = truths.last().expect("a motion has at least one frame");
     let differs = |frame: &TrueFrame, i: usize| {
         let change = |c| f64::from(frame.visibility.at(i, c) - last.visibility.at(i, c)).abs();
         frame.judged[i] && (0..last.visibility.channel_count()).any(|c| change(c) > SETTLED)
@@ -210,7 +210,7 @@ mod tests {
 
     /// Masks that lag some frames behind, as ghosting does.
     #[test]
-    fn a_mask_that_lags_is_seen_to() {
+    fn lag_is_measured_by_the_distance_to_the_settled_mask() {
         const STOP: u32 = 10;
         let truths: Vec<_> = (0..=STOP).map(truth).collect();
         let touched = touched_pixels(&truths);

@@ -171,7 +171,7 @@ impl<'a> MovingScene<'a> {
         size_px: UVec2,
         options: &'a MotionOptions,
     ) -> Result<Self, LabError> {
-        assert!(options.frames > 0, "a motion has a frame at least");
+        assert!(options.frames > 0, "a motion has at least one frame");
         let caster = match &options.caster {
             _ if !options.motions.contains(&Motion::Caster) => None,
             Some(name) => Some(named_caster(scene, name)?),
@@ -189,7 +189,7 @@ impl<'a> MovingScene<'a> {
         let left_out = (motions.len() < self.options.motions.len()).then(|| {
             let names = caster::names(self.at_rest);
             format!(
-                "No caster moves: none in this picture stands apart from its surroundings. `--caster` names one of {names}."
+                "No caster moves, because none in this image is separate from its surroundings. Choose one with `--caster`: {names}."
             )
         });
         (motions, left_out)
@@ -268,7 +268,7 @@ impl<'a> MovingScene<'a> {
             frames.push(frame);
         }
         progress.end();
-        let [before, after] = &frames[frames.len() - 2..] else { unreachable!("a motion has two places at least") };
+        let [before, after] = &frames[frames.len() - 2..] else { unreachable!("a motion has at least two positions") };
         let mut noise = FlickerSums::new(pixel_count(self.size_px));
         noise.add([before, after], [&other_points[0], &other_points[1]]);
         let summary = TrueMotion {

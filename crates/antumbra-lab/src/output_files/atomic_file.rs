@@ -24,7 +24,7 @@ impl AtomicFile {
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let target = resolve_target(path)?;
         let (Some(folder), Some(name)) = (target.parent(), target.file_name()) else {
-            return Err(FileError::bad_path("write", path, "it names no file", "end the path in a file's name"));
+            return Err(FileError::bad_path("write", path, "it does not name a file", "end the path with a file name"));
         };
         let (unfinished, file) = REGISTRY
             .begin(folder, &name.to_string_lossy(), |path| File::create_new(path))
@@ -34,7 +34,7 @@ impl AtomicFile {
 
     /// Returns the writer of the content.
     pub fn writer(&mut self) -> &mut BufWriter<File> {
-        self.writer.as_mut().expect("the writer is there until finish takes it")
+        self.writer.as_mut().expect("the writer exists until `finish` takes it")
     }
 
     /// Moves the complete file into place.
@@ -78,7 +78,7 @@ fn resolve_target(path: &Path) -> Result<PathBuf, FileError> {
         Err(error) => Err(fail(error)),
         Ok(metadata) if metadata.is_file() => path.canonicalize().map_err(fail),
         Ok(metadata) => {
-            let what = if metadata.is_dir() { "it is a folder" } else { "it is a device, not a file" };
+            let what = if metadata.is_dir() { "it is a folder" } else { "it is not a regular file" };
             Err(FileError::bad_path("write", path, what, "name a file"))
         }
     }
@@ -128,7 +128,7 @@ mod tests {
         let file = folder.path().join("file");
         write_atomically(&file, b"x").unwrap();
         assert!(text(&file.join("a.png")).contains("is not a folder"));
-        assert!(text(&folder.path().join("n".repeat(300))).contains("does not accept this name"));
+        assert!(text(&folder.path().join("n".repeat(300))).contains("does not accept the name"));
         assert!(text(Path::new("")).contains("cannot write"));
         assert_eq!(names_in(folder.path()), ["file"]);
     }
@@ -143,6 +143,6 @@ mod tests {
         write_atomically(&link, b"new").unwrap();
         assert_eq!(fs::read(&real).unwrap(), b"new");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert!(check_writable(Path::new("/dev/null")).unwrap_err().to_string().contains("a device"));
+        assert!(check_writable(Path::new("/dev/null")).unwrap_err().to_string().contains("not a regular file"));
     }
 }

@@ -40,29 +40,29 @@ impl FileError {
         let (why, remedy, is_bad_input) = match error.kind() {
             // Virtual folders such as /proc return this error.
             ErrorKind::NotFound if path.parent().is_some_and(Path::is_dir) => {
-                (format!("{folder} takes no new files"), "choose a folder that you may write to", true)
+                (format!("{folder} is not writable"), "choose a writable folder", true)
             }
             ErrorKind::NotFound => {
-                (format!("the folder {folder} does not exist"), "create it, or write elsewhere", true)
+                (format!("the folder {folder} does not exist"), "create it, or choose another folder", true)
             }
             ErrorKind::PermissionDenied => {
-                (format!("no permission to write in {folder}"), "choose a folder that you may write to", true)
+                (format!("no permission to write in {folder}"), "choose a writable folder", true)
             }
             ErrorKind::ReadOnlyFilesystem => {
-                (format!("{folder} is on a read-only file system"), "choose a folder that you may write to", true)
+                (format!("{folder} is on a read-only file system"), "choose a writable folder", true)
             }
             ErrorKind::NotADirectory => (format!("{folder} is not a folder"), "name a file inside a folder", true),
             ErrorKind::IsADirectory => ("it is a folder".into(), "name a file", true),
             ErrorKind::InvalidFilename => {
-                ("the file system does not accept this name".into(), "use a shorter, plainer name", true)
+                ("the file system does not accept the name".into(), "use a shorter, plainer name", true)
             }
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-                ("the disk is full".into(), "free some space, or write to another disk", false)
+                ("the disk is full".into(), "free some space, or choose another disk", false)
             }
             ErrorKind::FileTooLarge => {
-                ("the file system does not take a file of this size".into(), "write to another disk", false)
+                ("the file system does not support files of this size".into(), "choose another disk", false)
             }
-            ErrorKind::Interrupted => ("interrupted".into(), "start again", false),
+            ErrorKind::Interrupted => ("interrupted".into(), "try again", false),
             _ => (one_line(&error.to_string()), "check the disk and the folder", false),
         };
         Self { action: "write", path: path.to_path_buf(), why, remedy: remedy.into(), is_bad_input }
@@ -94,11 +94,11 @@ mod tests {
         let of = |kind| FileError::from_write(Path::new("/there/a.png"), &io::Error::from(kind));
         assert_eq!(
             of(ErrorKind::ReadOnlyFilesystem).to_string(),
-            "cannot write /there/a.png: /there is on a read-only file system; choose a folder that you may write to"
+            "cannot write /there/a.png: /there is on a read-only file system; choose a writable folder"
         );
         assert_eq!(
             of(ErrorKind::StorageFull).to_string(),
-            "cannot write /there/a.png: the disk is full; free some space, or write to another disk"
+            "cannot write /there/a.png: the disk is full; free some space, or choose another disk"
         );
         assert!(of(ErrorKind::PermissionDenied).is_bad_input && !of(ErrorKind::StorageFull).is_bad_input);
         let many = io::Error::other("two\n  lines");

@@ -10,7 +10,7 @@ use super::{FileError, check_writable};
 /// If the path is `-`.
 pub fn check_named(path: &Path) -> Result<(), FileError> {
     if path.as_os_str() == "-" {
-        let why = "results are files and folders, and are not written to standard output";
+        let why = "results are files and folders, which cannot be written to standard output";
         return Err(FileError::bad_path("write", path, why, "give a name"));
     }
     Ok(())
@@ -27,8 +27,8 @@ pub fn check_ending(path: &Path, what: &str, endings: &[&'static str]) -> Result
         return Ok(known);
     }
     let why = match ending {
-        Some(other) => format!("{what} is not written as .{other}"),
-        None => format!("its name does not say as what {what} is to be written"),
+        Some(other) => format!("{what} cannot be written as .{other}"),
+        None => format!("its name has no extension that determines the format of {what}"),
     };
     let remedy = format!("name it .{}", endings.join(" or ."));
     Err(FileError::bad_path("write", path, why, &remedy))

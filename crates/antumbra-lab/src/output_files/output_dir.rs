@@ -49,7 +49,7 @@ impl OutputDir {
             Err(error) => return Err(fail(error)),
         };
         let Some(name) = target.file_name() else {
-            return Err(FileError::bad_path("write", path, "it names no folder", "name a folder to create"));
+            return Err(FileError::bad_path("write", path, "it does not name a folder", "name a folder to create"));
         };
         if std::env::current_dir().is_ok_and(|current| current.starts_with(&target)) {
             return Err(FileError::bad_path("write", path, "it is the current folder", "name a folder inside it"));
@@ -154,7 +154,7 @@ impl Drop for OutputDir {
 /// Checks that a finished folder may replace `target`.
 fn check_replaceable(named: &Path, target: &Path) -> Result<(), FileError> {
     let refuse = |why: String| {
-        let remedy = "name a new or empty folder, or move away what it holds";
+        let remedy = "name a new or empty folder, or move its content away";
         Err(FileError::bad_path("replace", named, why, remedy))
     };
     let fail = |error: io::Error| FileError::from_write(named, &error);
@@ -171,11 +171,11 @@ fn check_replaceable(named: &Path, target: &Path) -> Result<(), FileError> {
         .filter(|manifest| manifest.format == MANIFEST_FORMAT);
     match manifest {
         None if files.is_empty() => Ok(()),
-        None => refuse("it is not empty and not a report of ours".into()),
+        None => refuse("it is not empty, and was not written by this command".into()),
         Some(manifest) => {
             match files.difference(&manifest.files).find(|&file| file != MANIFEST_NAME && !is_unfinished(file)) {
                 None => Ok(()),
-                Some(foreign) => refuse(format!("it holds {foreign}, which is not ours")),
+                Some(foreign) => refuse(format!("it contains {foreign}, which this command did not write")),
             }
         }
     }
@@ -258,9 +258,9 @@ mod tests {
         out.finish().unwrap();
         assert_eq!(names(root.path()), ["report"]);
         make(&target, "new.png").unwrap();
-        assert!(!target.join("first.json").exists(), "all of it was ours");
+        assert!(!target.join("first.json").exists(), "the folder contained only files of this command");
         fs::write(target.join("images/mine.txt"), "mine").unwrap();
-        assert!(OutputDir::resume(&target).unwrap_err().to_string().contains("not ours"));
+        assert!(OutputDir::resume(&target).unwrap_err().to_string().contains("which this command did not write"));
         let fresh = OutputDir::resume(&root.path().join("fresh")).unwrap();
         assert!(fresh.path() != root.path().join("fresh"));
     }
@@ -280,17 +280,20 @@ mod tests {
         make(&foreign, "into-an-empty-folder.png").unwrap();
         fs::write(foreign.join("images/notes.txt"), "mine").unwrap();
         let error = make(&foreign, "a.png").unwrap_err().to_string();
-        assert!(error.contains("it holds images/notes.txt, which is not ours; name a new"), "{error}");
+        assert!(
+            error.contains("it contains images/notes.txt, which this command did not write; name a new"),
+            "{error}"
+        );
 
         let home = root.path().join("home");
         fs::create_dir_all(home.join("pictures")).unwrap();
-        assert!(make(&home, "a.png").unwrap_err().to_string().contains("not a report of ours"));
+        assert!(make(&home, "a.png").unwrap_err().to_string().contains("was not written by this command"));
         let file = root.path().join("file");
         fs::write(&file, "x").unwrap();
         assert!(make(&file, "a.png").unwrap_err().to_string().contains("it is a file"));
         assert!(make(&file.join("below"), "a.png").unwrap_err().is_bad_input);
-        assert!(make(Path::new(""), "a.png").unwrap_err().to_string().contains("names no folder"));
-        assert!(make(Path::new("/"), "a.png").unwrap_err().to_string().contains("names no folder"));
+        assert!(make(Path::new(""), "a.png").unwrap_err().to_string().contains("does not name a folder"));
+        assert!(make(Path::new("/"), "a.png").unwrap_err().to_string().contains("does not name a folder"));
         assert!(make(Path::new("."), "a.png").unwrap_err().to_string().contains("current folder"));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 3, "no temporary folder stays");
     }

@@ -48,16 +48,18 @@ fn page(advice: &Advice) -> String {
     let best = &advice.best;
     let name = format!("<b>{}</b>", escape(&best.name));
     let answer = match (advice.keeps_budget, advice.is_too_noisy_to_tell) {
-        (false, _) => format!("Nothing keeps the budget. {name} comes nearest."),
-        (true, true) => format!("Take {name}. Its times vary across the budget: repeat this on an idle machine."),
-        (true, false) => format!("Take {name}."),
+        (false, _) => format!("No configuration keeps the budget. {name} is closest."),
+        (true, true) => {
+            format!("Use {name}. Some of its times exceed the budget: repeat the search on an idle machine.")
+        }
+        (true, false) => format!("Use {name}."),
     };
     let scene_facts = advice
         .views
         .iter()
         .zip(&advice.facts)
-        .map(|(view, facts)| format!("<h3>What {} is like</h3>{}", escape(view), list("notes", &facts.lines())));
-    let axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
+        .map(|(view, facts)| format!("<h3>Properties of {}</h3>{}", escape(view), list("notes", &facts.lines())));
+    let axes = Axes { cost: "milliseconds per frame", cost_unit: "ms", error: "rmse" };
     let notices = if advice.adapter.is_software { software_notice(&advice.adapter.name) } else { String::new() };
     let [commit, date] = [&advice.commit, &advice.date].map(|text| escape(text));
     fill(
@@ -82,7 +84,7 @@ fn page(advice: &Advice) -> String {
             (
                 "footer",
                 &format!(
-                    "Antumbra {commit} · {date} · {} measurements, {} s · <code>advice.json</code> beside this page holds the numbers.",
+                    "Antumbra {commit} · {date} · {} measurements, {} s · The numbers are in <code>advice.json</code> next to this page.",
                     advice.spent.measurements,
                     three_figures(advice.spent.seconds)
                 ),
@@ -118,7 +120,7 @@ fn facts(advice: &Advice) -> String {
 fn images() -> String {
     let images = [
         ("advice", "Shaded with the recommendation"),
-        ("reference", "Shaded with the truth"),
+        ("reference", "Shaded with ray-traced visibility"),
         ("error", "Error: blue is too dark, red is too bright"),
     ];
     let shot = |(file, what)| {
@@ -146,7 +148,7 @@ fn times_note(advice: &Advice) -> String {
         if advice.pcf_ms.is_empty() { String::new() } else { format!(" (pcf takes {} ms)", times(&advice.pcf_ms)) };
     let view = match advice.views.len() {
         0 | 1 => String::new(),
-        _ => format!(" The time is that of {}.", advice.views[advice.best.heaviest_view]),
+        _ => format!(" The time is the one on {}.", advice.views[advice.best.heaviest_view]),
     };
     format!("The budget is {} ms{pcf}. The time is a {}.{view}", times(&advice.budget_ms), advice.best.counted())
 }

@@ -125,7 +125,7 @@ impl ReportWriter {
         }
         let path = self.dir.join(visibility_path(stem));
         let png = encode_png(&visibility.to_gray_levels())
-            .map_err(|why| FileError::bad_path("write", &path, why, "render at another size"))?;
+            .map_err(|why| FileError::bad_path("write", &path, why, "choose another size"))?;
         write_atomically(&path, &png)?;
         write_visibility_exr(&self.dir.join(&exr), visibility)?;
         self.written.insert(exr);

@@ -43,43 +43,42 @@ pub(super) const METRICS: [MetricInfo; 13] = [
     MetricInfo {
         key: "rmse",
         label: "rmse",
-        meaning: "Root of the mean squared error of visibility. The one number to rank by; large errors weigh most.",
+        meaning: "Root mean square error of visibility, the main measure for ranking. Large errors weigh most.",
         higher_is_better: false,
         value: |m| m.rmse,
     },
     MetricInfo {
         key: "mae",
         label: "mae",
-        meaning: "Mean absolute error of visibility. Broad faint errors count as much as small strong ones.",
+        meaning: "Mean absolute error of visibility. Large faint errors count as much as small strong ones.",
         higher_is_better: false,
         value: |m| m.mae,
     },
     MetricInfo {
         key: "p99",
         label: "p99",
-        meaning: "99th percentile of the absolute error: how wrong the worst hundredth of the pixels is, at least.",
+        meaning: "99th percentile of the absolute error: the minimum error of the worst hundredth of the pixels.",
         higher_is_better: false,
         value: |m| m.p99,
     },
     MetricInfo {
         key: "leak",
         label: "leak",
-        meaning: "Mean of max(0, V − V_ref): light where there should be less of it. Red in the error map.",
+        meaning: "Mean of max(0, V − V_ref): too much light. Red in the error map.",
         higher_is_better: false,
         value: |m| m.leak,
     },
     MetricInfo {
         key: "overshadow",
         label: "overshadow",
-        meaning: "Mean of max(0, V_ref − V): shadow where there should be less of it. Blue in the error map.",
+        meaning: "Mean of max(0, V_ref − V): too much shadow. Blue in the error map.",
         higher_is_better: false,
         value: |m| m.overshadow,
     },
     MetricInfo {
         key: "penumbra_rmse",
         label: "penumbra",
-        meaning: "Root mean squared error in the penumbra alone, where 0.01 < V_ref < 0.99: is its width and \
-         shape right?",
+        meaning: "Root mean square error in the penumbra only, where 0.01 < V_ref < 0.99: faults of width and shape.",
         higher_is_better: false,
         value: |m| m.penumbra_rmse,
     },
@@ -107,31 +106,30 @@ pub(super) const METRICS: [MetricInfo; 13] = [
     MetricInfo {
         key: "flip",
         label: "flip",
-        meaning: "Mean FLIP of the shaded pictures (Andersson et al. 2020) at 67 pixels per degree: what an eye \
-         sees when \
-                  it flips between picture and truth.",
+        meaning: "Mean FLIP of the shaded images (Andersson et al. 2020) at 67 pixels per degree: the difference that is \
+             visible when alternating between image and truth.",
         higher_is_better: false,
         value: |m| m.flip,
     },
     MetricInfo {
         key: "roughness",
         label: "roughness",
-        meaning: "Visible artefacts: rms of what a blur of two pixels takes off the error, where the truth is smooth (it \
-                  changes by less than 0.02 per pixel within three pixels). Specks, torn edges, acne, noise.",
+        meaning: "Visible artefacts such as specks, torn edges, acne and noise: rms of what a blur of two pixels removes from \
+             the error where the truth is smooth (changes by less than 0.02 per pixel within three pixels).",
         higher_is_better: false,
         value: |m| m.roughness,
     },
     MetricInfo {
         key: "worst_tile",
         label: "worst tile",
-        meaning: "Roughness of the worst 32 × 32 pixels, 0 where the truth is not smooth. The error map outlines them.",
+        meaning: "Roughness of the worst 32 × 32 pixels; 0 where the truth is not smooth. The error map outlines them.",
         higher_is_better: false,
         value: |m| m.worst_tile,
     },
     MetricInfo {
         key: "worst_tile_flip",
-        label: "its flip",
-        meaning: "Mean FLIP of the shaded pictures over the worst tile: whether an eye sees there what visibility tells.",
+        label: "worst tile's flip",
+        meaning: "Mean FLIP of the shaded images over the worst tile: whether its artefacts are visible.",
         higher_is_better: false,
         value: |m| m.worst_tile_flip,
     },

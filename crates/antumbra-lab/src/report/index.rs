@@ -85,7 +85,7 @@ fn index_html(entries: &[IndexEntry]) -> String {
     let techniques = technique_names(entries);
     let adapter = entries.first().map(|entry| entry.adapter.clone()).unwrap_or_default();
     let lede = format!(
-        "{} {}, {} {}, on {}. Choose a scene for its pictures, error maps and times.",
+        "{} {}, {} {}, on {}. Choose a scene to see its images, error maps and times.",
         entries.len(),
         if entries.len() == 1 { "scene" } else { "scenes" },
         techniques.len(),
@@ -138,11 +138,11 @@ fn hard_against_soft(entries: &[IndexEntry]) -> String {
     let (scene, name) = (escape(&entry.scene), escape(&left.technique));
     let path = |stem: &str| format!("{}/{}", escape(&entry.folder), shaded_path(stem));
     format!(
-        "<section aria-label=\"Image against truth\"><figure class=\"against\"><div class=\"frame\"><img src=\"{}\" \
-         alt=\"{scene}, shaded with {name}\"><img class=\"over\" src=\"{}\" alt=\"{scene}, shaded with ray-traced soft shadows\">\
-         <input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"Share of {name}, percent\" \
-         oninput=\"this.parentElement.style.setProperty('--split', this.value + '%')\"></div>\
-         <figcaption><span><code>{name}</code></span><span>ray-traced truth</span></figcaption></figure></section>",
+        "<section aria-label=\"Image and ray-traced truth\"><figure class=\"against\"><div class=\"frame\"><img src=\"{}\" \
+         alt=\"{scene}, shaded with {name}\"><img class=\"over\" src=\"{}\" alt=\"{scene}, shaded with ray-traced soft \
+         shadows\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"Share of {name}, percent\" \
+         oninput=\"this.parentElement.style.setProperty('--split', this.value + \
+         '%')\"></div><figcaption><span><code>{name}</code></span><span>ray-traced truth</span></figcaption></figure></section>",
         path(&left.stem),
         path(REFERENCE_STEM)
     )
@@ -212,7 +212,7 @@ fn errors_table(entries: &[IndexEntry], techniques: &[&str]) -> String {
 /// Plots error against time over all scenes: geometric means of the techniques measured on every scene.
 fn front_of_all(entries: &[IndexEntry], techniques: &[&str]) -> String {
     let points = points_of(&over_all(entries, techniques));
-    let axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
+    let axes = Axes { cost: "milliseconds per frame", cost_unit: "ms", error: "rmse" };
     scatter_svg(&points, axes).unwrap_or_else(|| "<p class=\"note\">No technique was timed on every scene.</p>".into())
 }
 

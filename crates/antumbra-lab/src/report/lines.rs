@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn no_line_of_two_points_is_no_drawing() {
+    fn lines_with_fewer_than_two_points_are_not_drawn() {
         assert!(lines_svg(&[], AXES).is_none());
         assert!(lines_svg(&[line("a", &[(1.0, 0.1)]), line("b", &[(0.0, 0.1), (f64::NAN, 0.1)])], AXES).is_none());
     }

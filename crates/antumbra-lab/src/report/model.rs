@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::paths::stems_of;
 use crate::adapter_info::AdapterInfo;
-use crate::baseline::{Against, Figures, numbers};
+use crate::baseline::{BaselineComparison, Figures, numbers};
 use crate::metrics::Metrics;
 use crate::motion::{MotionFigures, TrueMotion};
 use crate::names::numbered;
@@ -40,7 +40,7 @@ pub struct Report {
     /// Names of missing measurements, as `pcss` or `pcss, camera in motion`.
     pub missing: Vec<String>,
     /// Comparison with another run, if one was given.
-    pub baseline: Option<Against>,
+    pub baseline: Option<BaselineComparison>,
     /// Warnings about the whole comparison, one line each: repairs by the loader, limits of this run.
     pub warnings: Vec<String>,
 }

@@ -27,12 +27,12 @@ fn lead(info: &MotionInfo) -> String {
         }
     }
     format!(
-        "<p class=\"note\">One thing moves for {} frames, {} m each, and comes to stand where the pictures above have it; a \
-         technique keeps its state all the while. <i>Flicker</i> is the rms of the mask's change from frame to frame less \
-         the truth's own change at the same pixels; <i>ratio</i> is flicker over that change: 0 moves as the truth does, 1 is \
-         as wrong as standing still. <i>Lag</i> is how many frames after the stop the mask is within {SETTLED} of the one that \
-         it settles on. The truth has {} light points a pixel, the same in all frames; its own noise is{} in the terms of \
-         flicker.</p>",
+        "<p class=\"note\">One thing moves for {} frames, {} m each, and stops where it is in the images above; a technique \
+         keeps its state from frame to frame. <i>Flicker</i> is the rms of the mask's change from frame to frame minus the \
+         truth's change at the same pixels. <i>Ratio</i> is flicker divided by that change: 0 moves like the truth, 1 is as \
+         wrong as a mask that never changes. <i>Lag</i> is the number of frames after the stop until the mask is within \
+         {SETTLED} of its final state. The truth has {} light samples per pixel, the same in all frames; its own noise, \
+         measured as flicker, is{}.</p>",
         info.frames,
         info.step_m,
         info.samples,
@@ -83,7 +83,8 @@ fn table(report: &Report, info: &MotionInfo) -> String {
             name_of(truth)
         );
     }
-    html += "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\">Reference<small>its own change</small></th>";
+    html +=
+        "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\">Reference<small>change of the truth</small></th>";
     for truth in &info.truths {
         let _ = write!(html, "<td>{}</td><td></td><td></td>", figure(truth.change));
     }
@@ -115,15 +116,15 @@ fn table(report: &Report, info: &MotionInfo) -> String {
 /// Returns the strips of one motion: the truth's, then every technique's.
 fn strips(report: &Report, truth: &TrueMotion) -> String {
     let mut html = format!(
-        "<h3>The {} moves</h3><p class=\"note\">Above: masks, evenly over the motion, and the settled one. Below: how each \
-         differs from the frame before it, less how the truth does (red: too bright a change, blue: too dark, full at ±0.5), \
-         and the flicker of each pixel, brightest from {STRIP_FLICKER_RANGE}.</p>",
+        "<h3>The {} moves</h3><p class=\"note\">Top: masks at equal intervals of the motion, and the final one. Bottom: the \
+         change of each mask from the frame before, minus that of the truth (red: too bright, blue: too dark, saturated at \
+         ±0.5), and the flicker of each pixel, brightest from {STRIP_FLICKER_RANGE}.</p>",
         name_of(truth),
     );
     html += &strip(
         &motion_path(REFERENCE_STEM, truth.motion),
         truth,
-        &format!("<b>Reference</b>, and its own changes; rms {}", figure(truth.change)),
+        &format!("<b>Reference</b> and its changes; rms {}", figure(truth.change)),
     );
     for (name, stem, motions) in measured(report) {
         let Some(figures) = of(motions, truth.motion) else { continue };

@@ -86,7 +86,7 @@ pub(super) fn page_html(report: &Report) -> String {
 
 pub(super) fn footer(commit: &str, date: &str) -> String {
     format!(
-        "Antumbra {} · {} · <code>metrics.json</code> beside this page holds the numbers.",
+        "Antumbra {} · {} · The numbers are in <code>metrics.json</code> next to this page.",
         escape(commit),
         escape(date)
     )
@@ -95,8 +95,8 @@ pub(super) fn footer(commit: &str, date: &str) -> String {
 /// Returns the notice that accompanies times of a software renderer.
 pub(super) fn software_notice(adapter: &str) -> String {
     format!(
-        "<p class=\"notice\"><b>Times are from a software renderer</b> ({} runs on the CPU). They show roughly what \
-         each pass costs here and say little about any GPU.</p>",
+        "<p class=\"notice\"><b>Times are from a software renderer</b> ({} runs on the CPU). They roughly show the cost of \
+         each pass on this machine, and say little about any GPU.</p>",
         escape(adapter)
     )
 }
@@ -129,7 +129,7 @@ fn facts(report: &Report) -> String {
         ("Image", format!("{} × {}", size_px.x, size_px.y)),
         (
             "Truth",
-            format!("{} light points a pixel <small>{}</small>", grouped(info.samples.into()), tracing_text(info)),
+            format!("{} light samples per pixel <small>{}</small>", grouped(info.samples.into()), tracing_text(info)),
         ),
         ("Adapter", format!("{} <small>{}</small>", escape(&report.adapter.name), driver.join(" · "))),
     ];
@@ -143,7 +143,7 @@ fn facts(report: &Report) -> String {
 /// Returns the scene facts in the words of the command line.
 fn scene_facts(facts: &SceneFacts) -> String {
     let lines: String = facts.lines().iter().map(|line| format!("<li>{}</li>", escape(line))).collect();
-    format!("<ul class=\"note\" aria-label=\"What the scene is like\">{lines}</ul>")
+    format!("<ul class=\"note\" aria-label=\"Properties of the scene\">{lines}</ul>")
 }
 
 /// Describes the number of rays, with time and rate if measured.
@@ -164,7 +164,7 @@ fn notices(report: &Report) -> String {
     } else {
         let names = escape(&report.missing.join(", "));
         format!(
-            "<p class=\"notice\"><b>No time was left for {names}.</b> The same command with --resume continues.</p>"
+            "<p class=\"notice\"><b>No time was left for {names}.</b> Run the same command with --resume to continue.</p>"
         )
     };
     software + &missing + &list("warnings", &report.warnings)
@@ -175,17 +175,13 @@ fn legend() -> String {
     let error_at = |i: usize| SIGNED_ERROR_RANGE * (2.0 * i as f32 / (STOPS - 1) as f32 - 1.0);
     let stops: Vec<String> = (0..STOPS).map(|i| css_color(signed_error_color(error_at(i)))).collect();
     format!(
-        "<div class=\"legend\" role=\"img\" aria-label=\"Error maps: blue is too dark, white is right, red is too \
-         bright, full at plus or minus {range}\">\
-         <div class=\"scale\"><div class=\"ends\"><span>too dark · overshadow</span><span>right</span><span>too \
-          bright · leak</span></div>\
-         <div class=\"ramp\" style=\"background:linear-gradient(90deg,{})\"></div>\
-         <div class=\"ticks\"><span>≤ −{range}</span><span>V − V<sub>ref</sub> = 0</span>\
-         <span>≥ +{range}</span>\
-          </div></div>\
-         <span><i class=\"swatch\" style=\"background:{}\"></i>not judged: background, or turned away from the \
-          light</span>\
-         <span><i class=\"swatch\" style=\"background:{}\"></i>not a number</span></div>",
+        "<div class=\"legend\" role=\"img\" aria-label=\"Error maps: blue is too dark, white is correct, red is too bright, \
+         saturated at plus or minus {range}\"><div class=\"scale\"><div class=\"ends\"><span>too dark · \
+         overshadow</span><span>correct</span><span>too bright · leak</span></div><div class=\"ramp\" \
+         style=\"background:linear-gradient(90deg,{})\"></div><div class=\"ticks\"><span>≤ −{range}</span><span>V − \
+         V<sub>ref</sub> = 0</span><span>≥ +{range}</span></div></div><span><i class=\"swatch\" \
+         style=\"background:{}\"></i>not measured: background, or facing away from the light</span><span><i class=\"swatch\" \
+         style=\"background:{}\"></i>not a number</span></div>",
         stops.join(","),
         css_color(NOT_JUDGED_COLOR),
         css_color(NON_FINITE_COLOR),
@@ -197,8 +193,7 @@ fn judged_note(report: &Report) -> String {
     let judged = report.reference.judged.iter().filter(|&&judged| judged).count();
     let share = 100.0 * judged as f64 / report.reference.judged.len().max(1) as f64;
     format!(
-        "Over the {} pixels ({share:.0} %) with geometry that faces the light's centre; <i>flip</i> over the \
-         whole shaded picture.",
+        "Over the {} pixels ({share:.0} %) with geometry that faces the light's centre; <i>flip</i> is over the whole shaded image.",
         grouped(judged as u64)
     )
 }
@@ -216,10 +211,10 @@ pub(super) fn glossary() -> String {
     let terms = [
         (
             "V",
-            "Visibility: the fraction of the light's area that a surface point sees. 1 lit, 0 umbra, between them \
-             penumbra.",
+            "Visibility: the fraction of the light's area that is visible from a surface point. 1 is lit, 0 is umbra, between \
+             them is penumbra.",
         ),
-        ("V_ref", "Visibility traced ray by ray: the ground truth that techniques are compared with."),
+        ("V_ref", "Ray-traced visibility: the ground truth with which techniques are compared."),
     ];
     for (term, meaning) in terms {
         let _ = write!(html, "<div><dt>{term}</dt><dd>{}</dd></div>", escape(meaning));

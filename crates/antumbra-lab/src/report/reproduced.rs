@@ -59,8 +59,8 @@ fn head(title: &str, info: &ReproductionInfo) -> String {
 
 fn foot(info: &ReproductionInfo) -> String {
     format!(
-        "</main><footer>Antumbra {} · {} · {} ({}) · <code>reproduced.json</code> beside this page holds the \
-         numbers.</footer></body></html>",
+        "</main><footer>Antumbra {} · {} · {} ({}) · The numbers are in <code>reproduced.json</code> next to this \
+         page.</footer></body></html>",
         escape(&info.commit),
         escape(&info.date),
         escape(&info.adapter.name),
@@ -72,9 +72,9 @@ fn index_page(results: &Results<'_>, info: &ReproductionInfo) -> String {
     let mut html = head("The papers, compared with this library", info);
     let _ = write!(
         html,
-        "<p class=\"note\">Each paper's tables and figures beside ours, and for each of its claims a verdict by the rule that \
-         stands beside it: on the technique as published, and beside it what this library's own form gives. Scenes that are files \
-         lie where {SCENES_VARIABLE} says: {}.</p><ul>",
+        "<p class=\"note\">The tables and figures of each paper beside ours, and for each of its claims a verdict by the \
+         stated rule, for the technique as published and for this library's own form. Scene files are read from the folder in \
+         {SCENES_VARIABLE}: {}.</p><ul>",
         escape(SCENES_HINT)
     );
     for (paper, exhibits) in results {
@@ -125,8 +125,8 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
     let mut html = head(paper.id, info);
     let _ = write!(
         html,
-        "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p><p class=\"note\">The paper's \
-         pictures are in the paper and not copied here; ours are shown beside what they are compared with.</p>",
+        "<p class=\"lede\">{}</p><p class=\"note\">{}.</p><p class=\"note\">{}</p><p class=\"note\">The paper's images are not \
+         reproduced here; ours are shown beside their references.</p>",
         escape(paper.citation),
         counts(exhibits),
         escape(&bandwidths(paper, info))
@@ -140,13 +140,13 @@ fn paper_page(paper: &Paper, exhibits: &[ExhibitResult], info: &ReproductionInfo
 /// Explains how to compare times.
 fn bandwidths(paper: &Paper, info: &ReproductionInfo) -> String {
     let there = format!(
-        "The paper's times are of an {}, which moves {} GB/s; its frames a second are of whole frames, and ours \
-         of the shadows alone unless it says otherwise.",
+        "The paper's times were measured on an {} with {} GB/s. Its frames per second are of whole frames, ours of the shadows \
+         only unless stated otherwise.",
         paper.hardware, paper.bandwidth_gb_s
     );
     match info.bandwidth_gb_s {
-        Some(here) => format!("{there} {} moves {here} GB/s.", info.adapter.name),
-        None => format!("{there} Say what this adapter moves by --bandwidth to see ratios at equal bandwidth."),
+        Some(here) => format!("{there} {} has {here} GB/s.", info.adapter.name),
+        None => format!("{there} Give this adapter's bandwidth with --bandwidth to see ratios at equal bandwidth."),
     }
 }
 
@@ -158,9 +158,9 @@ fn section(result: &ExhibitResult, info: &ReproductionInfo) -> String {
         id = exhibit.id
     );
     if !exhibit.note.is_empty() {
-        let _ = write!(html, "<p class=\"note\">Not shown here: {}</p>", escape(exhibit.note));
+        let _ = write!(html, "<p class=\"note\">Not covered: {}</p>", escape(exhibit.note));
     } else if exhibit.rows.is_empty() {
-        html += "<p class=\"note\">A drawing: nothing to run.</p>";
+        html += "<p class=\"note\">A drawing, so there is nothing to run.</p>";
     }
     if exhibit.rows.is_empty() {
         return html + "</section>";
@@ -274,9 +274,9 @@ fn ratio(paper: &Paper, row: &crate::reproduce::Row, measured: &Measured, info: 
         return "–".to_owned();
     }
     let ratio = here / there;
-    let with_bandwidths = info
-        .bandwidth_gb_s
-        .map(|own| format!("<br><small>{} with bandwidths</small>", three_figures(ratio * own / paper.bandwidth_gb_s)));
+    let with_bandwidths = info.bandwidth_gb_s.map(|own| {
+        format!("<br><small>{} at equal bandwidth</small>", three_figures(ratio * own / paper.bandwidth_gb_s))
+    });
     three_figures(ratio) + &with_bandwidths.unwrap_or_default()
 }
 
@@ -285,9 +285,9 @@ fn pictures(rows: &[RowResult]) -> String {
     for RowResult { row, form, pictures, .. } in rows {
         let Some(files) = pictures else { continue };
         let shown = [
-            files.reference.as_deref().map(|file| (file, "what it is compared with")),
+            files.reference.as_deref().map(|file| (file, "reference")),
             Some((files.picture.as_str(), "this")),
-            files.error.as_deref().map(|file| (file, "error: blue too dark, red too bright")),
+            files.error.as_deref().map(|file| (file, "error: blue is too dark, red is too bright")),
         ];
         html += "<div class=\"shots\">";
         for (file, what) in shown.into_iter().flatten() {
@@ -306,8 +306,8 @@ fn pictures(rows: &[RowResult]) -> String {
 fn verdicts_markdown(results: &Results<'_>, info: &ReproductionInfo) -> String {
     let cell = |text: &str| text.replace('|', "\\|");
     let mut text = format!(
-        "On {}, at {}. Scenes that are files lie where `{SCENES_VARIABLE}` says: {SCENES_HINT}.\n\n| exhibit | the paper says | \
-         size | as published | by | ours | by |\n|---|---|---|---|---|---|---|\n",
+        "On {}, at {}. Scene files are read from the folder in `{SCENES_VARIABLE}`: {SCENES_HINT}.\n\n| exhibit | the paper \
+         says | size | as published | by | ours | by |\n|---|---|---|---|---|---|---|\n",
         info.adapter.name, info.commit
     );
     for exhibit in results.iter().flat_map(|(_, exhibits)| exhibits) {
@@ -349,7 +349,7 @@ mod tests {
             light_scale: 1.0,
             frames: 1,
             measure: Measure::Fps { paper: Reported::Number(100.0) },
-            is_dear: false,
+            is_slow: false,
             is_timed_too: false,
             plotted: None,
         },
@@ -365,7 +365,7 @@ mod tests {
             light_scale: 1.0,
             frames: 1,
             measure: Measure::Error,
-            is_dear: false,
+            is_slow: false,
             is_timed_too: false,
             plotted: None,
         },
@@ -448,21 +448,21 @@ mod tests {
             "&lt;card&gt;",
             "c0ffee",
             "64 × 36<br><small>on a GPU: 1280 × 720</small>",
-            "50.00 fps of shadows alone",
-            "2.00<br><small>1.00 with bandwidths</small>",
+            "50.00 fps of shadows only",
+            "2.00<br><small>1.00 at equal bandwidth</small>",
             "As published: The claim holds here.",
             "Ours: The claim is contradicted here.",
             "(at 64 × 36)",
             "at most 30: here 20.000 ms",
-            "not ready: set ANTUMBRA_SCENES to a folder that holds no-such.glb",
+            "not ready: set ANTUMBRA_SCENES to a folder that contains no-such.glb",
         ] {
             assert!(html.contains(part), "{part}\n{html}");
         }
         for raw in ["<b>first", "<i>what", "=<value", "<card>"] {
             assert!(!html.contains(raw), "{raw}");
         }
-        assert!(page(None, false).contains("--bandwidth") && !page(None, false).contains("with bandwidths"));
+        assert!(page(None, false).contains("--bandwidth") && !page(None, false).contains("at equal bandwidth</small>"));
         // Times of a CPU are not compared with those of a graphics card.
-        assert!(!page(Some(50.0), true).contains("with bandwidths"));
+        assert!(!page(Some(50.0), true).contains("at equal bandwidth</small>"));
     }
 }

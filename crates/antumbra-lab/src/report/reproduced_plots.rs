@@ -9,13 +9,13 @@ pub(super) fn plots(result: &ExhibitResult) -> String {
     let caption = |text: &str, svg: String| format!("<p class=\"note\">{text}</p>{svg}");
     let over_time =
         scatter_svg(&over_time(result), TIME).filter(|_| result.rows.iter().any(|one| one.row.is_timed_too));
-    let over_time = over_time.map(|svg| caption("Error over time, one point for each row that has both.", svg));
+    let over_time = over_time.map(|svg| caption("Error against time, one point for each row that has both.", svg));
     let over_number = over_number(result)
-        .map(|svg| caption("Error over what the rows differ in, one line for each series and form.", svg));
+        .map(|svg| caption("Error against the varied quantity, one line for each series and form.", svg));
     [over_time, over_number].into_iter().flatten().collect()
 }
 
-const TIME: Axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
+const TIME: Axes = Axes { cost: "milliseconds per frame", cost_unit: "ms", error: "rmse" };
 
 fn measured(one: &RowResult) -> Option<&Measured> {
     match &one.outcome {

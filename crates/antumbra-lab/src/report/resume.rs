@@ -19,7 +19,7 @@ use crate::picture::Visibility;
 use crate::scene_facts::SceneFacts;
 use crate::stopwatch::FrameCount;
 
-const REMEDY: &str = "leave out --resume to measure anew, or name another folder";
+const REMEDY: &str = "omit --resume to measure again, or name another folder";
 
 #[derive(Deserialize)]
 struct MetricsFile {

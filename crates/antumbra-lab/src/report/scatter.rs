@@ -297,14 +297,14 @@ fn short(v: f64) -> String {
 mod tests {
     use super::*;
 
-    const AXES: Axes = Axes { cost: "milliseconds a frame", cost_unit: "ms", error: "rmse" };
+    const AXES: Axes = Axes { cost: "milliseconds per frame", cost_unit: "ms", error: "rmse" };
 
     fn point(name: &str, cost: f64, error: f64) -> Point {
         Point { name: name.into(), anchor: name.into(), cost, error }
     }
 
     #[test]
-    fn the_front_is_what_nothing_beats_in_both() {
+    fn the_front_has_the_points_that_no_other_dominates() {
         let all = [point("a", 1.0, 0.1), point("b", 2.0, 0.2), point("c", 3.0, 0.05), point("d", 3.0, 0.06)];
         let names: Vec<_> = front(&all).iter().map(|p| p.name.clone()).collect();
         assert_eq!(names, ["a", "c"]);
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_input_gives_a_drawing_or_nothing() {
+    fn plots_of_degenerate_input_are_valid_or_absent() {
         assert!(scatter_svg(&[], AXES).is_none());
         assert!(scatter_svg(&[point("a", 0.0, 0.1), point("b", f64::NAN, 0.1)], AXES).is_none());
         for lone in [point("a", 1.0, 0.0), point("<b>", 1e-4, 1e-9), point("c", 1e5, 0.7)] {

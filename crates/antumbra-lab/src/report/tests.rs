@@ -226,7 +226,7 @@ fn a_report_without_rows_or_times_is_still_a_page() {
     write_report(dir.path(), &report).unwrap();
     report.rows.clear();
     write_report(dir.path(), &report).unwrap();
-    assert!(fs::read_to_string(dir.path().join("index.html")).unwrap().contains("This adapter gave no times"));
+    assert!(fs::read_to_string(dir.path().join("index.html")).unwrap().contains("This adapter reports no times"));
 }
 
 #[test]

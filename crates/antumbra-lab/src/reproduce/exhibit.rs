@@ -62,7 +62,7 @@ pub struct Row {
     /// Measurement, with the paper's own figure.
     pub measure: Measure,
     /// Whether the row takes a software renderer too long to run by default.
-    pub is_dear: bool,
+    pub is_slow: bool,
     /// Whether a row about errors is timed too, so that the page plots its error over its time.
     pub is_timed_too: bool,
     /// Position in the exhibit's plot of errors over a parameter.
@@ -211,13 +211,13 @@ impl Row {
     }
 
     /// Marks the row as too slow for a software renderer unless requested.
-    pub(super) const fn dear(self) -> Self {
-        self.dear_where(true)
+    pub(super) const fn slow(self) -> Self {
+        self.slow_if(true)
     }
 
     /// Marks the row as too slow under a condition.
-    pub(super) const fn dear_where(self, is_dear: bool) -> Self {
-        Self { is_dear, ..self }
+    pub(super) const fn slow_if(self, is_slow: bool) -> Self {
+        Self { is_slow, ..self }
     }
 }
 
@@ -234,7 +234,7 @@ const fn row(what: &'static str, scene: &'static str, technique: &'static str, m
         light_scale: 1.0,
         frames: 1,
         measure,
-        is_dear: false,
+        is_slow: false,
         is_timed_too: false,
         plotted: None,
     }

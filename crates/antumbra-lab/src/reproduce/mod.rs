@@ -24,7 +24,7 @@ pub use form::Form;
 pub use outcome::{Measured, Outcome};
 pub use papers::PAPERS;
 pub use preset::{PRESETS, Preset};
-pub use run::{Bench, Pictures, Ran, RunOptions};
+pub use run::{Bench, Pictures, RunOptions, RunResult};
 pub use session::{ExhibitResult, PictureFiles, REPRODUCED_NAME, RowResult, Session, VerdictCount};
 pub use verdict::{Judged, Outcomes, Ruling, Verdict, judge};
 pub use views::VIEWS;
@@ -33,8 +33,8 @@ pub use views::VIEWS;
 pub const SCENES_VARIABLE: &str = "ANTUMBRA_SCENES";
 
 /// Source of the scene files.
-pub const SCENES_HINT: &str = "sponza.glb is the sample model Sponza of Khronos (github.com/KhronosGroup/glTF-Sample-Assets, \
-                               Models/Sponza) as one binary glTF file; all else is built in";
+pub const SCENES_HINT: &str = "sponza.glb is Khronos' sample model Sponza (github.com/KhronosGroup/glTF-Sample-Assets, \
+     Models/Sponza) as one binary glTF file; all other scenes are built in";
 
 /// Returns an exhibit's name, `marrs-2014/figure3`.
 fn exhibit_name(paper: &Paper, exhibit: &Exhibit) -> String {
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_against_exact_filtering_has_it() {
+    fn rows_with_filtered_errors_have_exact_filtering() {
         let mut held = 0;
         for (name, _, exhibit) in exhibits() {
             for row in exhibit.rows.iter().filter(|row| matches!(row.measure, Measure::FilteredError)) {
@@ -132,7 +132,7 @@ mod tests {
 
     /// Rules name existing rows, and figures that these rows measure.
     #[test]
-    fn rules_speak_of_what_is_measured() {
+    fn rules_refer_to_measured_rows() {
         for (name, _, exhibit) in exhibits() {
             for (i, row) in exhibit.rows.iter().enumerate() {
                 assert!(exhibit.rows[..i].iter().all(|other| other.what != row.what), "{name}: {} twice", row.what);
@@ -142,7 +142,7 @@ mod tests {
                 for rule in claim.rules {
                     for what in rule.rows() {
                         let row = exhibit.rows.iter().find(|row| row.what == what);
-                        let row = row.unwrap_or_else(|| panic!("{name}: a rule speaks of {what}"));
+                        let row = row.unwrap_or_else(|| panic!("{name}: a rule refers to {what}, which is no row"));
                         let is_measured = match rule.figure() {
                             Figure::Flicker => matches!(row.measure, Measure::Motion(_)),
                             Figure::Ms => row.measure.is_timed() || matches!(row.measure, Measure::SceneMs { .. }),
@@ -154,7 +154,7 @@ mod tests {
             }
             assert!(
                 exhibit.rows.is_empty() || !exhibit.claims.is_empty() || !exhibit.note.is_empty(),
-                "{name} claims nothing and says not why"
+                "{name} has neither claims nor a note why"
             );
         }
     }

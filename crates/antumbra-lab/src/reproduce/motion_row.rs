@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::exhibit::Row;
 use super::outcome::{Measured, Outcome};
-use super::run::{Pictures, Ran, Site};
+use super::run::{Pictures, RunResult, Site};
 use crate::error::LabError;
 use crate::motion::{Motion, MotionOptions, MotionTruth, MovingScene};
 use crate::progress::Silent;
@@ -23,7 +23,7 @@ impl Site<'_, '_> {
         choice: &TechniqueChoice,
         about: Measured,
         with_pictures: bool,
-    ) -> Result<Ran, LabError> {
+    ) -> Result<RunResult, LabError> {
         let motions = vec![motion];
         let options = MotionOptions { motions, frames: FRAMES, step_m: STEP_M, caster: None, path: Vec::new() };
         let size_px = self.bench.options.size_of(self.row);
@@ -42,7 +42,7 @@ impl Site<'_, '_> {
             reference: Some(truth.summary.strip.clone()),
             error: None,
         });
-        Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s: None })
+        Ok(RunResult { outcome: Outcome::Measured(measured), pictures, cut_short_s: None })
     }
 
     /// Returns the truth of a motion, traced once for all rows that use it.

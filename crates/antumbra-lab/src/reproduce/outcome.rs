@@ -22,7 +22,7 @@ pub enum Outcome {
     /// The scene is a file that is not available.
     NotReady(String),
     /// The row takes a software renderer too long to run by default.
-    TooDear,
+    TooSlow,
     /// The device cannot run the row, for the given reason.
     Skipped(String),
     /// The row failed with the given message. Other rows continue.
@@ -88,10 +88,10 @@ impl Measured {
         let number = |value: Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.4}"));
         let fps = |ms: f64| 1e3 / ms.max(f64::MIN_POSITIVE);
         match (measure, self.ms) {
-            (Measure::Colors, _) => "a picture".to_owned(),
+            (Measure::Colors, _) => "an image".to_owned(),
             (Measure::Motion(_), _) => {
                 let [flicker, still] = [self.flicker, self.still_flicker].map(number);
-                format!("flicker {flicker} where the truth changes by {still}")
+                format!("flicker {flicker}, the truth's change {still}")
             }
             (measure, _) if measure.is_error() => {
                 let [rmse, leak, loss, noise] = [self.rmse, self.umbra_leak, self.lit_loss, self.noise].map(number);
@@ -102,9 +102,9 @@ impl Measured {
             (Measure::Fps { .. }, Some(ms)) => {
                 let whole = self.scene_ms.map(|scene| {
                     let counted = counted(self.scene_count);
-                    format!(", {:.2} with the scene drawn{counted}", fps(ms + scene))
+                    format!(", {:.2} including the scene{counted}", fps(ms + scene))
                 });
-                format!("{:.2} fps of shadows alone{}{}", fps(ms), counted(self.count), whole.unwrap_or_default())
+                format!("{:.2} fps of shadows only{}{}", fps(ms), counted(self.count), whole.unwrap_or_default())
             }
             (_, Some(ms)) => format!("{ms:.3} ms{}", counted(self.count)),
         }
@@ -122,11 +122,11 @@ impl fmt::Display for Outcome {
         match self {
             Self::Measured(_) => write!(f, "measured"),
             Self::NotRun => write!(f, "not run"),
-            Self::NotYet(technique) => write!(f, "not there yet: it needs {technique}"),
+            Self::NotYet(technique) => write!(f, "not available: needs {technique}"),
             Self::NotReady(scene) => {
-                write!(f, "not ready: set {SCENES_VARIABLE} to a folder that holds {scene} ({SCENES_HINT})")
+                write!(f, "not ready: set {SCENES_VARIABLE} to a folder that contains {scene} ({SCENES_HINT})")
             }
-            Self::TooDear => write!(f, "too dear for a software renderer unless asked for by --dear"),
+            Self::TooSlow => write!(f, "too slow for a software renderer; use --dear to run it anyway"),
             Self::Skipped(reason) => write!(f, "not possible on this device: {reason}"),
             Self::Failed(reason) => write!(f, "failed: {reason}"),
         }

@@ -43,7 +43,7 @@ pub struct RunOptions {
     /// Time after which no further frame of a row is started.
     pub at_most: Duration,
     /// Whether to run rows that take a software renderer too long.
-    pub dear: bool,
+    pub runs_slow: bool,
     /// Approximate maximum number of pixels of an image; larger images of the papers are reduced.
     pub max_pixels: Option<u32>,
 }
@@ -52,7 +52,7 @@ impl RunOptions {
     /// Returns the papers' settings, whatever the run time.
     pub fn as_published(frames: u32) -> Self {
         let at_most = Duration::from_secs(20);
-        Self { frames, size_px: None, samples: 1024, at_most, dear: true, max_pixels: None }
+        Self { frames, size_px: None, samples: 1024, at_most, runs_slow: true, max_pixels: None }
     }
 
     /// Returns the papers' settings on a GPU. On a software renderer, images have about 256 × 144 pixels, which take minutes per paper,
@@ -61,7 +61,7 @@ impl RunOptions {
         let printed = Self::as_published(frames);
         if lab.adapter.is_software() {
             let (at_most, max_pixels) = (Duration::from_secs(2), Some(256 * 144));
-            Self { samples: 256, at_most, dear: false, max_pixels, ..printed }
+            Self { samples: 256, at_most, runs_slow: false, max_pixels, ..printed }
         } else {
             printed
         }
@@ -98,7 +98,7 @@ pub struct Pictures {
 
 /// Result of a run.
 #[derive(Debug)]
-pub struct Ran {
+pub struct RunResult {
     /// Outcome of the row.
     pub outcome: Outcome,
     /// Images, if requested and available.
@@ -107,7 +107,7 @@ pub struct Ran {
     pub cut_short_s: Option<f64>,
 }
 
-impl Ran {
+impl RunResult {
     fn without(outcome: Outcome) -> Self {
         Self { outcome, pictures: None, cut_short_s: None }
     }
@@ -174,10 +174,10 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// If the scene cannot be loaded or traced, the device fails, or the run's deadline passes. Anything
     /// missing or unsupported is an outcome.
-    pub fn run(&mut self, row: &Row, form: Form, with_pictures: bool, end: Option<End>) -> Result<Ran, LabError> {
+    pub fn run(&mut self, row: &Row, form: Form, with_pictures: bool, end: Option<End>) -> Result<RunResult, LabError> {
         self.end = end;
         if let Some(outcome) = self.why_not(row) {
-            return Ok(Ran::without(outcome));
+            return Ok(RunResult::without(outcome));
         }
         let loaded = self.load(row.scene)?;
         let setup = setup_of(row, &loaded.scene)?;
@@ -191,12 +191,14 @@ impl<'a> Bench<'a> {
         if let Measure::SceneMs { .. } = row.measure {
             let (ms, count) = view.scene_ms(&self.timing())?;
             let (ms, count) = (Some(ms), Some(count));
-            return Ok(Ran::without(Outcome::Measured(Measured { ms, count, ..about })));
+            return Ok(RunResult::without(Outcome::Measured(Measured { ms, count, ..about })));
         }
         let site = Site { bench: self, row, form, loaded: &loaded, setup: &setup, view: &view };
         match site.run(about, with_pictures) {
             Err(error) if !error.is_deadline() => match error.why_skipped() {
-                Some(why) => Ok(Ran { cut_short_s: error.limit_s(), ..Ran::without(Outcome::Skipped(why)) }),
+                Some(why) => {
+                    Ok(RunResult { cut_short_s: error.limit_s(), ..RunResult::without(Outcome::Skipped(why)) })
+                }
                 None => Err(error),
             },
             ran => ran,
@@ -216,7 +218,7 @@ impl<'a> Bench<'a> {
         if !row.is_ready() {
             return Some(Outcome::NotReady(row.scene.to_owned()));
         }
-        (row.is_dear && !self.options.dear && self.lab.adapter.is_software()).then_some(Outcome::TooDear)
+        (row.is_slow && !self.options.runs_slow && self.lab.adapter.is_software()).then_some(Outcome::TooSlow)
     }
 
     fn load(&mut self, scene: &str) -> Result<Rc<Loaded>, LabError> {
@@ -265,7 +267,7 @@ pub(super) struct Site<'a, 'b> {
 }
 
 impl Site<'_, '_> {
-    fn run(mut self, about: Measured, with_pictures: bool) -> Result<Ran, LabError> {
+    fn run(mut self, about: Measured, with_pictures: bool) -> Result<RunResult, LabError> {
         let (row, view) = (self.row, self.view);
         let choice = row.choice(self.form)?;
         if let Measure::Motion(motion) = row.measure {
@@ -277,7 +279,7 @@ impl Site<'_, '_> {
             cut_short_s = run.cut_short_s;
             let TechniqueRun { visibility, timings, memory_bytes, auto_map_sizes, .. } = run;
             let Some(ms) = time_of(&timings, row.measure)? else {
-                return Ok(Ran::without(Outcome::Skipped("it does not time single passes".to_owned())));
+                return Ok(RunResult::without(Outcome::Skipped("the adapter does not time single passes".to_owned())));
             };
             (
                 Drawn { visibility, memory_bytes, auto_map_sizes },
@@ -299,7 +301,7 @@ impl Site<'_, '_> {
         };
         if !row.measure.is_error() {
             let pictures = picture.map(|picture| Pictures { picture, reference: None, error: None });
-            return Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s });
+            return Ok(RunResult { outcome: Outcome::Measured(measured), pictures, cut_short_s });
         }
         let (reference, judged) = self.reference(&choice)?;
         let metrics = compare_visibility(&reference, &visibility, &judged)?;
@@ -314,7 +316,7 @@ impl Site<'_, '_> {
                 Some(Pictures { picture, reference: Some(view.shade(&[&reference])?.to_srgb8()), error })
             }
         };
-        Ok(Ran { outcome: Outcome::Measured(measured), pictures, cut_short_s })
+        Ok(RunResult { outcome: Outcome::Measured(measured), pictures, cut_short_s })
     }
 
     /// Draws the mask, after the row's number of accumulated frames.
@@ -330,8 +332,7 @@ impl Site<'_, '_> {
     fn reference(&mut self, choice: &TechniqueChoice) -> Result<(Visibility, Vec<bool>), LabError> {
         let other = match self.row.measure {
             Measure::FilteredError => {
-                let why =
-                    || LabError::Request(format!("`{}` has no exact filtering to be held against", choice.name()));
+                let why = || LabError::Request(format!("`{}` has no exact filtering to compare with", choice.name()));
                 Some(choice.filtered_truth().ok_or_else(why)?)
             }
             Measure::Difference { from, settings } => Some(choice_with(from, self.form, settings)?),
@@ -377,7 +378,7 @@ fn time_of(timings: &Timings, measure: Measure) -> Result<Option<f64>, LabError>
     let meant: Vec<f64> = timings.passes.iter().filter(|pass| is_meant(&pass.label)).map(|pass| pass.ms).collect();
     if meant.is_empty() {
         let labels: Vec<&str> = timings.passes.iter().map(|pass| pass.label.as_str()).collect();
-        return Err(LabError::Request(format!("no pass is called `{passes}`: there are {}", labels.join(", "))));
+        return Err(LabError::Request(format!("there is no pass `{passes}`; available: {}", labels.join(", "))));
     }
     Ok(Some(meant.iter().sum()))
 }

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::exhibit::{Exhibit, Measure, Paper, Row};
 use super::form::Form;
 use super::outcome::Outcome;
-use super::run::{Bench, Pictures, Ran, RunOptions};
+use super::run::{Bench, Pictures, RunOptions, RunResult};
 use super::verdict::{Judged, Outcomes, Ruling, Verdict, judge};
 use super::{PAPERS, exhibit_name, views};
 use crate::device::LabDevice;
@@ -41,7 +41,7 @@ pub struct PictureFiles {
 
 /// Stored result of a row.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Kept {
+struct StoredResult {
     /// Description of the run; if it differs, the row is run again.
     row: Value,
     outcome: Outcome,
@@ -132,7 +132,7 @@ pub struct Session<'a> {
     options: RunOptions,
     is_software: bool,
     dir: Option<PathBuf>,
-    store: Store<Kept>,
+    store: Store<StoredResult>,
     pace: Pace,
     missing: Vec<String>,
 }
@@ -159,7 +159,7 @@ impl<'a> Session<'a> {
             "samples": options.samples,
         });
         dir.map(make).transpose()?;
-        let store: Store<Kept> = Store::open(dir.map(|dir| dir.join(REPRODUCED_NAME)), KIND, about)?;
+        let store: Store<StoredResult> = Store::open(dir.map(|dir| dir.join(REPRODUCED_NAME)), KIND, about)?;
         if let Some(dir) = dir {
             make(&dir.join("images"))?;
             make(&dir.join("views"))?;
@@ -216,7 +216,9 @@ impl<'a> Session<'a> {
                 }
                 // The device is lost for all rows.
                 Err(error @ LabError::Device(_)) => return Err(error),
-                Err(error) => Ran { outcome: Outcome::Failed(error.to_string()), pictures: None, cut_short_s: None },
+                Err(error) => {
+                    RunResult { outcome: Outcome::Failed(error.to_string()), pictures: None, cut_short_s: None }
+                }
                 Ok(Some(ran)) => ran,
             };
             let pictures = match (&self.dir, ran.pictures) {
@@ -225,7 +227,7 @@ impl<'a> Session<'a> {
             };
             let seconds = began.elapsed().as_secs_f64();
             let (row_json, cut_short_s) = (described(row, form, &self.options), ran.cut_short_s);
-            let kept = Kept { row: row_json, outcome: ran.outcome, pictures, cut_short_s, seconds };
+            let kept = StoredResult { row: row_json, outcome: ran.outcome, pictures, cut_short_s, seconds };
             self.store.insert(key(&name, row, form), kept)?;
             // Results survive however this run ends.
             self.store.write()?;
@@ -281,7 +283,7 @@ impl<'a> Session<'a> {
     }
 
     /// Returns a row's stored result if it is final. A missing technique or scene may be available by now.
-    fn kept(&self, name: &str, row: &Row, form: Form) -> Option<&Kept> {
+    fn kept(&self, name: &str, row: &Row, form: Form) -> Option<&StoredResult> {
         let kept = self.store.get(&key(name, row, form))?;
         let is_final = matches!(kept.outcome, Outcome::Measured(_) | Outcome::Skipped(_));
         let is_cut = self.pace.is_longer_than(kept.cut_short_s);

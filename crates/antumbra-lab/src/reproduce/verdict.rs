@@ -109,7 +109,7 @@ struct Bench<'a> {
 
 /// Result of a rule.
 #[derive(Clone, Debug, PartialEq)]
-enum Met {
+enum RuleOutcome {
     Yes,
     No,
     /// Undecided, with the reason and what would show it.
@@ -143,15 +143,15 @@ impl Bench<'_> {
     }
 
     fn rule_on(&self, claim: &Claim, form: Form) -> Ruling {
-        let found: Vec<(String, Met)> = claim.rules.iter().map(|rule| self.look(claim, rule, form)).collect();
+        let found: Vec<(String, RuleOutcome)> = claim.rules.iter().map(|rule| self.look(claim, rule, form)).collect();
         let unknown = found.iter().find_map(|(_, met)| match met {
-            Met::Unknown(why) => Some(why.clone()),
+            RuleOutcome::Unknown(why) => Some(why.clone()),
             _ => None,
         });
         let verdict = match unknown {
             _ if !claim.needs.is_empty() => Verdict::Undecided(claim.needs.to_owned()),
             // A single rule that is not met contradicts the claim.
-            _ if found.iter().any(|(_, met)| *met == Met::No) => Verdict::Contradicted,
+            _ if found.iter().any(|(_, met)| *met == RuleOutcome::No) => Verdict::Contradicted,
             Some(why) => Verdict::Undecided(why),
             None => Verdict::Holds,
         };
@@ -163,12 +163,12 @@ impl Bench<'_> {
     }
 
     /// Judges a rule by the measured values.
-    fn look(&self, claim: &Claim, rule: &Rule, form: Form) -> (String, Met) {
+    fn look(&self, claim: &Claim, rule: &Rule, form: Form) -> (String, RuleOutcome) {
         let values: Result<Vec<f64>, String> =
             rule.rows().iter().map(|row| self.value(rule.figure(), row, form)).collect();
         let values = match values {
             Ok(values) => values,
-            Err(why) => return (rule.text(), Met::Unknown(why)),
+            Err(why) => return (rule.text(), RuleOutcome::Unknown(why)),
         };
         let all = values.iter().map(|v| rule.figure().text(*v)).collect::<Vec<_>>().join(", ");
         let here = match rule {
@@ -176,16 +176,18 @@ impl Bench<'_> {
             _ => all,
         };
         if let Some(doubt) = self.doubt_of_times(claim, rule, &values, form) {
-            return (format!("{}: here {here}", rule.text()), Met::Unknown(doubt.to_owned()));
+            return (format!("{}: here {here}", rule.text()), RuleOutcome::Unknown(doubt.to_owned()));
         }
         if let Some(why) = rule.favored().iter().find_map(|row| self.is_flat(row, form)) {
-            return (format!("{}: here {here}, but {why}", rule.text()), Met::No);
+            return (format!("{}: here {here}, but {why}", rule.text()), RuleOutcome::No);
         }
         let ranges: Vec<Range> =
             rule.rows().iter().zip(&values).map(|(row, v)| self.range(rule.figure(), row, *v, form)).collect();
         let met = met(rule, &ranges);
-        let met = met
-            .map_or_else(|| Met::Unknown(too_close(rule.figure())), |is_met| if is_met { Met::Yes } else { Met::No });
+        let met = met.map_or_else(
+            || RuleOutcome::Unknown(too_close(rule.figure())),
+            |is_met| if is_met { RuleOutcome::Yes } else { RuleOutcome::No },
+        );
         (format!("{}: here {here}", rule.text()), met)
     }
 
@@ -196,18 +198,17 @@ impl Bench<'_> {
         }
         if !claim.on_any_adapter {
             return Some(
-                "it needs a GPU, since times of a software renderer say little about one: the same command on a GPU would show it",
+                "times of a software renderer say little about a GPU; run the same command on a GPU to decide",
             );
         }
         if values.iter().any(|ms| *ms < MIN_MS) {
             return Some(
-                "a time is too short for a software renderer's clock: a larger image (--size) or a GPU would show it",
+                "a time is too short for a software renderer's clock; use a larger image (--size) or a GPU to decide",
             );
         }
         let is_of_few_frames = rule.rows().iter().any(|row| self.is_of_few_frames(row, form));
         is_of_few_frames.then_some(
-            "a median of so few frames says little on a processor that others use: more of them (--frames) on an idle one would \
-             show it",
+            "a median of so few frames is unreliable on a CPU; use more frames (--frames) on an idle machine to decide",
         )
     }
 
@@ -216,11 +217,12 @@ impl Bench<'_> {
         let measured = self.measured(row, form)?;
         if let (Some(flicker), Some(still)) = (measured.flicker, measured.still_flicker) {
             return (flicker >= still).then(|| {
-                format!("‘{row}’ flickers no less than a mask that never changes ({flicker:.4} and {still:.4})")
+                format!("‘{row}’ flickers at least as much as a mask that never changes ({flicker:.4} and {still:.4})")
             });
         }
         let (rmse, flat) = (measured.rmse?, measured.flat_rmse?);
-        (rmse >= flat).then(|| format!("‘{row}’ errs no less than one grey (rmse {rmse:.4} and {flat:.4})"))
+        (rmse >= flat)
+            .then(|| format!("‘{row}’ has at least the error of a uniform grey (rmse {rmse:.4} and {flat:.4})"))
     }
 
     fn outcome(&self, row: &str, form: Form) -> Option<&Outcome> {
@@ -250,9 +252,9 @@ impl Bench<'_> {
             Some(Outcome::Measured(measured)) => match measured.figure(figure) {
                 // Software renderers' clocks report zero, for which ratios are meaningless.
                 Some(ms) if figure == Figure::Ms && ms <= 0.0 => {
-                    Err(format!("‘{row}’ was timed as nothing; a GPU would show it"))
+                    Err(format!("the time of ‘{row}’ was reported as zero; use a GPU to decide"))
                 }
-                found => found.ok_or_else(|| format!("‘{row}’ has no {figure} here; another size (--size) may have")),
+                found => found.ok_or_else(|| format!("‘{row}’ has no {figure} here; try another size (--size)")),
             },
             Some(other) => Err(format!("‘{row}’ is {other}")),
         }
@@ -351,11 +353,8 @@ fn met(rule: &Rule, of: &[Range]) -> Option<bool> {
 
 fn too_close(figure: Figure) -> String {
     match figure {
-        Figure::Ms => {
-            "it is too close to tell: more frames (--frames) on a machine with nothing else to do would show it"
-                .to_owned()
-        }
-        _ => "it is too close to tell: more pixels and light points (--size, --samples) would show it".to_owned(),
+        Figure::Ms => "the values are too close; use more frames (--frames) on an idle machine to decide".to_owned(),
+        _ => "the values are too close; use more pixels and light samples (--size, --samples) to decide".to_owned(),
     }
 }
 

@@ -206,7 +206,7 @@ impl SceneFacts {
         if let (Some(diameter), Some(grazing)) = (self.light_diameter_deg, self.grazing) {
             let off_axis = self.off_axis_deg.map_or_else(String::new, |angle| {
                 format!(
-                    ", receivers {}° off its axis (median; 90th percentile {}°)",
+                    ", receivers at {}° from its axis (median; 90th percentile {}°)",
                     short(angle.median),
                     short(angle.p90)
                 )

@@ -83,7 +83,7 @@ impl Results {
             {
                 Ok(Self(map))
             }
-            _ => Err(FileError::bad_content(path, "it holds no results of a suite", REMEDY)),
+            _ => Err(FileError::bad_content(path, "it contains no results of a suite", REMEDY)),
         }
     }
 
@@ -104,7 +104,7 @@ impl Results {
             let there = read.0.get(key).unwrap_or(&Value::Null);
             if there != here {
                 return Err(LabError::Request(format!(
-                    "--suite {}: its {key} is {there}, and here it is {here}; name another file",
+                    "--suite {}: its {key} is {there}, but this run has {here}; name another file",
                     path.display()
                 )));
             }
@@ -326,7 +326,7 @@ mod tests {
         let results = Results::read(&path).unwrap();
         assert_eq!(results.row("errors/overlap/hard"), Some(&hard), "it is not measured again");
         let other = run_slice(lab, &all, &path, "def", minute, &Silent).unwrap_err().to_string();
-        assert!(other.contains("its commit is \"abc\", and here it is \"def\"; name another file"), "{other}");
+        assert!(other.contains("its commit is \"abc\", but this run has \"def\"; name another file"), "{other}");
         let tables = markdown(&results);
         assert!(tables.contains("| `hard` | 0.") && tables.contains("2 of "), "{tables}");
     }
@@ -357,7 +357,10 @@ mod tests {
         ] {
             let text = std::fs::read_to_string(root.join(page)).unwrap();
             let of_file = markdown(&Results::read(&root.join(file)).unwrap());
-            assert!(text.trim_end() == of_file.trim_end(), "write it anew: antumbra bench --tables {file} > {page}");
+            assert!(
+                text.trim_end() == of_file.trim_end(),
+                "regenerate the page: antumbra bench --tables {file} > {page}"
+            );
         }
     }
 }

@@ -30,7 +30,7 @@ pub fn merge(dirs: &[PathBuf]) -> Result<Merged, LabError> {
     for dir in dirs {
         let (_, other) = Plan::read(dir)?;
         if other != fingerprint {
-            return Err(refuse(&dir.join(PLAN_NAME), "it is another plan", &dirs[0]));
+            return Err(refuse(&dir.join(PLAN_NAME), "it is a different plan", &dirs[0]));
         }
         for result in results_in(dir)? {
             let path = result.job.result_path(dir);
@@ -38,11 +38,11 @@ pub fn merge(dirs: &[PathBuf]) -> Result<Merged, LabError> {
             if let Some((first, of)) = results.values().next()
                 && let Some((what, there, here)) = first.origin.difference(&result.origin)
             {
-                return Err(refuse(&path, &format!("its {what} is {there}, and others' is {here}"), of));
+                return Err(refuse(&path, &format!("its {what} is {there}, but that of others is {here}"), of));
             }
             match results.get(&result.job.id) {
                 Some((known, of)) if known.metrics != result.metrics => {
-                    return Err(refuse(&path, "another result of the same job has other errors", of));
+                    return Err(refuse(&path, "another result of the same job has different errors", of));
                 }
                 Some(_) => {}
                 None => {
@@ -81,24 +81,24 @@ pub fn merge(dirs: &[PathBuf]) -> Result<Merged, LabError> {
 /// Checks that a result belongs to the plan's job. The error is the reason.
 fn check(plan: &Plan, fingerprint: &str, result: &JobResult) -> Result<(), String> {
     if result.plan != fingerprint {
-        return Err("it is of another plan".into());
+        return Err("it belongs to another plan".into());
     }
-    let planned = plan.jobs.get(result.job.id).ok_or_else(|| "the plan has no such job".to_owned())?;
+    let planned = plan.jobs.get(result.job.id).ok_or_else(|| "the plan has no job with its number".to_owned())?;
     if planned.size != result.job.size {
-        return Err(format!("its size is {:?}, and the plan's {:?}", result.job.size, planned.size));
+        return Err(format!("its size is {:?}, but the plan has {:?}", result.job.size, planned.size));
     }
     if *planned != result.job {
-        return Err("the plan's job of this number is another".into());
+        return Err("the plan's job with this number is different".into());
     }
     if result.origin.commit != plan.commit {
-        return Err(format!("its commit is {}, and the plan's {}", result.origin.commit, plan.commit));
+        return Err(format!("its commit is {}, but the plan has {}", result.origin.commit, plan.commit));
     }
     Ok(())
 }
 
 fn refuse(path: &Path, why: &str, beside: &Path) -> LabError {
     LabError::Request(format!(
-        "cannot merge {}: {why}; leave it out, or run it again as {} was run",
+        "cannot merge {}: {why}; omit it, or run it again in the same way as {}",
         path.display(),
         beside.display()
     ))

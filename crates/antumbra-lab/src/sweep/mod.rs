@@ -96,7 +96,7 @@ fn read_result(path: &Path) -> Result<JobResult, FileError> {
     const REMEDY: &str = "remove the file and run its shard again";
     let result: JobResult = read_json(path, REMEDY)?;
     if result.format != RESULT_FORMAT || result.version != VERSION {
-        return Err(FileError::bad_content(path, "it is no result of this version", REMEDY));
+        return Err(FileError::bad_content(path, "it is not a result of this version", REMEDY));
     }
     Ok(result)
 }

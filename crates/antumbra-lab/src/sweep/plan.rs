@@ -162,11 +162,11 @@ impl Plan {
         let bad = |why: String| FileError::bad_content(&path, why, REMEDY);
         let plan: Self = serde_json::from_str(&text).map_err(|error| bad(error.to_string()))?;
         if plan.format != FORMAT || plan.version != VERSION {
-            return Err(bad("it is no plan of this version".into()));
+            return Err(bad("it is not a plan of this version".into()));
         }
         for (i, job) in plan.jobs.iter().enumerate() {
             if job.id != i || job.scene >= plan.scenes.len() {
-                return Err(bad(format!("job {i} has another number, or no scene")));
+                return Err(bad(format!("job {i} has a wrong number, or no scene")));
             }
             job.choice().ok_or_else(|| bad(format!("job {i}: there is no technique `{}`", job.technique)))?;
         }

@@ -49,7 +49,10 @@ pub fn run_shard(
     let here = Origin::here(lab, commit);
     let refuse = |what: &str, there: &str, here: &str| {
         let name = dir.join(PLAN_NAME);
-        LabError::Request(format!("{}: its {what} is {there}, and here it is {here}; plan anew", name.display()))
+        LabError::Request(format!(
+            "{}: its {what} is {there}, but this run has {here}; create a new plan",
+            name.display()
+        ))
     };
     if plan.commit != commit {
         return Err(refuse("commit", &plan.commit, commit));
@@ -107,7 +110,7 @@ impl<'a> Bench<'a> {
         }
         if scene.triangle_count() != planned.triangles {
             return Err(LabError::Request(format!(
-                "{}: it has {} triangles, and had {} when this was planned; plan anew",
+                "{}: it has {} triangles, but had {} when it was planned; create a new plan",
                 planned.scene,
                 scene.triangle_count(),
                 planned.triangles
@@ -118,7 +121,10 @@ impl<'a> Bench<'a> {
         scene.count_from(anchor);
         let setup = setup.relative_to(anchor);
         let Some(light) = setup.lights.iter().position(|light| light.name == planned.light) else {
-            return Err(LabError::Request(format!("{PLAN_NAME}: there is no light `{}`; plan anew", planned.light)));
+            return Err(LabError::Request(format!(
+                "{PLAN_NAME}: there is no light `{}`; create a new plan",
+                planned.light
+            )));
         };
         let size_px = UVec2::from_array(job.size);
         let options = VisibilityOptions { samples: plan.samples, ..VisibilityOptions::default() };

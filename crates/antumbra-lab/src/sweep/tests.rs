@@ -68,13 +68,13 @@ fn what_does_not_belong_together_is_refused() {
     let [dir, other] = [(); 2].map(|()| tempfile::tempdir().unwrap());
     let plan = plan_in(dir.path(), 4);
     let why = run_shard(lab, dir.path(), Shard::WHOLE, "def", &Silent).unwrap_err().to_string();
-    assert!(why.contains("its commit is abc, and here it is def; plan anew"), "{why}");
+    assert!(why.contains("its commit is abc, but this run has def; create a new plan"), "{why}");
     run_shard(lab, dir.path(), Shard::WHOLE, "abc", &Silent).unwrap();
 
     plan_in(other.path(), 8);
     let both = [dir.path().to_path_buf(), other.path().to_path_buf()];
     let why = merge(&both).unwrap_err().to_string();
-    assert!(why.contains("it is another plan"), "{why}");
+    assert!(why.contains("it is a different plan"), "{why}");
 
     let path = plan.jobs[3].result_path(dir.path());
     let whole = fs::read_to_string(&path).unwrap();

@@ -11,7 +11,7 @@ use crate::error::LabError;
 use crate::limits::End;
 use crate::picture::Visibility;
 use crate::readback::read_f32_layer;
-use crate::stopwatch::{Seen, Stopwatch};
+use crate::stopwatch::{FrameMeasurement, Stopwatch};
 
 /// Maximum number of overflows, after each of which lists are enlarged, before a technique fails.
 const MAX_OVERFLOWS: u32 = 8;
@@ -68,7 +68,7 @@ impl Audience for Timed<'_> {
         (self.watch.is_done() && self.frames.len() >= self.least) || self.watch.is_over()
     }
     fn see(&mut self, frame: FrameTimes) -> Result<(), LabError> {
-        self.watch.see(Seen { ms: frame.processor_ms + frame.submit_to_done_ms, has_made: frame.has_made });
+        self.watch.see(FrameMeasurement { ms: frame.processor_ms + frame.submit_to_done_ms, has_made: frame.has_made });
         self.frames.push(frame);
         if self.frames.len() == self.asked_for {
             self.visibility = Some(read_mask(self.lab, self.mask)?);

@@ -71,7 +71,7 @@ fn a_cover_before_a_panel_hides_all_of_it() {
 
 /// As published, geometry does not extend beyond the map.
 #[test]
-fn what_the_map_shows_at_its_edge_goes_on_by_choice() {
+fn casters_end_at_the_map_s_edge_as_published() {
     let Some(lab) = lab() else { return };
     let Some(judged) = case("cover_0.01", SIZE) else { return };
     let settings = [("map_size", "512"), ("edge_goes_on", "false")];

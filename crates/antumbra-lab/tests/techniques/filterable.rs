@@ -166,7 +166,7 @@ fn exponents() {
             let settings = [("mips", "false")].iter().chain(settings).map(|(k, v)| (k.to_string(), v.to_string()));
             TechniqueChoice::with_settings(TechniqueKind::Evsm, settings.collect())
         };
-        let truth = mask(&view, &own(&[]).filtered_truth().expect("a kernel of fixed width"), 1);
+        let truth = mask(&view, &own(&[]).filtered_truth().expect("a kernel of constant width"), 1);
         let rmse = PAIRS.map(|(positive, negative)| {
             let settings = [("exponent", positive), ("exponent_negative", negative)];
             scene.metrics(&truth, &mask(&view, &own(&settings), 1)).rmse.expect("judged pixels")

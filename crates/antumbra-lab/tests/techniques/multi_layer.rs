@@ -97,7 +97,7 @@ fn a_zero_size_light_gives_the_traced_hard_shadow() {
 /// At this size, slivers of `overlap` seen edge-on from the light cover texel centres. Depths behind the light must not
 /// make ε negative, because a lookup that takes nothing never ends.
 #[test]
-fn what_is_seen_from_the_side_ends_no_lookup() {
+fn edge_on_slivers_do_not_stop_the_lookup() {
     let Some(lab) = lab() else { return };
     // The technique is compared with itself, with additive opacities: a tiny ε must equal none.
     let size = UVec2::new(320, 180);

@@ -79,7 +79,7 @@ fn translucent_surfaces_are_as_their_material_says() {
 }
 
 #[test]
-fn nothing_is_nothing() {
+fn empty_scenes_have_no_casters() {
     let Some(gpu) = gpu_or_skip() else { return };
     let empty = GpuScene::upload(gpu, &scene(Mesh::default(), Material::default()));
     assert!(empty.casters().is_empty() && empty.bounds.is_empty());

@@ -201,7 +201,7 @@ mod tests {
 
     /// Without candela or lux, kinds of light are equally strong; intensities are applied after exposure.
     #[test]
-    fn kinds_are_equally_strong_and_dimmers_come_last() {
+    fn light_kinds_are_equally_strong_before_intensity() {
         let sun = LightShape::Sun { angular_diameter_rad: 0.2 };
         let mut lights = vec![lamp(sun, 3.0, None), lamp(LightShape::Sphere { radius_m: 0.05 }, 2.0, None)];
         assert_near(&at_origin(&lights), &[0.5 * EXPOSED_IRRADIANCE; 2]);

@@ -193,8 +193,12 @@ impl Shading {
         visibilities: &[VisibilitySource<'_>],
         targets: &PictureTargets,
     ) {
-        assert_eq!(self.lights.len(), visibilities.len(), "each light needs its visibility");
-        assert_eq!((self.size_px, self.view_from_world), (images.size_px, images.view_from_world), "another view");
+        assert_eq!(self.lights.len(), visibilities.len(), "each light needs a visibility");
+        assert_eq!(
+            (self.size_px, self.view_from_world),
+            (images.size_px, images.view_from_world),
+            "the view must be the prepared one"
+        );
         // Normals of the layer behind translucent surfaces are not bent.
         let nothing_bent = upload(gpu, &Visibility::one(UVec2::ONE, vec![1.0]));
         let light_groups: Vec<_> = self
@@ -263,11 +267,11 @@ impl Shading {
         let view = match visibility {
             VisibilitySource::Lit => upload(gpu, &Visibility::one(UVec2::ONE, vec![1.0])),
             VisibilitySource::Image(image) => {
-                assert_eq!(image.size_px, self.size_px, "visibility of another size than the picture");
+                assert_eq!(image.size_px, self.size_px, "the visibility must have the size of the image");
                 upload(gpu, image)
             }
             VisibilitySource::Mask(mask) => {
-                assert_eq!(mask.size_px(), self.size_px, "a mask of another size than the picture");
+                assert_eq!(mask.size_px(), self.size_px, "the mask must have the size of the image");
                 mask.view().clone()
             }
             VisibilitySource::Texture(view, _) => (*view).clone(),

@@ -79,7 +79,7 @@ pub enum BuiltinError {
         nearest: String,
     },
     /// The scene has no such parameter.
-    #[error("built-in scene `{scene}` has no parameter `{key}`; it takes {known}")]
+    #[error("built-in scene `{scene}` has no parameter `{key}`; available: {known}")]
     UnknownKey {
         /// The scene.
         scene: &'static str,
@@ -89,7 +89,7 @@ pub enum BuiltinError {
         known: String,
     },
     /// Not `key=value`, or a repeated key.
-    #[error("built-in scene `{scene}`: `{part}` is not one `key=value` for each parameter, joined by `&`")]
+    #[error("built-in scene `{scene}`: `{part}` is not of the form `key=value`, each parameter once, joined by `&`")]
     Malformed {
         /// The scene.
         scene: &'static str,
@@ -142,7 +142,7 @@ struct Arguments {
 impl Arguments {
     /// The value of a parameter that the scene declares.
     fn get(&self, name: &str) -> f64 {
-        self.values.iter().find(|(key, _)| *key == name).expect("the scene declares what it reads").1
+        self.values.iter().find(|(key, _)| *key == name).expect("the scene declares each parameter that it reads").1
     }
 }
 
@@ -163,7 +163,7 @@ impl fmt::Display for BuiltinParameter {
 /// Elevation of the light in the scenes that test bias.
 const LIGHT_ELEVATION: BuiltinParameter = BuiltinParameter {
     name: "light_elevation_deg",
-    meaning: "height of the light above the ground as seen from the scene's middle; less is more grazing",
+    meaning: "elevation of the light above the ground, seen from the scene's centre; smaller is more grazing",
     unit: "degrees",
     min: 5.0,
     max: 90.0,
@@ -174,7 +174,7 @@ const LIGHT_ELEVATION: BuiltinParameter = BuiltinParameter {
 /// Number of triangles of `knot`.
 const KNOT_TRIANGLES: BuiltinParameter = BuiltinParameter {
     name: "triangles",
-    meaning: "triangles in the scene, within 1 %; more makes the same surface finer",
+    meaning: "number of triangles of the scene, within 1 %; more triangles make the same surface finer",
     unit: "",
     min: 1e3,
     max: 4e6,
@@ -247,7 +247,7 @@ pub const NAMES: &[BuiltinInfo] = &[
     BuiltinInfo {
         name: "tilted-planes",
         summary: "slabs at many angles to the light with small things standing on them: acne and lost contact",
-        source: "a case for bias",
+        source: "a test case for bias",
         triangles: 14_484,
         parameters: &[LIGHT_ELEVATION],
         make: bias::tilted_planes,
@@ -256,7 +256,7 @@ pub const NAMES: &[BuiltinInfo] = &[
     BuiltinInfo {
         name: "spheres",
         summary: "spheres of ten tessellations that touch the ground: acne at the terminator, lost contact",
-        source: "a case for bias",
+        source: "a test case for bias",
         triangles: 33_444,
         parameters: &[LIGHT_ELEVATION],
         make: bias::spheres,
@@ -264,7 +264,7 @@ pub const NAMES: &[BuiltinInfo] = &[
     },
     BuiltinInfo {
         name: "knot",
-        summary: "a rippled torus knot of as many triangles as asked for",
+        summary: "a rippled torus knot with the requested number of triangles",
         source: "Marrs 2014, fig. 1 (dragon, 100 000 triangles); Sintorn 2008, fig. 11 (torus knot)",
         triangles: 99_994,
         parameters: &[KNOT_TRIANGLES],
@@ -319,7 +319,7 @@ pub const NAMES: &[BuiltinInfo] = &[
     BuiltinInfo {
         name: "checker-far",
         summary: "a chequered canopy to the horizon under the sun: moiré",
-        source: "a case for filtering",
+        source: "a test case for filtering",
         triangles: 38_220,
         make: checker_far::checker_far,
         ..SOLID
@@ -363,8 +363,8 @@ pub const NAMES: &[BuiltinInfo] = &[
     },
     BuiltinInfo {
         name: "lamp-room",
-        summary: "a lamp hangs in the middle of a furnished room: receivers all around the light",
-        source: "a case for lights that shine all around",
+        summary: "a lamp in the middle of a furnished room: receivers in all directions around the light",
+        source: "a test case for lights that shine in all directions",
         triangles: 5388,
         make: rooms::lamp_room,
         ..SOLID
@@ -372,15 +372,15 @@ pub const NAMES: &[BuiltinInfo] = &[
     BuiltinInfo {
         name: "hall",
         summary: "a hall of one mesh that encloses its light: shadows up to the light's horizon",
-        source: "a case for wide lights",
+        source: "a test case for wide lights",
         triangles: 2268,
         make: rooms::hall,
         ..SOLID
     },
     BuiltinInfo {
         name: "staircase",
-        summary: "stairs beside the wall that their light is let into: receivers along the light's horizon",
-        source: "a case for lights seen edge-on",
+        summary: "stairs beside the wall into which their light is recessed: receivers along the light's horizon",
+        source: "a test case for lights seen edge-on",
         triangles: 1552,
         thin_bars: true,
         make: staircase::staircase,
@@ -388,8 +388,8 @@ pub const NAMES: &[BuiltinInfo] = &[
     },
     BuiltinInfo {
         name: "grove",
-        summary: "sixty trees of masked cards, one mesh placed over and over, under a sun",
-        source: "a case for many layers of masked occluders",
+        summary: "sixty instances of a tree of masked cards under a sun",
+        source: "a test case for many layers of masked occluders",
         triangles: 223_272,
         opaque: false,
         thin_bars: true,
@@ -399,7 +399,7 @@ pub const NAMES: &[BuiltinInfo] = &[
     BuiltinInfo {
         name: "town",
         summary: "more than a kilometre of houses, trees and poles under a low sun, seen from a street",
-        source: "a case for suns over worlds",
+        source: "a test case for suns over large scenes",
         triangles: 208_640,
         thin_bars: true,
         make: town::town,

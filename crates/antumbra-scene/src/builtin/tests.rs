@@ -152,7 +152,7 @@ fn the_camera_sees_the_scene() {
 const AROUND_THEIR_LIGHT: [&str; 3] = ["lamp-room", "hall", "staircase"];
 
 #[test]
-fn the_light_is_before_the_scene() {
+fn scenes_are_in_front_of_their_light() {
     for (info, scene) in scenes().filter(|(info, _)| !AROUND_THEIR_LIGHT.contains(&info.name)) {
         assert!(!scene.lights.is_empty(), "{}", info.name);
         for light in &scene.lights {
@@ -209,18 +209,18 @@ fn both_fences_have_the_same_holes() {
 fn specifications_are_checked() {
     let message = |spec: &str| build(spec).expect_err(spec).to_string();
     assert!(message("overlaps").starts_with("there is no built-in scene `overlaps`; nearest: overlap, "));
-    assert_eq!(message("overlap?x=1"), "built-in scene `overlap` has no parameter `x`; it takes none");
+    assert_eq!(message("overlap?x=1"), "built-in scene `overlap` has no parameter `x`; available: none");
     assert_eq!(
         message("spheres?light_elevation_deg=2"),
         "built-in scene `spheres`: `light_elevation_deg` is `2`, and must be a number from 5 to 90 degrees"
     );
     for spec in ["spheres?light_elevation_deg", "spheres?light_elevation_deg=9&light_elevation_deg=8"] {
-        assert!(message(spec).contains("is not one `key=value`"), "{spec}");
+        assert!(message(spec).contains("is not of the form `key=value`"), "{spec}");
     }
     assert!(message("spheres?light_elevation_deg=NaN").contains("must be a number"));
     assert_eq!(
         message("spheres?elevation=9"),
-        "built-in scene `spheres` has no parameter `elevation`; it takes `light_elevation_deg` (a number from 5 to 90 \
+        "built-in scene `spheres` has no parameter `elevation`; available: `light_elevation_deg` (a number from 5 to 90 \
          degrees, default 40)"
     );
 }

@@ -56,7 +56,7 @@ pub(super) fn png(image: &Image) -> Result<Vec<u8>, String> {
         image::ExtendedColorType::Rgba8,
         image::ImageFormat::Png,
     )
-    .map_err(|e| format!("a picture of {} x {} texels: {e}", image.width, image.height))?;
+    .map_err(|e| format!("an image of {} x {} texels: {e}", image.width, image.height))?;
     Ok(out.into_inner())
 }
 

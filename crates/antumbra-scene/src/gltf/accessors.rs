@@ -41,11 +41,11 @@ impl Allowed {
 
     fn wanted(self) -> &'static str {
         match self {
-            Self::Geometry => "32-bit floats (or 8- and 16-bit integers with KHR_mesh_quantization) are right",
-            Self::Fractions => "32-bit floats or normalized unsigned integers are right",
-            Self::SignedFractions => "32-bit floats or normalized integers are right",
-            Self::Joints => "8- or 16-bit unsigned integers are right",
-            Self::Floats => "32-bit floats are right",
+            Self::Geometry => "expected 32-bit floats (or 8- and 16-bit integers with KHR_mesh_quantization)",
+            Self::Fractions => "expected 32-bit floats or normalized unsigned integers",
+            Self::SignedFractions => "expected 32-bit floats or normalized integers",
+            Self::Joints => "expected 8- or 16-bit unsigned integers",
+            Self::Floats => "expected 32-bit floats",
         }
     }
 }
@@ -74,7 +74,7 @@ impl Source<'_> {
             Checked::Invalid => Err(Fault::new(
                 format!("accessors[{index}].type"),
                 "is unknown",
-                "SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4 is right",
+                "expected SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4",
             )),
         }
     }
@@ -133,7 +133,7 @@ impl Source<'_> {
             return Err(Fault::new(
                 place,
                 format!("{} has component type {}", layout.place, component.as_gl_enum()),
-                "unsigned 8-, 16- or 32-bit integers are right",
+                "expected unsigned 8-, 16- or 32-bit integers",
             ));
         }
         let element = |bytes: &[u8]| unsigned_from(bytes, component);
@@ -153,14 +153,14 @@ impl Source<'_> {
             return Err(Fault::new(
                 format!("{own}.componentType"),
                 "is unknown",
-                "5120, 5121, 5122, 5123, 5125 or 5126 is right",
+                "expected 5120, 5121, 5122, 5123, 5125 or 5126",
             ));
         };
         if self.accessor_components(index, place)? != kind.multiplicity() || accessor.type_ != Checked::Valid(kind) {
             return Err(Fault::new(
                 place,
                 format!("{own} has the wrong type"),
-                format!("elements of {} components ({kind:?}) are right", kind.multiplicity()),
+                format!("expected elements of {} components ({kind:?})", kind.multiplicity()),
             ));
         }
         let component = component.0;
@@ -168,8 +168,8 @@ impl Source<'_> {
         let too_many = |have: usize| {
             Fault::new(
                 own.clone(),
-                format!("claims {} elements, more than its data of {have} bytes holds", accessor.count.0),
-                "`count`, `byteOffset` and the view's stride must stay inside the buffer view",
+                format!("states {} elements, more than fit into its {have} bytes of data", accessor.count.0),
+                "`count`, `byteOffset` and the stride must not exceed the buffer view",
             )
         };
         let offset = accessor.byte_offset.map_or(0, |o| o.0);
@@ -189,7 +189,7 @@ impl Source<'_> {
                     return Err(Fault::new(
                         own,
                         format!("elements of {size} bytes in a view of stride {}", layout.stride),
-                        "the stride must hold an element",
+                        "the stride must be at least the size of an element",
                     ));
                 }
                 // The last element needs only its own bytes, not a whole stride (section 3.6.2.4).
@@ -228,15 +228,15 @@ impl Source<'_> {
         let outside = |what: &str| {
             Fault::new(
                 place.clone(),
-                format!("{} {what} lie past the end of their buffer view", sparse.count.0),
-                "`count` and `byteOffset` must stay inside the view",
+                format!("{} {what} are beyond the end of their buffer view", sparse.count.0),
+                "`count` and `byteOffset` must not exceed the buffer view",
             )
         };
         let Checked::Valid(index_type) = sparse.indices.component_type else {
             return Err(Fault::new(
                 format!("{place}.indices.componentType"),
                 "is not an unsigned integer",
-                "5121, 5123 or 5125 is right",
+                "expected 5121, 5123 or 5125",
             ));
         };
         let range = |view: usize, offset: u64, size: usize, what: &str| -> Result<&[u8]> {
@@ -258,7 +258,7 @@ impl Source<'_> {
                 return Err(Fault::new(
                     place,
                     format!("replaces element {i} of {}", layout.count),
-                    "sparse indices must lie inside the accessor",
+                    "sparse indices must be less than the accessor's `count`",
                 ));
             }
             replace(i, value);

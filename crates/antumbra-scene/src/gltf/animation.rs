@@ -56,7 +56,7 @@ pub(super) fn sample(source: &Source, time_s: f32) -> Result<Sampled> {
             };
             // Nodes and samplers that do not exist make the file invalid; unreadable values only cost the channel.
             if let Err(fault) = drive(source, slot, channel, sampler, time_s, &mut ends, &place) {
-                source.warn(fault.as_warning("the channel is left out"));
+                source.warn(fault.as_warning("the channel is ignored"));
             }
         }
     }
@@ -71,11 +71,10 @@ fn beyond(time_s: f32, ends: Option<[f32; 2]>) -> Option<String> {
     let taken = |why: String| Some(format!("--time {time_s}: {why}"));
     match ends {
         _ if time_s == 0.0 => None,
-        None => taken("nothing in the scene is animated, and the time changes nothing".into()),
-        Some([first, last]) if time_s < first || time_s > last => taken(format!(
-            "the animations run from {first} s to {last} s, and {} s is taken",
-            time_s.clamp(first, last)
-        )),
+        None => taken("nothing in the scene is animated, so the time is ignored".into()),
+        Some([first, last]) if time_s < first || time_s > last => {
+            taken(format!("the animations run from {first} s to {last} s; {} s is used", time_s.clamp(first, last)))
+        }
         Some(_) => None,
     }
 }
@@ -91,7 +90,7 @@ fn drive(
     place: &str,
 ) -> Result<()> {
     let Checked::Valid(property) = channel.target.path else {
-        source.warn(format!("{place}: its target path is unknown; it is left out"));
+        source.warn(format!("{place}: its target path is unknown; it is ignored"));
         return Ok(());
     };
     let taken = match property {
@@ -120,7 +119,7 @@ fn drive(
             let keys = source.read_floats::<4>(output, Allowed::SignedFractions, place)?;
             slot.rotation = moment.rotation(&keys, place)?;
             if slot.rotation.is_none() {
-                source.warn(format!("{place}: a rotation without direction; the resting rotation is kept"));
+                source.warn(format!("{place}: a rotation is a quaternion of zero length; the rest pose is kept"));
             }
         }
         Property::MorphTargetWeights => {
@@ -152,13 +151,13 @@ impl Moment {
         let times: Vec<f32> =
             source.read_floats::<1>(sampler.input.value(), Allowed::Floats, place)?.into_iter().map(|[t]| t).collect();
         if times.is_empty() || !times.iter().all(|t| t.is_finite()) || times.windows(2).any(|w| w[0] > w[1]) {
-            source.warn(format!("{place}: its times are not finite and ascending; it is left out"));
+            source.warn(format!("{place}: its times are not finite and ascending; it is ignored"));
             return Ok(None);
         }
         let interpolation = match sampler.interpolation {
             Checked::Valid(interpolation) => interpolation,
             Checked::Invalid => {
-                source.warn(format!("{place}: its interpolation is unknown; it is taken as LINEAR"));
+                source.warn(format!("{place}: its interpolation is unknown; LINEAR is used"));
                 Interpolation::Linear
             }
         };
@@ -181,7 +180,7 @@ impl Moment {
             return Err(Fault::new(
                 place,
                 format!("{} values for {} times", keys.len(), self.key_count),
-                "LINEAR and STEP take one value a time, CUBICSPLINE three",
+                "LINEAR and STEP have one value per time, CUBICSPLINE three",
             ));
         }
         let part = |key: usize, part: usize, k: usize| keys[(key * self.elements_per_key() + part) * width + k];

@@ -22,7 +22,7 @@ pub(super) fn read(source: &Source, index: usize, world_from_node: Mat4) -> Resu
     };
     let label = Source::label(json.name.as_ref(), "cameras", index);
     let Some(perspective) = &json.perspective else {
-        source.warn(format!("{label}: only perspective cameras are used; it is left out"));
+        source.warn(format!("{label}: only perspective cameras are supported; it is ignored"));
         return Ok(None);
     };
     let eye = world_from_node.w_axis.truncate();
@@ -42,7 +42,7 @@ pub(super) fn read(source: &Source, index: usize, world_from_node: Mat4) -> Resu
     match crate::setup::check_camera(&camera) {
         Ok(()) => Ok(Some(camera)),
         Err(problem) => {
-            source.warn(format!("{label}: {problem}; it is left out"));
+            source.warn(format!("{label}: {problem}; it is ignored"));
             Ok(None)
         }
     }

@@ -20,6 +20,8 @@ const CHUNK_BIN: u32 = u32::from_le_bytes(*b"BIN\0");
 /// Remedy for files of other formats.
 const CONVERT: &str = "give a .glb or .gltf file of version 2.0; convert .obj, .fbx, .usd or .blend with Blender: File > Import, then \
     File > Export > glTF 2.0";
+/// Remedy for files that end early.
+const TRUNCATED: &str = "the file seems to be truncated: download or export it again";
 const UTF8_BYTE_ORDER_MARK: &[u8] = &[0xEF, 0xBB, 0xBF];
 
 /// Splits a file. Its first bytes determine the format, not its name.
@@ -30,29 +32,28 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>> {
     let json = bytes.strip_prefix(UTF8_BYTE_ORDER_MARK).unwrap_or(bytes);
     match json.iter().find(|b| !b.is_ascii_whitespace()) {
         Some(b'{' | b'[') => Ok(Container { json, bin: None }),
-        Some(_) => Err(Fault::new("byte 0", "is not a glTF file: it begins with neither `glTF` nor `{`", CONVERT)),
-        None => Err(Fault::new("byte 0", "the file is empty", "give a .glb container or a .gltf text of version 2.0")),
+        Some(_) => Err(Fault::new("byte 0", "is not a glTF file: it starts with neither `glTF` nor `{`", CONVERT)),
+        None => Err(Fault::new("byte 0", "the file is empty", "give a .glb or .gltf file of version 2.0")),
     }
 }
 
 fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
-    let truncated = |at: usize, what: &str| {
-        Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), "it seems cut short: fetch it again")
-    };
+    let truncated =
+        |at: usize, what: &str| Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), TRUNCATED);
     let u32_at = |at: usize, what: &str| match bytes.get(at..at + 4) {
         Some(&[a, b, c, d]) => Ok(u32::from_le_bytes([a, b, c, d])),
         _ => Err(truncated(bytes.len(), what)),
     };
     let version = u32_at(4, "the header")?;
     if version != 2 {
-        return Err(Fault::new("byte 4", format!("container version {version}"), "version 2 is supported"));
+        return Err(Fault::new("byte 4", format!("container version {version}"), "only version 2 is supported"));
     }
     let length = u32_at(8, "the header")? as usize;
     let Some(bytes) = bytes.get(..length) else {
         return Err(Fault::new(
             "byte 8",
-            format!("the header claims {length} bytes and the file has {}", bytes.len()),
-            "it seems cut short: fetch it again",
+            format!("the header states {length} bytes, but the file has {}", bytes.len()),
+            TRUNCATED,
         ));
     };
     let chunk_at = |at: usize, what: &str| -> Result<(u32, &[u8])> {
@@ -65,15 +66,15 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
             return Err(Fault::new(
                 format!("byte {at}"),
                 format!("a chunk of {chunk_bytes} bytes"),
-                "chunk lengths are multiples of 4",
+                "chunk lengths must be multiples of 4",
             ));
         }
         match bytes[start..].get(..chunk_bytes) {
             Some(data) => Ok((kind, data)),
             None => Err(Fault::new(
                 format!("byte {at}"),
-                format!("a chunk claims {chunk_bytes} bytes and {} are left", bytes.len() - start),
-                "it seems cut short: fetch it again",
+                format!("a chunk states {chunk_bytes} bytes, but only {} remain", bytes.len() - start),
+                TRUNCATED,
             )),
         }
     };
@@ -94,7 +95,7 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
                 return Err(Fault::new(
                     format!("byte {at}"),
                     "a second JSON or a misplaced BIN chunk",
-                    "a container has one JSON chunk and, directly after it, at most one BIN chunk",
+                    "a container must have one JSON chunk, followed by at most one BIN chunk",
                 ));
             }
             _ => {}

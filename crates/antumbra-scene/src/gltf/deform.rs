@@ -43,7 +43,7 @@ impl Skeleton {
             return Err(Fault::new(
                 format!("{place}.inverseBindMatrices"),
                 format!("{} matrices for {} joints", inverse_binds.len(), json.joints.len()),
-                "one matrix a joint is right",
+                "expected one matrix per joint",
             ));
         }
         let mut joints = Vec::with_capacity(json.joints.len());
@@ -54,7 +54,7 @@ impl Skeleton {
             };
             let joint_from_bind = Mat4::from_cols_array(&inverse_bind);
             if !joint_from_bind.is_finite() {
-                source.warn(format!("{place}: an inverse bind matrix is not finite; it is taken as none"));
+                source.warn(format!("{place}: an inverse bind matrix is not finite; the identity is used"));
             }
             let joint_from_bind = if joint_from_bind.is_finite() { joint_from_bind } else { Mat4::IDENTITY };
             joints.push(world_from_joint.unwrap_or(Mat4::IDENTITY) * joint_from_bind);
@@ -98,7 +98,7 @@ impl Skeleton {
             }
         }
         if stray > 0 {
-            source.warn(format!("{place}: {stray} weights belong to joints that do not exist; they are left out"));
+            source.warn(format!("{place}: {stray} weights belong to joints that do not exist; they are ignored"));
         }
         // A skeleton that mirrors reverses the winding of the whole mesh.
         if 2 * mirrored > geometry.positions.len() {

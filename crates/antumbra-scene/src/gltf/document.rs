@@ -52,7 +52,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root> {
             let place = format!("JSON line {}, column {}", first.line(), first.column());
             let message = first.to_string();
             let problem = message.rsplit_once(" at line ").map_or(message.as_str(), |(problem, _)| problem);
-            Fault::new(place, problem.replace('\n', " "), "the file must hold a glTF 2.0 document")
+            Fault::new(place, problem.replace('\n', " "), "the file must contain a glTF 2.0 document")
         })?,
     };
     check_version(&root)?;
@@ -64,7 +64,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root> {
         return Err(Fault::new(
             "extensionsRequired",
             format!("requires {}, which is not supported", quoted(unknown)),
-            "export the file without it (for Draco: decode it first)",
+            "export the file without this extension (for Draco, decompress it first)",
         ));
     }
     Ok(root)
@@ -74,7 +74,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root> {
 pub(super) fn unread_animations(root: &Root) -> Option<String> {
     let name = "KHR_animation_pointer";
     let is_used = root.extensions_used.iter().any(|used| used == name);
-    is_used.then(|| format!("{name} is not supported; what it animates keeps its resting value"))
+    is_used.then(|| format!("{name} is not supported; properties that it animates keep their values"))
 }
 
 /// Refuses documents nested so deeply that reading them could exhaust the stack.
@@ -92,7 +92,7 @@ fn check_depth(text: &str) -> Result<()> {
             _ => {}
         }
         if depth > DEEPEST {
-            let remedy = format!("at most {DEEPEST} levels are read");
+            let remedy = format!("at most {DEEPEST} levels are supported");
             return Err(Fault::new("JSON", "arrays and objects are nested too deeply", remedy));
         }
     }
@@ -143,6 +143,6 @@ fn check_version(root: &Root) -> Result<()> {
     if ok {
         Ok(())
     } else {
-        Err(Fault::new("asset", format!("version {}", quoted(wanted)), "glTF 2.0 is supported: convert the file"))
+        Err(Fault::new("asset", format!("version {}", quoted(wanted)), "only glTF 2.0 is supported: convert the file"))
     }
 }

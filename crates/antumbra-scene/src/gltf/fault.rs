@@ -32,8 +32,8 @@ impl Fault {
     /// Fault about an index past the end of its list.
     pub(super) fn unresolved(place: impl Into<String>, list: &str, index: usize, len: usize) -> Self {
         let remedy = match len {
-            0 => format!("the file has no {list} at all"),
-            _ => format!("an index from 0 to {} is right", len - 1),
+            0 => format!("the file has no {list}"),
+            _ => format!("expected an index from 0 to {}", len - 1),
         };
         Self::new(place, format!("refers to {list}[{index}], which does not exist"), remedy)
     }

@@ -108,7 +108,7 @@ struct Candidate {
 }
 
 /// Words of a warning for a missing image.
-const WHITE: &str = "it is taken as white";
+const WHITE: &str = "white is used instead";
 
 /// Images of a texture, the preferred one first; empty if the texture has no readable one.
 fn images_of(source: &Source, texture: usize, place: &str) -> Result<Vec<Candidate>> {
@@ -126,7 +126,7 @@ fn images_of(source: &Source, texture: usize, place: &str) -> Result<Vec<Candida
     let extension = found.extensions.as_ref().and_then(|e| e.others.get("EXT_texture_webp"));
     let webp = extension.and_then(|webp| webp.get("source")?.as_u64());
     let webp = webp.map(|image| checked(image as usize, "EXT_texture_webp.source")).transpose()?;
-    let otherwise = if own.is_some() { "the texture's other image is taken" } else { WHITE };
+    let otherwise = if own.is_some() { "the texture's other image is used" } else { WHITE };
     let webp = webp.map(|image| Candidate { image, otherwise });
     let images: Vec<_> = webp.into_iter().chain(own.map(|image| Candidate { image, otherwise: WHITE })).collect();
     if images.is_empty() {
@@ -175,9 +175,9 @@ fn try_decode(source: &Source, index: usize, place: &str) -> Result<DynamicImage
             &fetched[..]
         }
         (None, Some(view)) => source.view(view.value())?.bytes,
-        (None, None) => return Err(Fault::new(place, "has neither `uri` nor `bufferView`", "one of them is right")),
+        (None, None) => return Err(Fault::new(place, "has neither `uri` nor `bufferView`", "expected one of them")),
     };
-    let bad = |problem: String| Fault::new(place, problem, "a PNG, JPEG or WebP image is right");
+    let bad = |problem: String| Fault::new(place, problem, "expected a PNG, JPEG or WebP image");
     let unreadable = |e: image::ImageError| bad(quoted(&e.to_string()));
     let mut reader = ImageReader::new(Cursor::new(bytes));
     reader = reader.with_guessed_format().map_err(|e| bad(e.to_string()))?;
@@ -191,12 +191,12 @@ fn try_decode(source: &Source, index: usize, place: &str) -> Result<DynamicImage
     let decoder = reader.into_decoder().map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
     if width == 0 || height == 0 || width.max(height) > limits.image_side {
-        return Err(bad(format!("is {width} x {height} texels, from 1 to {} a side are loaded", limits.image_side)));
+        return Err(bad(format!("has {width} x {height} texels; 1 to {} per side are supported", limits.image_side)));
     }
     /// Largest expansion of deflate (RFC 1951: 258 bytes from 2 bits); an image that claims more is truncated or a bomb.
     const DEFLATE_EXPANSION: u64 = 1032;
     if png && decoder.total_bytes() / DEFLATE_EXPANSION > bytes.len() as u64 {
-        return Err(bad(format!("claims {width} x {height} texels in {} bytes, which is impossible", bytes.len())));
+        return Err(bad(format!("states {width} x {height} texels, which is impossible in {} bytes", bytes.len())));
     }
     source.budget.take_texels(width as usize * height as usize, place)?;
     DynamicImage::from_decoder(decoder).map_err(unreadable)

@@ -20,7 +20,7 @@ pub(super) fn transforms(source: &Source, node: &Node, index: usize) -> Result<V
         match extension.get("attributes").and_then(|a| a.get(name)) {
             None => Ok(None),
             Some(value) => value.as_u64().map(|i| Some(i as usize)).ok_or_else(|| {
-                Fault::new(&*place, format!("attribute {name} is not an accessor's index"), "a whole number is right")
+                Fault::new(&*place, format!("attribute {name} is not an accessor's index"), "expected a whole number")
             }),
         }
     };

@@ -58,7 +58,7 @@ pub(super) fn read(
     };
     let label = Source::label(json.name.as_ref(), "lights", index);
     let Checked::Valid(kind) = json.type_ else {
-        return Err(Fault::new(label, "its type is unknown", "directional, point or spot is right"));
+        return Err(Fault::new(label, "its type is unknown", "expected directional, point or spot"));
     };
     let mut keys = node_extras;
     keys.extend(extras::of(&json.extras));
@@ -86,7 +86,7 @@ pub(super) fn read(
         emission: keys.get("emission").and_then(emission),
     };
     if let Err(error) = light.validate() {
-        source.warn(format!("{label}: {error}; it is left out"));
+        source.warn(format!("{label}: {error}; it is ignored"));
         return Ok(None);
     }
     let all_round = kind == Type::Point && !keys.contains_key("shape");

@@ -157,8 +157,8 @@ fn take(left: &Cell<usize>, n: usize, all: usize, place: &str, what: &str) -> Re
         }
         None => Err(Fault::new(
             place,
-            format!("asks for {n} {what} and exceeds the limit"),
-            format!("at most {all} {what} in one file are loaded"),
+            format!("needs {n} {what}, which exceeds the limit"),
+            format!("at most {all} {what} per file are supported"),
         )),
     }
 }

@@ -59,7 +59,7 @@ impl Pictures<'_, '_, '_> {
         if self.kept.is_some_and(|kept| kept != lies) {
             let mean = self.images.mean_of_texture(self.source, texture, self.place)?;
             self.source.warn(format!(
-                "{}: its {what} has other texture coordinates or another sampler than its base colour; the mean is taken",
+                "{}: its {what} has different texture coordinates or a different sampler than its base colour; the mean is used",
                 self.place
             ));
             return Ok(mean.map_or(Picture::White, Picture::Mean));
@@ -153,7 +153,7 @@ fn alpha_mode(source: &Source, json: &JsonMaterial, place: &str) -> AlphaMode {
         },
         Checked::Valid(JsonAlphaMode::Blend) => AlphaMode::Blend,
         Checked::Invalid => {
-            source.warn(format!("{place}.alphaMode: is unknown; it is taken as OPAQUE"));
+            source.warn(format!("{place}.alphaMode: is unknown; OPAQUE is used"));
             AlphaMode::Opaque
         }
     }
@@ -228,7 +228,7 @@ fn volume(json: &JsonMaterial, pictures: &mut Pictures<'_, '_, '_>) -> Result<Op
     let attenuation_color = color.clamp(Vec3::ZERO, Vec3::ONE);
     if attenuation_distance_m <= 0.0 {
         pictures.source.warn(format!(
-            "{}: its attenuationDistance is {attenuation_distance_m}, greater than 0 is right; its volume absorbs nothing",
+            "{}: its attenuationDistance is {attenuation_distance_m}, but must be greater than 0; its volume absorbs nothing",
             pictures.place
         ));
         return Ok(None);

@@ -9,7 +9,7 @@ pub(super) fn decode(compression: &Compression<'_>, _encoded: &[u8], place: &str
     Err(Fault::new(
         place,
         format!(
-            "is compressed by meshopt ({}, filter {}), and this program has no decoder",
+            "is compressed by meshopt ({}, filter {}), which this program cannot decode",
             quoted(mode),
             quoted(filter)
         ),

@@ -9,7 +9,7 @@ use super::meshopt_view::Compression;
 /// Decodes compressed bytes to `stride · count` bytes.
 pub(super) fn decode(compression: &Compression<'_>, encoded: &[u8], place: &str) -> Result<Vec<u8>> {
     let bad = |problem: String, remedy: &str| Fault::new(place, problem, remedy);
-    let undecodable = || bad("the compressed data is corrupt".into(), "export or fetch the file again");
+    let undecodable = || bad("the compressed data is corrupt".into(), "export or download the file again");
     let (stride, count) = (compression.stride, compression.count);
     match compression.mode {
         "ATTRIBUTES" if (4..=256).contains(&stride) && stride.is_multiple_of(4) => {
@@ -28,7 +28,7 @@ pub(super) fn decode(compression: &Compression<'_>, encoded: &[u8], place: &str)
         .map_err(|_| undecodable()),
         mode => Err(bad(
             format!("compression mode {} with {count} elements of {stride} bytes", quoted(mode)),
-            "ATTRIBUTES takes 4 to 256 bytes in fours, TRIANGLES whole triangles of 2 or 4, INDICES 2 or 4",
+            "expected a multiple of 4 bytes from 4 to 256 for ATTRIBUTES, 2 or 4 bytes for TRIANGLES (in threes) and INDICES",
         )),
     }
 }
@@ -75,7 +75,7 @@ fn filtered(bytes: Vec<u8>, compression: &Compression<'_>, place: &str) -> Resul
             return Err(Fault::new(
                 place,
                 format!("compression filter {} on elements of {stride} bytes", quoted(filter)),
-                "NONE, OCTAHEDRAL (4 or 8), QUATERNION (8), EXPONENTIAL (fours) or COLOR (4 or 8) is right",
+                "expected NONE, OCTAHEDRAL (4 or 8 bytes), QUATERNION (8), EXPONENTIAL (a multiple of 4) or COLOR (4 or 8)",
             ));
         }
     })

@@ -113,8 +113,8 @@ impl Animations {
             return Ok(scene);
         }
         // Only a node whose transform was not finite before can bring a new image.
-        let problem = format!("shows something at {time_s} s that it does not show when it is opened");
-        Err(Fault::new("the whole", problem, "open it at that time").within(&self.origin))
+        let problem = format!("shows an image at {time_s} s that was not loaded when the file was opened");
+        Err(Fault::new("the file", problem, "open the file at that time").within(&self.origin))
     }
 }
 
@@ -124,12 +124,12 @@ pub(crate) fn load_file(path: &Path, pose: Pose, limits: Limits) -> std::result:
     let unreadable = |source| SceneError::Read { path: path.to_owned(), source };
     let metadata = std::fs::metadata(path).map_err(unreadable)?;
     if !metadata.is_file() {
-        return Err(unreadable(std::io::Error::other("it is not a regular file")));
+        return Err(unreadable(std::io::Error::other("it is not a file")));
     }
     if metadata.len() > limits.file_bytes {
-        let problem = format!("the file has {} bytes", metadata.len());
-        let remedy = format!("at most {} bytes are loaded", limits.file_bytes);
-        return Err(Fault::new("the whole", problem, remedy).within(&origin));
+        let problem = format!("has {} bytes", metadata.len());
+        let remedy = format!("at most {} bytes are supported", limits.file_bytes);
+        return Err(Fault::new("the file", problem, remedy).within(&origin));
     }
     let bytes = std::fs::read(path).map_err(unreadable)?;
     let folder = path.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
@@ -321,7 +321,7 @@ impl Loader<'_, '_> {
         let wanted = Wanted { uv, influences: skeleton.is_some(), targets: !weights.is_empty() };
         let geometry = match primitives::read(source, primitive_json, wanted, &place) {
             Err(fault) if fault.is_absent() => {
-                source.warn(fault.as_warning(&format!("{place} is left out")));
+                source.warn(fault.as_warning(&format!("{place} is ignored")));
                 None
             }
             read => read?,
@@ -336,7 +336,7 @@ impl Loader<'_, '_> {
         let dropped = geometry.drop_unbounded();
         if dropped > 0 {
             source.warn(format!(
-                "{place}: {dropped} triangles deform to positions that are not finite; they are left out"
+                "{place}: {dropped} triangles are deformed to positions that are not finite; they are ignored"
             ));
         }
         if geometry.indices.is_empty() {

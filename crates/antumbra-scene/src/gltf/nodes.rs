@@ -41,7 +41,7 @@ impl Graph {
                 world_from_node[index] = Some(world);
             } else {
                 let label = Source::label(nodes[index].name.as_ref(), "nodes", index);
-                source.warn(format!("{label}: its transform is not finite; it and what hangs from it are left out"));
+                source.warn(format!("{label}: its transform is not finite; it and its children are ignored"));
             }
         }
 
@@ -65,7 +65,7 @@ fn is_hidden(source: &Source, index: usize) -> bool {
     visible.as_bool().map_or_else(
         || {
             let label = Source::label(node.name.as_ref(), "nodes", index);
-            source.warn(format!("{label}: its `visible` is neither true nor false; it is taken as true"));
+            source.warn(format!("{label}: its `visible` is neither true nor false; true is used"));
             false
         },
         |visible| !visible,
@@ -89,7 +89,7 @@ fn topological_order(nodes: &[Node]) -> Result<Vec<(usize, Option<usize>)>> {
                 return Err(Fault::new(
                     place,
                     format!("nodes[{child}] is already a child of nodes[{other}]"),
-                    "a node has at most one parent and occurs once among its children",
+                    "a node must have at most one parent, and occur once among its children",
                 ));
             }
         }
@@ -107,8 +107,8 @@ fn topological_order(nodes: &[Node]) -> Result<Vec<(usize, Option<usize>)>> {
         let stuck = ordered.iter().position(|done| !done).unwrap_or_default();
         return Err(Fault::new(
             format!("nodes[{stuck}]"),
-            "is its own ancestor, or hangs from a node that is",
-            "nodes form trees: break the loop in `children`",
+            "is its own ancestor, or a descendant of a node that is",
+            "nodes must form trees: break the loop in `children`",
         ));
     }
     Ok(order)
@@ -159,7 +159,7 @@ fn local_transform(source: &Source, node: &Node, index: usize, driven: &Driven) 
     };
     let rotation = unit_quaternion(driven.rotation.unwrap_or(rotation)).unwrap_or_else(|| {
         let label = Source::label(node.name.as_ref(), "nodes", index);
-        source.warn(format!("{label}: its rotation has no direction; it is taken as none"));
+        source.warn(format!("{label}: its rotation is a quaternion of zero length; no rotation is used"));
         Quat::IDENTITY
     });
     Mat4::from_scale_rotation_translation(

@@ -56,7 +56,7 @@ impl Placement {
         let corners = self.bounds[mesh].corners().map(|p| world_from_object.transform_point3(p));
         // NaN fails the comparison.
         if !corners.iter().flat_map(|p| p.to_array()).all(|v| v.abs() <= LARGEST_COORDINATE_M) {
-            source.warn(format!("{label}: its transform leads beyond {LARGEST_COORDINATE_M:e} m; it is left out"));
+            source.warn(format!("{label}: its transform moves it beyond {LARGEST_COORDINATE_M:e} m; it is ignored"));
             return Ok(());
         }
         source.budget.take_instances(1, label)?;
@@ -72,7 +72,7 @@ impl Placement {
                 None => return Ok(()),
             },
             Kind::Vanishing => {
-                source.warn(format!("{label}: its scale leaves a line or a point; it is left out"));
+                source.warn(format!("{label}: its scale reduces it to a line or a point; it is ignored"));
                 return Ok(());
             }
         };
@@ -138,7 +138,7 @@ impl Placement {
         };
         geometry.transform(world_from_object);
         if !geometry.has_area() {
-            source.warn(format!("{label}: its scale leaves no area; it is left out"));
+            source.warn(format!("{label}: its scale reduces its area to zero; it is ignored"));
             return Ok(None);
         }
         geometry.repair_normals();

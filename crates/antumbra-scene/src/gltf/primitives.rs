@@ -34,14 +34,14 @@ pub(super) fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<usi
 /// The geometry's normals are those of the file, or empty. All indices are in range.
 pub(super) fn read(source: &Source, primitive: &Primitive, wanted: Wanted, place: &str) -> Result<Option<Geometry>> {
     let Checked::Valid(mode) = primitive.mode else {
-        return Err(Fault::new(format!("{place}.mode"), "is unknown", "a mode from 0 to 6 is right"));
+        return Err(Fault::new(format!("{place}.mode"), "is unknown", "expected a mode from 0 to 6"));
     };
     if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-        source.warn(format!("{place}: points and lines have no area; they are left out"));
+        source.warn(format!("{place}: points and lines have no area; they are ignored"));
         return Ok(None);
     }
     let Some(positions) = attribute(primitive, Semantic::Positions) else {
-        source.warn(format!("{place}: has no POSITION; it is left out"));
+        source.warn(format!("{place}: has no POSITION; it is ignored"));
         return Ok(None);
     };
 
@@ -85,10 +85,10 @@ pub(super) fn read(source: &Source, primitive: &Primitive, wanted: Wanted, place
     }
     let dropped = geometry.drop_unbounded();
     if dropped > 0 {
-        source.warn(format!("{place}: {dropped} triangles with positions that are not finite are left out"));
+        source.warn(format!("{place}: {dropped} triangles with positions that are not finite are ignored"));
     }
     if geometry.indices.is_empty() {
-        source.warn(format!("{place}: no triangle is left of it"));
+        source.warn(format!("{place}: it has no remaining triangle"));
         return Ok(None);
     }
     Ok(Some(geometry))
@@ -99,7 +99,7 @@ fn same_count(have: usize, want: usize, place: &str) -> Result<()> {
     if have == want {
         return Ok(());
     }
-    Err(Fault::new(place, format!("has {have} elements"), format!("as many as POSITION, {want}, are right")))
+    Err(Fault::new(place, format!("has {have} elements"), format!("expected as many as POSITION has, {want}")))
 }
 
 fn vec3s(source: &Source, accessor: usize, count: usize, place: &str) -> Result<Vec<Vec3>> {
@@ -134,8 +134,10 @@ fn triangles(source: &Source, primitive: &Primitive, mode: Mode, vertices: usize
         }
         _ => {
             if !corners.len().is_multiple_of(3) {
-                source
-                    .warn(format!("{place}: {} corners are not whole triangles; the rest is left out", corners.len()));
+                source.warn(format!(
+                    "{place}: the number of corners, {}, is not a multiple of 3; the rest is ignored",
+                    corners.len()
+                ));
             }
             corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect()
         }
@@ -144,7 +146,7 @@ fn triangles(source: &Source, primitive: &Primitive, mode: Mode, vertices: usize
     let kept: Vec<u32> = listed.into_iter().filter(|t| t.iter().all(|&i| (i as usize) < vertices)).flatten().collect();
     let dropped = all - kept.len() / 3;
     if dropped > 0 {
-        source.warn(format!("{place}: {dropped} triangles with indices past the last vertex are left out"));
+        source.warn(format!("{place}: {dropped} triangles with indices past the last vertex are ignored"));
     }
     Ok(kept)
 }
@@ -168,8 +170,7 @@ fn colors(source: &Source, primitive: &Primitive, count: usize, place: &str) -> 
 
 fn uvs(source: &Source, primitive: &Primitive, uv: UvSource, count: usize, place: &str) -> Result<Vec<Vec2>> {
     let Some(accessor) = attribute(primitive, Semantic::TexCoords(uv.set)) else {
-        source
-            .warn(format!("{place}: lacks TEXCOORD_{}, which its material asks for; its texture is not used", uv.set));
+        source.warn(format!("{place}: lacks TEXCOORD_{}, which its material needs; the texture is ignored", uv.set));
         return Ok(Vec::new());
     };
     let place = format!("{place}.attributes.TEXCOORD_{}", uv.set);
@@ -187,7 +188,7 @@ fn uvs(source: &Source, primitive: &Primitive, uv: UvSource, count: usize, place
         }
     }
     if repaired > 0 {
-        source.warn(format!("{place}: {repaired} texture coordinates are not finite; they are taken as 0"));
+        source.warn(format!("{place}: {repaired} texture coordinates are not finite; 0 is used"));
     }
     Ok(uvs)
 }

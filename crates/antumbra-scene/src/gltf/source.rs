@@ -65,7 +65,7 @@ impl<'a> Source<'a> {
             warnings.push(line);
         }
         if warnings.len() == MOST {
-            warnings.push("further warnings are left out".into());
+            warnings.push("further warnings are omitted".into());
         }
     }
 
@@ -98,8 +98,8 @@ impl<'a> Source<'a> {
         if wanted > limit {
             return Err(Fault::new(
                 place,
-                format!("claims {wanted} bytes"),
-                format!("at most {limit} bytes are loaded"),
+                format!("states {wanted} bytes"),
+                format!("at most {limit} bytes are supported"),
             ));
         }
         let mut bytes = match (&buffer.uri, self.bin) {
@@ -113,8 +113,8 @@ impl<'a> Source<'a> {
             (None, _) => {
                 return Err(Fault::absent(
                     place,
-                    "has no `uri`, and no binary chunk belongs to it",
-                    "only the first buffer of a .glb may go without a `uri`",
+                    "has no `uri`, and there is no binary chunk for it",
+                    "only the first buffer of a .glb may lack a `uri`",
                 ));
             }
         };
@@ -122,8 +122,8 @@ impl<'a> Source<'a> {
         if bytes.len() < wanted {
             return Err(Fault::new(
                 place,
-                format!("claims {wanted} bytes and its source has {}", bytes.len()),
-                "`byteLength` must not exceed the data: the file seems cut short",
+                format!("states {wanted} bytes, but its source has {}", bytes.len()),
+                "`byteLength` must not exceed the data: the file seems to be truncated",
             ));
         }
         match &mut bytes {
@@ -144,8 +144,8 @@ impl<'a> Source<'a> {
             Some(end) => Ok(&bytes[offset as usize..end as usize]),
             None => Err(Fault::new(
                 place,
-                format!("bytes {offset} + {length} lie past the end of buffers[{buffer}] ({} bytes)", bytes.len()),
-                "the range must lie inside the buffer",
+                format!("bytes {offset} + {length} are beyond the end of buffers[{buffer}] ({} bytes)", bytes.len()),
+                "the range must be inside the buffer",
             )),
         }
     }
@@ -186,7 +186,7 @@ fn checked_stride(view: &View, place: &str) -> Result<Option<usize>> {
         Some(stride) if !STRIDES.contains(&stride) || !stride.is_multiple_of(4) => Err(Fault::new(
             format!("{place}.byteStride"),
             format!("is {stride}"),
-            "a multiple of 4 from 4 to 252 is right",
+            "expected a multiple of 4 from 4 to 252",
         )),
         stride => Ok(stride),
     }

@@ -20,12 +20,12 @@ pub(super) fn resolve(uri: &str, folder: Option<&Path>, at_most: u64, place: &st
     }
     let path = inside(uri, folder, place)?;
     let unreadable = |why: String| {
-        Fault::new(place, format!("{} cannot be read: {why}", quoted(uri)), "put the file beside the scene")
+        Fault::new(place, format!("{} cannot be read: {why}", quoted(uri)), "put the file next to the scene")
     };
     let metadata = std::fs::metadata(&path).map_err(|e| unreadable(e.to_string()))?;
     // A named pipe or a device would block for ever.
     if !metadata.is_file() {
-        return Err(unreadable("it is not a regular file".into()));
+        return Err(unreadable("it is not a file".into()));
     }
     let mut bytes = Vec::new();
     let file = File::open(&path).map_err(|e| unreadable(e.to_string()))?;
@@ -44,11 +44,11 @@ fn inside(uri: &str, folder: Option<&Path>, place: &str) -> Result<PathBuf> {
         Fault::new(
             place,
             format!("{} {why}", quoted(uri)),
-            "a relative path to a file in the scene's own folder, or a data URI, is right",
+            "expected a relative path to a file in the scene's folder, or a data URI",
         )
     };
     let Some(folder) = folder else {
-        return Err(refused("names a file, and this scene has no folder"));
+        return Err(refused("names a file, but this scene was not loaded from a folder"));
     };
     let decoded = percent_decoded(uri.as_bytes());
     let decoded = String::from_utf8(decoded).map_err(|_| refused("is not UTF-8 once percent-decoded"))?;
@@ -71,7 +71,7 @@ fn inside(uri: &str, folder: Option<&Path>, place: &str) -> Result<PathBuf> {
             _ => 1,
         };
         if depth < 0 {
-            return Err(refused("climbs out of the scene's folder"));
+            return Err(refused("leads out of the scene's folder"));
         }
     }
     let missing = |e: std::io::Error| refused(&format!("cannot be found: {e}"));
@@ -89,7 +89,7 @@ fn percent_decoded(text: &[u8]) -> Vec<u8> {
 
 /// Decodes a data URI after `data:` (RFC 2397). The media type is ignored: images are recognised by their bytes.
 fn decode_data(rest: &str, place: &str) -> Result<Vec<u8>> {
-    let bad = |problem: &str| Fault::new(place, problem, "`data:[type];base64,DATA` with DATA in base64 is right");
+    let bad = |problem: &str| Fault::new(place, problem, "expected `data:[type];base64,DATA` with DATA in base64");
     let Some((head, body)) = rest.split_once(',') else {
         return Err(bad("a data URI without a comma"));
     };

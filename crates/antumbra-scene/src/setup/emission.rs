@@ -22,7 +22,7 @@ pub(super) fn read(texture: &str, folder: &Path) -> Result<EmissionTexture, Stri
             let path = folder.join(texture);
             let is_file = std::fs::metadata(&path).map(|m| m.is_file()).map_err(|e| e.to_string())?;
             if !is_file {
-                return Err("it is not a regular file".into());
+                return Err("it is not a file".into());
             }
             std::fs::read(&path).map_err(|e| e.to_string())?
         }

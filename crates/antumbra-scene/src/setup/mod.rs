@@ -105,15 +105,15 @@ impl Setup {
         };
         let mut taken = Vec::new();
         if camera.is_none() {
-            let how = if framing.is_none() { "stands inside" } else { "frames it" };
-            taken.push(format!("no camera, and one {how}"));
+            let how = if framing.is_none() { "inside the room" } else { "that frames it" };
+            taken.push(format!("no camera, so one {how} was added"));
         }
         if !has_lights {
-            let how = if framing.is_none() { "hangs below the ceiling" } else { "shines from above" };
+            let how = if framing.is_none() { "below the ceiling" } else { "above the scene" };
             let side_m = 2.0 * key.bounding_radius() / std::f32::consts::SQRT_2;
-            taken.push(format!("no lights, and a square one of {side_m:.2} m {how}"));
+            taken.push(format!("no lights, so a square one of {side_m:.2} m {how} was added"));
         }
-        let line = format!("{} has {}; --setup says otherwise", scene.name, taken.join("; "));
+        let line = format!("{} has {}; choose others with --setup", scene.name, taken.join("; "));
         let lights = if has_lights { scene.lights.clone() } else { vec![key] };
         let framing = framing.filter(|_| camera.is_none());
         Assumed { setup: Self { camera: camera.unwrap_or(taken_camera), lights }, line: Some(line), framing }

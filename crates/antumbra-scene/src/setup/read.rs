@@ -101,7 +101,7 @@ fn shadow_distance(file: &File, section: &Section<'_>) -> Result<Option<ShadowDi
     let fade_m = section.number("shadow_fade")?.map(|v| v as f32);
     let Some(end_m) = section.number("shadow_distance")? else {
         let Some(_) = fade_m else { return Ok(None) };
-        let problem = "[camera]: `shadow_fade` is of no `shadow_distance`";
+        let problem = "[camera]: `shadow_fade` is given without `shadow_distance`";
         return Err(file.error(section.start_of("shadow_fade"), problem, "add `shadow_distance`, in metres"));
     };
     let usual = ShadowDistance::new(end_m as f32);
@@ -171,7 +171,7 @@ fn emission_of(file: &File, section: &Section<'_>, title: &str, folder: &Path) -
         file.error(
             section.start_of("texture"),
             format!("{title}: `texture` {shown:?} cannot be used: {why}"),
-            "a PNG or JPEG file beside the setup file is right",
+            "expected a PNG or JPEG file beside the setup file",
         )
     });
     read.map(Some)
@@ -278,7 +278,7 @@ impl<'t> Section<'t> {
                 let name: &str = key.get_ref();
                 let owners: Vec<&str> = SHAPES.iter().copied().filter(|s| own_keys(s).contains(&name)).collect();
                 let remedy = if !whose.is_empty() && !owners.is_empty() {
-                    format!("it belongs to {}; {whose} takes {}", owners.join(" and "), one_of(&allowed))
+                    format!("this key belongs to {}; {whose} has {}", owners.join(" and "), one_of(&allowed))
                 } else {
                     suggestion(name, &allowed)
                 };
@@ -289,12 +289,12 @@ impl<'t> Section<'t> {
     }
 
     fn missing(&self, key: &str, what: &str) -> SceneError {
-        self.file.error(self.start, format!("{}: `{key}` is missing", self.name), &format!("give `{key}`: {what}"))
+        self.file.error(self.start, format!("{}: `{key}` is missing", self.name), &format!("add `{key}`: {what}"))
     }
 
     fn wrong(&self, key: &str, value: &Spanned<DeValue>, what: &str) -> SceneError {
         let problem = format!("{}: `{key}` is {}", self.name, article(value.get_ref().type_str()));
-        self.file.error(value.span().start, problem, &format!("{what} is right"))
+        self.file.error(value.span().start, problem, &format!("expected {what}"))
     }
 
     fn string(&self, key: &str) -> Result<Option<&'t str>> {
@@ -357,6 +357,6 @@ fn suggestion(wrong: &str, right: &[&str]) -> String {
     let nearest = candidates.map(|name| (strsim::levenshtein(wrong, name), Reverse(shared_start(name)), *name)).min();
     match nearest {
         Some((d, _, name)) if d <= slips(name) => format!("did you mean `{name}`?"),
-        _ => format!("the right ones are {}", one_of(right)),
+        _ => format!("valid keys are {}", one_of(right)),
     }
 }

@@ -154,7 +154,7 @@ fn a_shadow_distance_has_a_fade_and_bounds() {
     for (keys, part) in [
         ("shadow_distance = 0", "`shadow_distance` is 0, and must be a length in metres, positive and finite"),
         ("shadow_distance = 9\nshadow_fade = 10", "`shadow_fade` is 10, and must be a length in metres, from 0"),
-        ("shadow_fade = 10", "`shadow_fade` is of no `shadow_distance`"),
+        ("shadow_fade = 10", "`shadow_fade` is given without `shadow_distance`"),
     ] {
         let message = with(keys).unwrap_err();
         assert!(message.contains(part), "{keys}: {message}");
@@ -253,10 +253,13 @@ fn rooms_are_seen_from_inside_and_solids_from_outside() {
     super::check_camera(&room.camera).unwrap();
     assert!(room.camera.eye.y > 1.0 && room.camera.target.distance(room.camera.eye) > 2.0, "{:?}", room.camera);
     let line = line.unwrap();
-    assert!(line.contains("stands inside") && line.contains("below the ceiling") && line.contains("--setup"), "{line}");
+    assert!(
+        line.contains("inside the room") && line.contains("below the ceiling") && line.contains("--setup"),
+        "{line}"
+    );
 
     let Assumed { setup: solid, line, framing: frames_solid } = Setup::assumed(&hollow(size, false));
-    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("frames it") && frames_solid.is_some());
+    assert!(!is_inside(solid.camera.eye) && line.unwrap().contains("that frames it") && frames_solid.is_some());
     // A box that no one can stand in is an object, whichever way its faces look.
     let Assumed { setup: toy, .. } = Setup::assumed(&hollow(0.1 * size, true));
     assert!(toy.camera.eye.cmpgt(0.1 * size).any(), "{:?}", toy.camera);

@@ -1,7 +1,7 @@
 //! Actions that keys, panels and dialogs request.
 
 use super::App;
-use crate::loader::{Wanted, read_setup, write_setup};
+use crate::loader::{SceneRequest, read_setup, write_setup};
 use crate::state::command_line;
 use crate::ui::Action;
 
@@ -23,7 +23,7 @@ impl App {
         match action {
             Action::Open(spec) => {
                 self.say(format!("loading {spec}"));
-                self.loader.load(Wanted::plain(spec), self.wake.clone());
+                self.loader.load(SceneRequest::plain(spec), self.wake.clone());
             }
             Action::Choose(purpose, name) => self.file_dialog.open(purpose, &name, self.wake.clone()),
             Action::Undo => {
@@ -38,14 +38,14 @@ impl App {
             },
             Action::SaveSetup(path) => match write_setup(&path, &self.state.setup_in_world()) {
                 Ok(()) => {
-                    self.say(format!("camera and lights are in {}", path.display()));
+                    self.say(format!("saved camera and lights to {}", path.display()));
                     self.state.setup_file = Some((path, self.state.setup.clone()));
                 }
                 Err(why) => self.complain(why),
             },
             Action::SavePicture(path) => match self.renderer.read_output() {
                 Some(()) => self.saving = Some(path),
-                None => self.complain("there is no picture yet; open a scene first"),
+                None => self.complain("there is no image yet; open a scene first"),
             },
             Action::CopyCommand => {
                 if let Some(line) = command_line(&self.state, self.size_px) {

@@ -53,13 +53,13 @@ impl egui::DroppedFile for Dropped {
 #[derive(Debug, thiserror::Error)]
 pub enum HeadlessError {
     /// This machine has no adapter.
-    #[error("no graphics adapter answers; a software one will do, such as Mesa's")]
+    #[error("no graphics adapter was found; install a graphics driver, or a software one such as Mesa's")]
     NoAdapter,
     /// The adapter gives no device.
-    #[error("the adapter gives no device: {0}")]
+    #[error("the adapter cannot create a device: {0}")]
     NoDevice(String),
     /// The folder for saved files cannot be created.
-    #[error("{0}: cannot be made: {1}")]
+    #[error("{0}: cannot be created: {1}")]
     NoFolder(PathBuf, std::io::Error),
 }
 
@@ -164,7 +164,7 @@ impl Window {
     pub fn settle(&mut self) {
         let is_still = self.wait(MAX_WAIT);
         let compiling = self.app.renderer.sides.each_ref().map(|side| side.compiling());
-        assert!(is_still, "it never stands still: {:?}, compiling {compiling:?}", self.app.message);
+        assert!(is_still, "the application does not become idle: {:?}, compiling {compiling:?}", self.app.message);
     }
 
     /// Whether the window has closed by itself.

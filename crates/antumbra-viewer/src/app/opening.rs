@@ -88,7 +88,7 @@ impl App {
     pub(super) fn take_setup(&mut self, path: PathBuf, in_world: Setup) {
         let setup = in_world.relative_to(self.state.anchor);
         self.state.take_setup(setup.clone());
-        self.say(format!("camera and lights of {}", path.display()));
+        self.say(format!("opened camera and lights of {}", path.display()));
         self.panels.setup_path = path.display().to_string();
         self.state.setup_file = Some((path, setup));
     }
@@ -103,7 +103,7 @@ impl App {
             Some((_, None)) => self.say(if cfg!(target_arch = "wasm32") {
                 "no file was chosen"
             } else {
-                "no file was chosen; where no dialog opens this desktop has none: enter the path, or drop the file"
+                "no file was chosen; if no dialog opened, this desktop has none: enter the path, or drop the file on the window"
             }),
         }
     }

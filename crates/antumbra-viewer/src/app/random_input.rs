@@ -116,7 +116,7 @@ impl RandomInput {
             }
         }
         window.frame(Vec::new());
-        assert!(!window.has_closed(), "the window has closed by itself, as one does whose device is lost");
+        assert!(!window.has_closed(), "the window closed by itself, as it does when the device is lost");
         self.opened += u64::from(self.window.app.loader.pending().is_some());
     }
 
@@ -205,7 +205,7 @@ fn turn_parameter(side: &mut Side, random: &mut Random) {
     }
     let spec = &specs[random.below(specs.len())];
     let value = match (spec.default, spec.range, random.below(4)) {
-        (_, _, 0) => "what nobody takes".to_owned(),
+        (_, _, 0) => "a removed entry".to_owned(),
         (_, _, 1) => side.usual(spec).to_string(),
         (ParamValue::Bool(_), ..) => (random.below(2) == 0).to_string(),
         (_, Some((low, _)), _) if spec.choices.is_empty() || random.below(2) == 0 => low.to_string(),
@@ -281,7 +281,7 @@ fn touch(window: &mut Window, random: &mut Random) {
 fn objects(window: &Window) -> DeviceObjects {
     // A lost device is reported by the next frame.
     let _ = window.device.poll(wgpu::PollType::wait_indefinitely());
-    let report = window.app.render_state.instance.generate_report().expect("there is one but in browsers");
+    let report = window.app.render_state.instance.generate_report().expect("every system except browsers has a clock");
     let hub = report.hub;
     DeviceObjects {
         buffers: hub.buffers.num_kept_from_user,

@@ -30,10 +30,10 @@ impl App {
         let Some(path) = self.saving.take() else { return };
         let UVec2 { x, y } = texels.size_px;
         let written = image::RgbaImage::from_raw(x, y, texels.bytes)
-            .ok_or_else(|| "the picture came back in part".to_owned())
+            .ok_or_else(|| "the image was read back incompletely; save it again".to_owned())
             .and_then(|image| write_png(&path, image));
         match written {
-            Ok(()) => self.say(format!("the picture is in {}", path.display())),
+            Ok(()) => self.say(format!("saved the image to {}", path.display())),
             Err(why) => self.complain(why),
         }
     }
@@ -51,7 +51,7 @@ impl App {
             let bytes = taken.pixels.iter().flat_map(egui::Color32::to_array).collect();
             let path = screenshot.path.clone();
             let written = image::RgbaImage::from_raw(x, y, bytes)
-                .ok_or_else(|| "the window's picture came back in part".to_owned())
+                .ok_or_else(|| "the window's image was read back incompletely".to_owned())
                 .and_then(|image| write_png(&path, image));
             self.finish(ctx, written);
         } else if !screenshot.is_asked && screenshot.still_frames >= SCREENSHOT_STILL_FRAMES {

@@ -41,7 +41,7 @@ fn a_scene_plays_stands_still_and_is_what_it_is_when_opened_then() {
     let Some(mut window) = or_skip(Window::open(options(&walker))) else { return };
     let first = window.pictured();
     let open = window.app.state.scene.clone().unwrap();
-    assert!(open.has_ground && window.app.message.0.contains("stands on nothing"), "{:?}", window.app.message);
+    assert!(open.has_ground && window.app.message.0.contains("a ground plane was added"), "{:?}", window.app.message);
     window.key(egui::Key::Space);
     assert!(window.app.state.play.is_playing);
     let mut times = Vec::new();
@@ -214,7 +214,7 @@ fn another_window_goes_on_where_a_device_was_lost() {
     assert_eq!(after.len(), before.len());
     let off = before.iter().zip(&after).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / before.len() as f64;
     assert!(off < 4.0, "{off} levels");
-    assert!(other.app.message.0.contains("made anew"));
+    assert!(other.app.message.0.contains("recreated"));
 }
 
 #[test]

@@ -178,7 +178,7 @@ impl Renderer {
     /// Prepares and records the left side's masks without submitting them. Returns the reason if that fails.
     #[cfg(test)]
     pub(super) fn record_only(&mut self, state: &State) -> Result<(), String> {
-        let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return Err("nothing is open".into()) };
+        let (Some(scene), Some(view)) = (&self.scene, &self.view) else { return Err("no scene is open".into()) };
         let lights = &state.setup.lights;
         let shading = Shading::new(&self.gpu, &self.programs, &view.images, None, lights, &scene.exposure);
         let frame = SideFrame { scene: &scene.scene, images: &view.images, shading: &shading, lights };

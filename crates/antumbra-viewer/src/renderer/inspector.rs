@@ -36,7 +36,7 @@ pub struct InspectedSurface {
 }
 
 /// Key of a reading: pixel, version of the masks with the light's index, and version of the camera.
-pub type Asked = (UVec2, u64, u64);
+pub type ReadingKey = (UVec2, u64, u64);
 
 /// Reader of one pixel at a time.
 #[derive(Debug, Default)]
@@ -46,7 +46,7 @@ pub struct PixelReader {
 
 #[derive(Debug)]
 struct Pending {
-    asked: Asked,
+    key: ReadingKey,
     buffer: wgpu::Buffer,
     /// Channels of the masks.
     channels: [Option<MaskChannels>; 2],
@@ -67,8 +67,8 @@ impl PixelReader {
     }
 
     /// Key of the reading that is in flight or not yet taken.
-    pub fn asked(&self) -> Option<Asked> {
-        self.pending.as_ref().map(|pending| pending.asked)
+    pub fn key(&self) -> Option<ReadingKey> {
+        self.pending.as_ref().map(|pending| pending.key)
     }
 
     /// Records the copies of a pixel's texels.
@@ -76,7 +76,7 @@ impl PixelReader {
         &mut self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
-        asked: Asked,
+        key: ReadingKey,
         images: &ReceiverImages,
         masks: [Option<&Mask>; 2],
     ) {
@@ -86,7 +86,7 @@ impl PixelReader {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let (pixel, ..) = asked;
+        let (pixel, ..) = key;
         let textures = [Some(&images.geometric_normal), Some(&images.surface)];
         let textures = textures.into_iter().chain(masks.map(|mask| mask.map(Mask::texture)));
         for (slot, texture) in (0..).zip(textures) {
@@ -112,16 +112,16 @@ impl PixelReader {
         encoder.map_buffer_on_submit(&buffer, wgpu::MapMode::Read, .., move |result| {
             told.store(if result.is_ok() { MAPPED } else { FAILED }, Ordering::Release);
         });
-        self.pending = Some(Pending { asked, buffer, channels: masks.map(|mask| mask.map(Mask::channels)), outcome });
+        self.pending = Some(Pending { key, buffer, channels: masks.map(|mask| mask.map(Mask::channels)), outcome });
     }
 
     /// Returns the completed reading, without the surface's position.
-    pub fn take(&mut self) -> Option<(Asked, Inspected)> {
+    pub fn take(&mut self) -> Option<(ReadingKey, Inspected)> {
         let outcome = self.pending.as_ref()?.outcome.load(Ordering::Acquire);
         if outcome == WAITING {
             return None;
         }
-        let Pending { asked, buffer, channels, .. } = self.pending.take()?;
+        let Pending { key, buffer, channels, .. } = self.pending.take()?;
         if outcome == FAILED {
             return None;
         }
@@ -132,11 +132,11 @@ impl PixelReader {
         let normal = words(0).map(f32::from_bits);
         let visibility = |side: usize| Some(mean_visibility(slot(2 + side), channels[side]?));
         let inspected = Inspected {
-            pixel: asked.0,
+            pixel: key.0,
             surface: (normal[3] > 0.0).then(|| surface(Vec4::from(normal).truncate(), words(1))),
             visibilities: [visibility(0), visibility(1)],
         };
-        Some((asked, inspected))
+        Some((key, inspected))
     }
 }
 

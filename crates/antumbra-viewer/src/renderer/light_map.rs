@@ -136,11 +136,11 @@ impl ShownMap {
         if self.layer > 0 {
             return format!(", layer {} of {layers}", self.layer + 1);
         }
-        let point = self.map.light_point.map(|point| format!(" of the light's point {}", point + 1));
+        let point = self.map.light_point.map(|point| format!(" of light sample {}", point + 1));
         let is_one_of = if levels > 1 { format!(", level {} of {levels}", self.level + 1) } else { String::new() };
         let made = match self.texels {
             None => "",
-            Some(LevelTexels::Extremes) => ", the nearest of each square of the map",
+            Some(LevelTexels::Extremes) => ", minimum depths of squares of the map",
             Some(_) => ", filtered",
         };
         let layer = if layers > 1 { format!(", layer 1 of {layers}") } else { String::new() };

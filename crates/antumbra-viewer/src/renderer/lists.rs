@@ -207,7 +207,7 @@ fn uniform_of(gpu: &Gpu, lists: &DrawnLists, level: ListLevel, corner: Vec2, ext
     let (order, told_by) = match lists.order {
         ListOrder::Rows => (0, 0),
         ListOrder::Halvings => (1, 0),
-        ListOrder::Told { word } => (2, word),
+        ListOrder::Chosen { word } => (2, word),
     };
     let uniform = ListsUniform {
         corner_px: corner.to_array(),

@@ -39,7 +39,7 @@ pub use crate::background::Wake;
 use crate::state::{Side, State};
 use crate::truth::Estimate;
 use antialiasing::{Antialiasing, Smoothed};
-use inspector::{Asked, PixelReader};
+use inspector::{PixelReader, ReadingKey};
 use light_map::LightMapPass;
 use lists::ListsPass;
 use loaded_scene::LoadedScene;
@@ -91,7 +91,7 @@ pub struct Renderer {
     /// The inspected pixel; `inspected` is the last reading.
     pointer_px: Option<UVec2>,
     pixel_reader: PixelReader,
-    inspected: Option<(Asked, Inspected)>,
+    inspected: Option<(ReadingKey, Inspected)>,
     errors: DeviceErrors,
     lost: Arc<Mutex<Option<String>>>,
 }

@@ -43,14 +43,14 @@ impl Renderer {
             self.inspected = Some(read);
         }
         let (Some(view), Some(pixel)) = (&self.view, self.pointer_px) else { return };
-        let asked = (pixel, self.version << 8 | state.light as u64, view.camera_version);
-        let is_known = self.inspected.as_ref().is_some_and(|(read, _)| *read == asked);
-        if is_known || self.pixel_reader.asked().is_some() || pixel.cmpge(view.images.size_px).any() {
+        let key = (pixel, self.version << 8 | state.light as u64, view.camera_version);
+        let is_known = self.inspected.as_ref().is_some_and(|(read, _)| *read == key);
+        if is_known || self.pixel_reader.key().is_some() || pixel.cmpge(view.images.size_px).any() {
             return;
         }
         let shown = state.shown_sides().len();
         let masks = [0, 1].map(|side| self.sides[side].mask(state.light).filter(|_| side < shown));
-        self.pixel_reader.record(&self.gpu, encoder, asked, &view.images, masks);
+        self.pixel_reader.record(&self.gpu, encoder, key, &view.images, masks);
     }
 
     /// Reads back the visible depths once the camera is static.

@@ -65,8 +65,8 @@ impl Refusals {
 
 fn refusal(out_of_memory: Option<wgpu::Error>, invalid: Option<wgpu::Error>) -> Option<String> {
     match (out_of_memory, invalid) {
-        (Some(_), _) => Some("the device has no memory for this; lower sizes, layers or numbers of samples".into()),
-        (None, Some(error)) => Some(format!("the device refuses: {}", one_line(&error.to_string()))),
+        (Some(_), _) => Some("the device is out of memory; reduce sizes, layers or numbers of samples".into()),
+        (None, Some(error)) => Some(format!("the device reports an error: {}", one_line(&error.to_string()))),
         (None, None) => None,
     }
 }

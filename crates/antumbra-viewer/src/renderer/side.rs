@@ -188,23 +188,23 @@ impl SideWork {
         let shown = self.shown_maps(light, level, layer);
         let maps: Vec<&DrawnMap> = shown.iter().map(|shown| &shown.map).collect();
         let Some(first) = shown.first() else {
-            return Some(format!("{kind} has no depth map of the light that it looks into"));
+            return Some(format!("{kind} uses no shadow map"));
         };
-        let count = if maps.len() > 1 { format!("{} maps, each of ", maps.len()) } else { String::new() };
+        let count = if maps.len() > 1 { format!("{} maps of ", maps.len()) } else { String::new() };
         let which = first.which(choices);
         if first.is_filtered() {
             let UVec2 { x, y } = first.size_px;
             return Some(format!(
-                "{kind}: {count}{x} × {y} texels{which}; bright where its first channel is least, dark where greatest"
+                "{kind}: {count}{x} × {y} texels{which}; bright where the first channel is smallest, dark where it is largest"
             ));
         }
         let samples = match first.map.sample_count {
-            count if count > 1 && !first.is_level() => format!(" of {count} samples"),
+            count if count > 1 && !first.is_level() => format!(" with {count} samples each"),
             _ => String::new(),
         };
         // These techniques keep the light samples' maps in a buffer.
         let made = if matches!(kind, TechniqueKind::Reprojection | TechniqueKind::ReprojectionLayered) {
-            " from the light's middle; the maps that its points have are words of a buffer"
+            " from the light's centre; the maps of the light samples are not shown"
         } else {
             ""
         };
@@ -256,13 +256,13 @@ impl SideWork {
         let lists = self.drawn_lists(light);
         let Some((first, (index, shown))) = lists.first().and_then(|first| Some((first, level_of(first, level)?)))
         else {
-            return Some(format!("{kind} keeps no lists"));
+            return Some(format!("{kind} has no lists"));
         };
-        let count = if lists.len() > 1 { format!("{} maps, each of ", lists.len()) } else { String::new() };
+        let count = if lists.len() > 1 { format!("{} maps of ", lists.len()) } else { String::new() };
         let levels = first.levels.len();
         let level = if levels > 1 { format!(", level {} of {levels}", index + 1) } else { String::new() };
         let totals = self.list_totals.map_or_else(String::new, |[longest, sum]| {
-            format!("; {sum} {} in all, at most {longest} in a list, which is yellow", first.listed)
+            format!("; {sum} {} in total; the longest list, in yellow, has {longest}", first.listed)
         });
         let UVec2 { x, y } = shown.size_texels;
         Some(format!("{kind}: {count}{x} × {y} lists of {}{level}{totals}", first.listed))
@@ -289,7 +289,9 @@ impl SideWork {
         let Some(compiling) = &self.compiling else { return false };
         let outcome = match compiling.result.try_recv() {
             Err(TryRecvError::Empty) => return false,
-            Err(TryRecvError::Disconnected) => Err(format!("{}: compiling ended without a word", compiling.kind)),
+            Err(TryRecvError::Disconnected) => {
+                Err(format!("{}: the compilation ended without a result", compiling.kind))
+            }
             Ok(outcome) => outcome,
         };
         let kind = compiling.kind;

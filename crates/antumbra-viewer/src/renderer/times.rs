@@ -170,7 +170,7 @@ mod tests {
 
     /// Frames that create resources, and those before them, are in no median.
     #[test]
-    fn frames_that_make_something_do_not_count() {
+    fn frames_that_create_resources_are_not_timed() {
         let mut times = Times::default();
         let frame = |processor_ms, has_made| FrameTimes { passes: Vec::new(), processor_ms, has_made };
         let median = |times: &Times| times.median(|frame| frame.processor_ms);

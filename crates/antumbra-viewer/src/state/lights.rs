@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn one_light_always_stays() {
+    fn the_last_light_cannot_be_removed() {
         let mut state = State::new(TechniqueKind::Pcss, TechniqueKind::Hard);
         state.add_light();
         state.add_light();

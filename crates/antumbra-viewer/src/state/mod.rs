@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_moved_goes_with_the_scene() {
+    fn unedited_cameras_and_lights_follow_the_animation() {
         let mut before = load("builtin:overlap", &LoadOptions::default()).unwrap();
         let setup = Setup::for_scene(&before);
         let mut other = setup.lights[0].clone();

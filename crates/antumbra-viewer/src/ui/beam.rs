@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn wherever_a_hand_goes_the_light_stays_a_light() {
+    fn dragged_handles_keep_the_light_valid() {
         for handle in Handle::ALL {
             for (x, y) in [(-5000.0, 10.0), (5000.0, 10.0), (400.0, -5000.0), (400.0, 5000.0), (400.0, 200.0)] {
                 let mut light = spot();

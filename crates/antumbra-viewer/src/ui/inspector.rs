@@ -29,15 +29,15 @@ fn rows(state: &State, inspected: &Inspected, truth: Option<f32>) -> Vec<(String
     let mut row = |name: &str, value: String| rows.push((name.to_owned(), value));
     row("pixel", format!("{}, {}", inspected.pixel.x, inspected.pixel.y));
     let Some(surface) = &inspected.surface else {
-        row("surface", "none: the background".into());
+        row("surface", "none (background)".into());
         return rows;
     };
     if let Some(position) = surface.position {
         let in_world = position + state.anchor;
         row("position", format!("{:.3}, {:.3}, {:.3} m", in_world.x, in_world.y, in_world.z));
-        row("from the eye", format!("{:.3} m", position.distance(state.setup.camera.eye)));
+        row("distance to camera", format!("{:.3} m", position.distance(state.setup.camera.eye)));
         if let Some(light) = state.setup.lights.get(state.light).filter(|light| !light.is_distant()) {
-            row("from the light", format!("{:.3} m", position.distance(light.center)));
+            row("distance to light", format!("{:.3} m", position.distance(light.center)));
         }
     }
     let normal = surface.normal;
@@ -46,11 +46,11 @@ fn rows(state: &State, inspected: &Inspected, truth: Option<f32>) -> Vec<(String
     for (side, visibility) in state.shown_sides().iter().zip(inspected.visibilities) {
         let Some(visibility) = visibility else { continue };
         let error = judged.map_or_else(String::new, |truth| format!("   error {:+.4}", visibility - truth));
-        row(&side.name(), format!("{visibility:.4} of the light{error}"));
+        row(&side.name(), format!("{visibility:.4} of the light visible{error}"));
     }
     match truth {
-        Some(truth) if truth >= 0.0 => row("truth", format!("{truth:.4} of the light")),
-        Some(_) => row("truth", "not judged: faces away from the light".into()),
+        Some(truth) if truth >= 0.0 => row("truth", format!("{truth:.4} of the light visible")),
+        Some(_) => row("truth", "not measured: faces away from the light".into()),
         None => row("truth", "…".into()),
     }
     let color = surface.base_color;
@@ -88,11 +88,11 @@ mod tests {
         for line in [
             "pixel: 3, 4",
             "position: 1.000, 0.000, 162.500 m",
-            "from the eye: 1.500 m",
+            "distance to camera: 1.500 m",
             "normal: +0.000, +1.000, +0.000",
-            "pcss: 0.7500 of the light   error +0.1250",
-            "vsm: 0.5000 of the light   error -0.1250",
-            "truth: 0.6250 of the light",
+            "pcss: 0.7500 of the light visible   error +0.1250",
+            "vsm: 0.5000 of the light visible   error -0.1250",
+            "truth: 0.6250 of the light visible",
         ] {
             assert!(judged.iter().any(|row| row == line), "{line} is not in {judged:?}");
         }

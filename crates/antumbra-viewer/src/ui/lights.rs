@@ -15,11 +15,11 @@ pub fn show(ui: &mut egui::Ui, state: &mut State) {
         for (index, light) in state.setup.lights.iter().enumerate() {
             ui.selectable_value(&mut state.light, index, &light.name);
         }
-        if ui.button("+").on_hover_text("One more, beside the chosen one").clicked() {
+        if ui.button("+").on_hover_text("Add a light beside the selected one").clicked() {
             state.add_light();
         }
         let may_remove = state.setup.lights.len() > 1;
-        if ui.add_enabled(may_remove, egui::Button::new("−")).on_hover_text("Remove the chosen light").clicked() {
+        if ui.add_enabled(may_remove, egui::Button::new("−")).on_hover_text("Remove the selected light").clicked() {
             state.remove_light();
         }
     });
@@ -44,7 +44,7 @@ pub fn show(ui: &mut egui::Ui, state: &mut State) {
         }
     }
     let mut turns = state.light_turn_rad_s != 0.0;
-    if ui.checkbox(&mut turns, "Turn around the scene").changed() {
+    if ui.checkbox(&mut turns, "Rotate around the scene").changed() {
         state.light_turn_rad_s = if turns { TURN_RAD_S } else { 0.0 };
     }
 }
@@ -66,7 +66,7 @@ fn shape(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
     });
     kind.give_to(light);
     ui.end_row();
-    ui.label("Size").on_hover_text("The physical size: the one softness there is");
+    ui.label("Size").on_hover_text("Physical size of the light, the only control of softness");
     ui.horizontal(|ui| match &mut light.shape {
         LightShape::Rectangle { size_m } => {
             length(ui, &mut size_m.x, speed_m);
@@ -84,7 +84,7 @@ fn shape(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
                 .clamping(egui::SliderClamping::Edits)
                 .suffix("°")
                 .custom_formatter(decimals(2));
-            if ui.add(slider).on_hover_text("The full angle of the disc; the Earth's sun has 0.53°").changed() {
+            if ui.add(slider).on_hover_text("Angular diameter; that of the sun seen from Earth is 0.53°").changed() {
                 *angular_diameter_rad = degrees.to_radians();
             }
         }
@@ -97,7 +97,7 @@ fn shape(ui: &mut egui::Ui, light: &mut Light, speed_m: f32) {
 
 fn pose(ui: &mut egui::Ui, light: &mut Light, anchor: Vec3, speed_m: f32) {
     if !light.is_distant() {
-        ui.label("Position").on_hover_text("The light's centre in the world; or drag it in the picture");
+        ui.label("Position").on_hover_text("Centre of the light in world space. You can also drag it in the image");
         ui.horizontal(|ui| {
             let mut in_world = light.center.as_dvec3() + anchor.as_dvec3();
             let before = in_world;
@@ -121,14 +121,14 @@ fn pose(ui: &mut egui::Ui, light: &mut Light, anchor: Vec3, speed_m: f32) {
         }
         ui.end_row();
     };
+    angle(ui, "Azimuth", "Horizontal direction towards the light, from +z to +x", &mut angles.azimuth_rad, 180.0);
     angle(
         ui,
-        "Azimuth",
-        "Where the light comes from, about the vertical, from +z to +x",
-        &mut angles.azimuth_rad,
-        180.0,
+        "Elevation",
+        "Angle of the direction towards the light above the horizon",
+        &mut angles.elevation_rad,
+        90.0,
     );
-    angle(ui, "Elevation", "How high the light comes from, over the horizon", &mut angles.elevation_rad, 90.0);
     if angles != before {
         angles.give_to(light);
     }
@@ -150,7 +150,7 @@ fn limits(ui: &mut egui::Ui, light: &mut Light) {
             *value_rad = degrees.to_radians();
         }
     };
-    ui.label("Cone").on_hover_text("A spot's; its angles have handles in the picture");
+    ui.label("Cone").on_hover_text("Cone of a spot light. Its angles have handles in the image");
     ui.horizontal(|ui| {
         let mut is_held = light.cone.is_some();
         if ui.checkbox(&mut is_held, "").changed() {
@@ -158,19 +158,19 @@ fn limits(ui: &mut egui::Ui, light: &mut Light) {
             light.cone = is_held.then_some(Cone { inner_rad, outer_rad });
         }
         if let Some(Cone { inner_rad, outer_rad }) = &mut light.cone {
-            angle(ui, inner_rad, 0.0..=outer_rad.to_degrees() - 0.1, "Off the axis: up to here all is lit fully");
-            angle(ui, outer_rad, inner_rad.to_degrees() + 0.1..=89.5, "Off the axis: beyond this nothing is lit");
+            angle(ui, inner_rad, 0.0..=outer_rad.to_degrees() - 0.1, "Inner angle from the axis: fully lit up to it");
+            angle(ui, outer_rad, inner_rad.to_degrees() + 0.1..=89.5, "Outer angle from the axis: not lit beyond it");
         }
     });
     ui.end_row();
-    ui.label("Frustum").on_hover_text("Square, about the axis; its angle has a handle in the picture");
+    ui.label("Frustum").on_hover_text("Square frustum around the axis. Its angle has a handle in the image");
     ui.horizontal(|ui| {
         let mut is_held = light.fov_rad.is_some();
         if ui.checkbox(&mut is_held, "").changed() {
             light.fov_rad = is_held.then_some(2.0 * FIRST_CONE_RAD[1]);
         }
         if let Some(fov_rad) = &mut light.fov_rad {
-            angle(ui, fov_rad, 1.0..=179.0, "From side to side");
+            angle(ui, fov_rad, 1.0..=179.0, "Full angle from side to side");
         }
     });
     ui.end_row();
@@ -181,10 +181,13 @@ const DEFAULT_GIVEN: f32 = 100.0;
 
 fn emission(ui: &mut egui::Ui, light: &mut Light) {
     let (unit, tip) = match light.shape {
-        LightShape::Sun { .. } => (" lx", "Illuminance of what faces the sun; without, as much as other suns"),
-        _ => (" cd", "Luminous intensity along the axis; without, as much as other lights of its kind"),
+        LightShape::Sun { .. } => {
+            (" lx", "Illuminance on a surface that faces the sun; if off, the same as other suns")
+        }
+        _ => (" cd", "Luminous intensity along the axis; if off, the same as other lights of this kind"),
     };
-    ui.label("Emits").on_hover_text(format!("{tip}. It sets ratios between lights; exposure goes by all of them"));
+    ui.label("Emits")
+        .on_hover_text(format!("{tip}. It determines the ratios between lights; the exposure adapts to all of them"));
     ui.horizontal(|ui| {
         let mut is_given = light.candela_or_lux.is_some();
         ui.checkbox(&mut is_given, "");
@@ -195,7 +198,7 @@ fn emission(ui: &mut egui::Ui, light: &mut Light) {
         light.candela_or_lux = is_given.then_some(given);
     });
     ui.end_row();
-    ui.label("Intensity").on_hover_text("A dimmer; at 1 all lights together expose sensibly");
+    ui.label("Intensity").on_hover_text("Dimmer; at 1 for all lights, the exposure is right");
     ui.horizontal(|ui| {
         let slider = egui::Slider::new(&mut light.intensity, 0.0..=8.0);
         ui.add(slider.clamping(egui::SliderClamping::Edits).custom_formatter(decimals(2)));

@@ -69,7 +69,7 @@ impl Default for Panels {
         Self {
             open: OpenWindow::default(),
             setup_path: "setup.toml".into(),
-            picture_path: "picture.png".into(),
+            picture_path: "image.png".into(),
             is_side_shown: true,
             is_inspecting: false,
         }

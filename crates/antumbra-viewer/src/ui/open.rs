@@ -32,7 +32,8 @@ impl OpenWindow {
                     chosen = Some(Action::Choose(Purpose::Open, String::new()));
                 }
                 ui.label(
-                    "Or drop a .glb scene or a .toml setup on the picture: it is read here and sent nowhere. Or choose:",
+                    "Or drop a .glb scene or a .toml setup on the image. It is read in the browser and not uploaded. Or choose \
+                     a built-in scene:",
                 );
             } else {
                 self.path(ui, &mut chosen);
@@ -83,7 +84,7 @@ impl OpenWindow {
             if (ui.button("Open").clicked() || entered) && !path.is_empty() {
                 *chosen = Some(action_for(path));
             }
-            if ui.button("Choose…").on_hover_text("In the system's dialog").clicked() {
+            if ui.button("Choose…").on_hover_text("Choose in the system's file dialog").clicked() {
                 *chosen = Some(Action::Choose(Purpose::Open, String::new()));
             }
         });

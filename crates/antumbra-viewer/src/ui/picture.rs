@@ -23,7 +23,7 @@ const OUTLINE_CORNERS: usize = 48;
 
 /// Object of a drag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Hold {
+enum DragTarget {
     Divider,
     Light,
     Camera,
@@ -110,13 +110,13 @@ fn drag(ui: &egui::Ui, state: &mut State, response: &egui::Response, rect: egui:
         let from = ui.input(|input| input.pointer.press_origin()).unwrap_or(rect.center());
         let light = place_of(&state.setup.camera, handle_of(state), rect);
         let hold = if state.is_split && (from.x - divider_x(state, rect)).abs() < REACH {
-            Hold::Divider
+            DragTarget::Divider
         } else if light.is_some_and(|place| place.distance(from) < 1.5 * REACH) {
-            Hold::Light
+            DragTarget::Light
         } else if let Some(handle) = beam_at(state, from, rect) {
-            Hold::Beam(handle)
+            DragTarget::Beam(handle)
         } else {
-            Hold::Camera
+            DragTarget::Camera
         };
         ui.data_mut(|data| data.insert_temp(hold_id, hold));
     }
@@ -125,22 +125,22 @@ fn drag(ui: &egui::Ui, state: &mut State, response: &egui::Response, rect: egui:
         return;
     }
     let delta = ui.input(|input| input.pointer.delta());
-    let hold = ui.data(|data| data.get_temp::<Hold>(hold_id));
+    let hold = ui.data(|data| data.get_temp::<DragTarget>(hold_id));
     let by = Vec2::new(delta.x, delta.y) / rect.height();
     if by == Vec2::ZERO {
         return;
     }
-    if hold == Some(Hold::Divider) {
+    if hold == Some(DragTarget::Divider) {
         if let Some(pointer) = response.interact_pointer_pos() {
             state.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
         }
-    } else if let Some(Hold::Beam(handle)) = hold {
+    } else if let Some(DragTarget::Beam(handle)) = hold {
         let (camera, diagonal_m) = (state.setup.camera, diagonal_of(state));
         if let Some(pointer) = response.interact_pointer_pos() {
             let light = &mut state.setup.lights[state.light];
             handle.drag(light, &camera, diagonal_m, pointer, |x| place_of(&camera, x, rect));
         }
-    } else if hold == Some(Hold::Light) {
+    } else if hold == Some(DragTarget::Light) {
         let camera = state.setup.camera;
         let light = &mut state.setup.lights[state.light];
         if light.is_distant() {

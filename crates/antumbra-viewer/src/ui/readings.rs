@@ -40,9 +40,9 @@ pub fn show(ui: &mut egui::Ui, state: &State, readings: &Readings<'_>) {
                 row("all passes", format!("{ms:.3} ms"));
             }
             if let Some(ms) = times.median(|frame| frame.processor_ms) {
-                row("processor", format!("{ms:.3} ms"));
+                row("CPU", format!("{ms:.3} ms"));
                 let (frames, warm_up) = times.counts();
-                row("median of", format!("{frames} frames after {warm_up}"));
+                row("median of", format!("{frames} frames after {warm_up} warm-up frames"));
             }
             row("memory", mebibytes(readings.memory_bytes));
             if !readings.auto_map_sizes.is_empty() {
@@ -88,7 +88,7 @@ pub fn status_bar(ui: &mut egui::Ui, state: &State, readings: &Readings<'_>, mes
         if state.show.needs_truth() {
             ui.separator();
             match readings.truth_points {
-                Some(points) => ui.label(format!("truth: {points} points a pixel")),
+                Some(points) => ui.label(format!("truth: {points} light samples per pixel")),
                 None => ui.label("tracing…"),
             };
             for (side, readings) in state.shown_sides().iter().zip(&readings.sides) {

@@ -20,7 +20,7 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>, fea
                 }
             })
             .response
-            .on_hover_text("How shadows are drawn");
+            .on_hover_text("Shadow technique");
         side.set_kind(kind);
         let mut quality = side.quality();
         egui::ComboBox::from_id_salt(("quality", ui.scope_id()))
@@ -31,12 +31,15 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>, fea
                 }
             })
             .response
-            .on_hover_text("How much it may spend: sets every parameter");
+            .on_hover_text("Quality preset: sets all parameters");
         if quality != side.quality() {
             side.set_quality(quality);
         }
         let is_changed = !side.settings().is_empty();
-        if ui.add_enabled(is_changed, egui::Button::new("Reset")).on_hover_text("All parameters as they come").clicked()
+        if ui
+            .add_enabled(is_changed, egui::Button::new("Reset"))
+            .on_hover_text("Reset all parameters to their defaults")
+            .clicked()
         {
             side.reset();
         }
@@ -52,7 +55,7 @@ pub fn show(ui: &mut egui::Ui, side: &mut Side, readings: &SideReadings<'_>, fea
         ui.colored_label(ui.visuals().error_fg_color, problem);
     }
     if let Some(overflow) = readings.overflow {
-        ui.colored_label(ui.visuals().warn_fg_color, format!("no room yet: {overflow}"));
+        ui.colored_label(ui.visuals().warn_fg_color, format!("capacity exceeded, being increased: {overflow}"));
     }
     egui::CollapsingHeader::new("Parameters").id_salt(("parameters", side.kind())).default_open(true).show(ui, |ui| {
         let params: Vec<_> = side.params().collect();
@@ -71,7 +74,7 @@ fn about(kind: TechniqueKind, features: wgpu::Features) -> String {
         format!("Good for: {}", facts.good_for),
         format!("Fails: {}", facts.fails_where),
     ];
-    lines.extend(lacks(kind, features).into_iter().map(|lack| format!("Here: {lack}")));
+    lines.extend(lacks(kind, features).into_iter().map(|lack| format!("On this device: {lack}")));
     // The facts are Markdown.
     lines.join("\n").replace('`', "")
 }
@@ -83,11 +86,11 @@ fn lacks(kind: TechniqueKind, features: wgpu::Features) -> Vec<String> {
         let missing: Vec<&str> =
             spec.choices.iter().copied().filter(|choice| lack(spec, choice, features).is_some()).collect();
         if let Some(why) = missing.first().and_then(|choice| lack(spec, choice, features)) {
-            lacks.push(format!("{} is not {}: {why}", spec.key, missing.join(" or ")));
+            lacks.push(format!("{} cannot be {}: {why}", spec.key, missing.join(" or ")));
         }
         let is_early = features.contains(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
         if let Some((_, what)) = LATE_TESTS.iter().find(|(key, _)| *key == spec.key).filter(|_| !is_early) {
-            lacks.push(format!("{}: {what}, at the same picture", spec.key));
+            lacks.push(format!("{}: {what}; the image is the same", spec.key));
         }
     }
     lacks
@@ -95,15 +98,15 @@ fn lacks(kind: TechniqueKind, features: wgpu::Features) -> Vec<String> {
 
 /// Parameters that benefit from a depth test before the fragment stage, with the effect of its absence.
 const LATE_TESTS: [(&str, &str); 2] = [
-    ("stencil", "fragments over empty lists are begun all the same"),
-    ("path", "fragment_two_pass scatters fragments that are hidden, too"),
+    ("stencil", "fragments over empty lists are not skipped, which takes time"),
+    ("path", "fragment_two_pass also scatters hidden fragments, which takes time"),
 ];
 
 /// Reason why a parameter's choice is unavailable on a device with these features.
 fn lack(spec: &ParamSpec, choice: &str, features: wgpu::Features) -> Option<&'static str> {
     let has_other_counts = features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES);
     let is_other_count = spec.key == "msaa" && !matches!(choice, "1" | "4");
-    (is_other_count && !has_other_counts).then_some("this device has maps of 1 and 4 samples a texel")
+    (is_other_count && !has_other_counts).then_some("this device supports maps with 1 and 4 samples per texel")
 }
 
 /// Shows one parameter: its control, a reset button unless it has its default, and the reason of a refusal.
@@ -126,7 +129,7 @@ fn parameter(
             ui.add(egui::Label::new(name).truncate()).on_hover_text(explanation(spec, side.usual(spec)));
         });
         text = control(ui, spec, value, features).or_else(|| name_control(ui, spec, value, chosen));
-        if !is_usual && ui.small_button("↺").on_hover_text("As it comes").clicked() {
+        if !is_usual && ui.small_button("↺").on_hover_text("Reset to the default").clicked() {
             text = Some(side.usual(spec).to_string());
         }
     });
@@ -207,7 +210,7 @@ fn control(ui: &mut egui::Ui, spec: &'static ParamSpec, value: ParamValue, featu
 /// Returns a parameter's tooltip: key, meaning, valid values, default and details.
 fn explanation(spec: &ParamSpec, usual: ParamValue) -> String {
     let unit = if spec.unit.is_empty() { String::new() } else { format!(" {}", spec.unit) };
-    format!("{}: {}\n\nTakes {}{unit}; {usual} as it comes.\n\n{}", spec.key, spec.meaning, spec.expected(), spec.more)
+    format!("{}: {}\n\nValue: {}{unit}. Default: {usual}.\n\n{}", spec.key, spec.meaning, spec.expected(), spec.more)
 }
 
 #[cfg(test)]
@@ -219,9 +222,12 @@ mod tests {
     fn the_list_says_what_a_technique_lacks_here() {
         let core = wgpu::Features::empty();
         let lacking = |kind: TechniqueKind| lacks(kind, core).join("; ");
-        assert_eq!(lacking(TechniqueKind::Vsm), "msaa is not 2 or 8: this device has maps of 1 and 4 samples a texel");
+        assert_eq!(
+            lacking(TechniqueKind::Vsm),
+            "msaa cannot be 2 or 8: this device supports maps with 1 and 4 samples per texel"
+        );
         assert!(lacking(TechniqueKind::AliasFree).contains("stencil"));
-        assert!(about(TechniqueKind::Vsm, core).contains("Here: msaa"));
+        assert!(about(TechniqueKind::Vsm, core).contains("On this device: msaa"));
         for kind in [TechniqueKind::Hard, TechniqueKind::Pcss, TechniqueKind::Essm, TechniqueKind::MultiLayer] {
             assert_eq!(lacking(kind), "", "{kind}");
         }

@@ -24,14 +24,14 @@ pub fn show(
 ) -> Vec<Action> {
     let mut actions = Vec::new();
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Open…").on_hover_text("A scene, or a setup (Ctrl+O)").clicked() {
+        if ui.button("Open…").on_hover_text("Open a scene or a setup (Ctrl+O)").clicked() {
             panels.open.is_open = true;
         }
         ui.strong(state.scene.as_ref().map_or("no scene", |open| open.spec.as_str()));
         ui.separator();
         for (name, tip, is_possible, action) in [
-            ("Undo", "Take back the newest change of lights or techniques (Ctrl+Z)", can_undo, Action::Undo),
-            ("Redo", "Do it again (Ctrl+Shift+Z or Ctrl+Y)", can_redo, Action::Redo),
+            ("Undo", "Undo the last change of lights or techniques (Ctrl+Z)", can_undo, Action::Undo),
+            ("Redo", "Redo the last undone change (Ctrl+Shift+Z or Ctrl+Y)", can_redo, Action::Redo),
         ] {
             if ui.add_enabled(is_possible, egui::Button::new(name)).on_hover_text(tip).clicked() {
                 actions.push(action);
@@ -40,16 +40,16 @@ pub fn show(
         ui.separator();
         for show in Show::ALL {
             ui.selectable_value(&mut state.show, show, show.name()).on_hover_text(match show {
-                Show::Shaded => "The picture",
-                Show::Visibility => "The chosen light's visibility: white is lit, black is umbra",
-                Show::Error => "Visibility less ray-traced truth: red too bright, blue too dark",
-                Show::Truth => "The visibility that rays find, ever finer while nothing moves",
-                Show::LightMap => "The depth maps that are drawn from the chosen light: what is near to it is bright",
-                Show::Lists => "How long the lists are that are kept for the chosen light's texels: yellow is longest",
+                Show::Shaded => "The scene with all lights",
+                Show::Visibility => "Visibility of the selected light: white is lit, black is umbra",
+                Show::Error => "Visibility minus ray-traced visibility: red is too bright, blue is too dark",
+                Show::Truth => "Ray-traced visibility, refined while nothing moves",
+                Show::LightMap => "Shadow maps of the selected light: bright is near the light",
+                Show::Lists => "Lengths of the lists of the selected light: yellow is longest",
             });
         }
-        let of_lists = "Of the lists: 1 is the finest, and each later one is merged from one before";
-        let of_map = "Of the map: 1 is the map itself, and the later ones what was made of it, the finest first";
+        let of_lists = "Level of the lists: 1 is the finest; each further level is merged from a finer one";
+        let of_map = "Level of the map: 1 is the map itself; the others are derived from it, the finest first";
         one_of(
             ui,
             "level",
@@ -62,25 +62,19 @@ pub fn show(
             "layer",
             choices.layers,
             &mut state.layer,
-            "Of casters: 1 is the nearest to the light, the others lie behind",
+            "Depth layer of casters: 1 is the nearest to the light; the others are behind it",
         );
-        one_of(
-            ui,
-            "map",
-            choices.points,
-            &mut state.layer,
-            "Of the maps that the light's points have, as many as there are at a time",
-        );
+        one_of(ui, "map", choices.points, &mut state.layer, "Map of one light sample, of the last batch");
         ui.separator();
         ui.toggle_value(&mut state.is_split, "Compare")
-            .on_hover_text("Two techniques with a divider that can be dragged");
+            .on_hover_text("Show two techniques with a divider between them. Drag it to move it");
         ui.toggle_value(&mut panels.is_inspecting, "Inspect")
-            .on_hover_text("What is under the pointer, in numbers (I)");
+            .on_hover_text("Show the values of the pixel under the pointer (I)");
         ui.separator();
-        if ui.button("Frame all").on_hover_text("See all of the scene (F)").clicked() {
+        if ui.button("Frame all").on_hover_text("Show the whole scene (F)").clicked() {
             actions.push(Action::FrameAll);
         }
-        if ui.button("Copy command").on_hover_text("The command line that draws this again").clicked() {
+        if ui.button("Copy command").on_hover_text("Copy a command line that renders this image").clicked() {
             actions.push(Action::CopyCommand);
         }
         // The buttons align right, or follow the others in a narrow window.
@@ -108,10 +102,10 @@ fn one_of(ui: &mut egui::Ui, name: &str, count: usize, chosen: &mut usize, tip: 
 
 /// Shows the buttons for the window's appearance.
 fn looks(ui: &mut egui::Ui, panels: &mut Panels) {
-    ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("The panel at the side (P)");
+    ui.toggle_value(&mut panels.is_side_shown, "Panel").on_hover_text("Show or hide the side panel (P)");
     let is_dark = ui.visuals().dark_mode;
     let other = if is_dark { "Light theme" } else { "Dark theme" };
-    if ui.button(other).on_hover_text("Colours of the window around the picture").clicked() {
+    if ui.button(other).on_hover_text("Switch the colour theme of the window").clicked() {
         ui.ctx().set_theme(if is_dark { egui::Theme::Light } else { egui::Theme::Dark });
     }
 }
@@ -130,11 +124,15 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
         camera.fov_y_rad = fov_degrees.to_radians();
     }
     let mut turns = state.camera_turn_rad_s != 0.0;
-    if ui.checkbox(&mut turns, "Turn around the target").changed() {
+    if ui.checkbox(&mut turns, "Rotate around the target").changed() {
         state.camera_turn_rad_s = if turns { TURN_RAD_S } else { 0.0 };
     }
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Store this view").on_hover_text("To come back to, by its button or its digit (B)").clicked() {
+        if ui
+            .button("Store this view")
+            .on_hover_text("Store the camera (B). Return to it by its button or its digit")
+            .clicked()
+        {
             state.add_bookmark();
         }
         for index in 0..state.bookmarks.len() {
@@ -143,7 +141,7 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
             }
         }
     });
-    if ui.button("Expose for this view").on_hover_text("Scale the lights to what is seen now").clicked() {
+    if ui.button("Expose for this view").on_hover_text("Adapt the exposure to the current view").clicked() {
         actions.push(Action::Expose);
     }
     let mut file = |ui: &mut egui::Ui, name, path: &mut String, purpose, action: fn(PathBuf) -> Action| {
@@ -153,13 +151,15 @@ pub fn view(ui: &mut egui::Ui, state: &mut State, panels: &mut Panels) -> Vec<Ac
                 actions.push(action(PathBuf::from(path.trim())));
             }
             // A browser has a folder for downloads, and opens files in the scene window.
-            if !cfg!(target_arch = "wasm32") && ui.button("…").on_hover_text("In the system's dialog").clicked() {
+            if !cfg!(target_arch = "wasm32")
+                && ui.button("…").on_hover_text("Choose in the system's file dialog").clicked()
+            {
                 actions.push(Action::Choose(purpose, path.trim().to_owned()));
             }
         });
     };
     file(ui, "Save setup", &mut panels.setup_path, Purpose::SaveSetup, Action::SaveSetup);
     file(ui, "Open setup", &mut panels.setup_path, Purpose::Open, Action::OpenSetup);
-    file(ui, "Save picture", &mut panels.picture_path, Purpose::SavePicture, Action::SavePicture);
+    file(ui, "Save image", &mut panels.picture_path, Purpose::SavePicture, Action::SavePicture);
     actions
 }

@@ -103,15 +103,15 @@ mod tests {
         let mut arena = Arena::new(&[("test", 4)], wgpu::BufferUsages::empty());
         let max_bytes = 4 * 4096;
         let a = arena.take(1000, max_bytes).expect("room");
-        let b = arena.take(2000, max_bytes).expect("room after it has grown");
+        let b = arena.take(2000, max_bytes).expect("the arena has grown");
         assert!(a.end <= b.start || b.end <= a.start, "{a:?} {b:?}");
         assert_eq!(arena.take(4000, max_bytes), Err(4 * (4096 + 4000)));
         arena.give_back(&b);
-        assert!(arena.take(3000, max_bytes).is_ok(), "what was given back is taken again");
+        assert!(arena.take(3000, max_bytes).is_ok(), "a freed range is reused");
     }
 
     #[test]
-    fn nothing_is_a_range_too() {
+    fn empty_ranges_are_allocated_and_freed() {
         let mut arena = Arena::new(&[("test", 4)], wgpu::BufferUsages::empty());
         let none = arena.take(0, 4096).expect("room");
         assert!(none.is_empty());

@@ -18,8 +18,8 @@ impl CasterSet {
         }
         Err(bad(
             "the set of casters",
-            "changed since its last update".into(),
-            "brought to the GPU by CasterSet::update before lights are prepared".into(),
+            "changed since its last `CasterSet::update`".into(),
+            "up to date: call `CasterSet::update` before preparing lights".into(),
         ))
     }
 

@@ -216,10 +216,10 @@ impl CasterSet {
         let size = |source: &MeshSource| (source.vertex_count(), source.index_count(), source.has_uvs());
         if size(&source) != size(&entry.source) {
             return Err(bad(
-                "the changed mesh",
-                format!("of {} vertices and {} indices", source.vertex_count(), source.index_count()),
+                "the new content of a mesh",
+                format!("{} vertices and {} indices", source.vertex_count(), source.index_count()),
                 format!(
-                    "of {} and {}, with as many texture coordinates as before; add another mesh for others",
+                    "{} vertices and {} indices, with texture coordinates if the mesh had them; add another mesh for other sizes",
                     entry.source.vertex_count(),
                     entry.source.index_count()
                 ),
@@ -247,8 +247,8 @@ impl CasterSet {
         if users > 0 {
             return Err(bad(
                 "the mesh to remove",
-                format!("that of {users} casters"),
-                "of none: remove them first".into(),
+                format!("used by {users} casters"),
+                "unused: remove these casters first".into(),
             ));
         }
         if let Some(entry) = self.meshes.remove(id) {
@@ -371,7 +371,7 @@ impl CasterEntry {
     /// Stores instances at the places of the entry.
     fn place(&mut self, instances: PlacedInstances<'_>, matrices: &mut Vec<Mat4>) {
         let PlacedInstances { count, matrices: known, source, bounds, is_mirrored } = instances;
-        debug_assert_eq!(count, self.places.end - self.places.start, "a place for each");
+        debug_assert_eq!(count, self.places.end - self.places.start, "one slot per instance");
         if let Some(known) = known {
             let end = self.places.end as usize;
             if matrices.len() < end {
@@ -385,7 +385,7 @@ impl CasterEntry {
 
 fn source_of(mesh: &Mesh<'_>) -> Result<MeshSource, Error> {
     let source = MeshSource::new(mesh)?;
-    check_box("the mesh's box", mesh.bounds, source.index_count() > 0)?;
+    check_box("the mesh's bounding box", mesh.bounds, source.index_count() > 0)?;
     Ok(source)
 }
 
@@ -398,7 +398,11 @@ fn is_closed(mesh: &Mesh<'_>) -> bool {
 fn check_box(what: &'static str, bounds: Aabb, holds_any: bool) -> Result<(), Error> {
     let problem = bounds.problem().filter(|_| holds_any);
     problem.map_or(Ok(()), |problem| {
-        Err(bad(what, problem.into(), "a box with its least corner first, infinite where it is not known".into()))
+        Err(bad(
+            what,
+            problem.into(),
+            "a box whose first corner is the minimum; use infinite bounds if they are unknown".into(),
+        ))
     })
 }
 
@@ -406,14 +410,14 @@ fn check_box(what: &'static str, bounds: Aabb, holds_any: bool) -> Result<(), Er
 fn room(range: Result<Range<u32>, u64>, max_bytes: u64) -> Result<Range<u32>, Error> {
     range.map_err(|bytes| Error::Unsupported {
         technique: ERROR_SOURCE,
-        needed: format!("{bytes} bytes of one kind of data for all casters of a set"),
-        had: format!("{max_bytes} bytes a binding"),
-        remedy: "cast with fewer or coarser meshes, or ask for a larger max_storage_buffer_binding_size",
+        needed: format!("{bytes} bytes in one buffer for all casters of a set"),
+        had: format!("at most {max_bytes} bytes per binding"),
+        remedy: "use fewer or coarser meshes, or request a larger max_storage_buffer_binding_size",
     })
 }
 
 fn gone(what: &'static str) -> Error {
-    bad(what, "not in this set".into(), "one that was added and not removed".into())
+    bad(what, "not in this set".into(), "one that was added to this set and not removed".into())
 }
 
 fn bad(what: &'static str, had: String, needed: String) -> Error {

@@ -104,7 +104,7 @@ impl Words {
             return Err(bad(
                 what,
                 format!("at an offset of {offset} and a stride of {stride} bytes"),
-                format!("at multiples of four, and a stride of at least {item_bytes}"),
+                format!("at multiples of 4 bytes, with a stride of at least {item_bytes}"),
             ));
         }
         let bytes = if count == 0 { 0 } else { u64::from(count - 1) * stride + item_bytes };
@@ -115,7 +115,7 @@ impl Words {
         if offset + bytes > buffer.size() {
             return Err(bad(
                 what,
-                format!("up to byte {} of a buffer of {}", offset + bytes, buffer.size()),
+                format!("read up to byte {} of a buffer of {} bytes", offset + bytes, buffer.size()),
                 "within the buffer".into(),
             ));
         }
@@ -123,8 +123,8 @@ impl Words {
         if !buffer.usage().intersects(is_read) {
             return Err(bad(
                 what,
-                format!("in a buffer of usage {:?}", buffer.usage()),
-                "in one that can be read: add BufferUsages::COPY_SRC or BufferUsages::STORAGE".into(),
+                format!("in a buffer with the usage {:?}", buffer.usage()),
+                "in a readable buffer: add BufferUsages::COPY_SRC or BufferUsages::STORAGE".into(),
             ));
         }
         Ok(Self { buffer: buffer.clone(), offset, bytes: bytes.next_multiple_of(4).min(buffer.size() - offset) })
@@ -173,11 +173,12 @@ impl MeshSource {
             PositionFormat::Snorm16x4 { scale, offset } => (SNORM_16, scale, offset),
             PositionFormat::Unorm16x4 { scale, offset } => (UNORM_16, scale, offset),
         };
-        let of_positions = Words::of_items("the positions", buffer, [offset, stride, format.bytes()], vertex_count)?;
+        let of_positions =
+            Words::of_items("the position data", buffer, [offset, stride, format.bytes()], vertex_count)?;
         let of_uvs = uvs
             .map(|uvs| {
                 let layout = [uvs.offset, uvs.stride, uvs.format.bytes()];
-                Words::of_items("the texture coordinates", uvs.buffer, layout, vertex_count)
+                Words::of_items("the texture coordinate data", uvs.buffer, layout, vertex_count)
             })
             .transpose()?;
         let of_indices = indices.map(index_words).transpose()?;
@@ -235,7 +236,7 @@ fn index_count_of(topology: wgpu::PrimitiveTopology, corner_count: u32) -> Resul
             Err(bad("the number of indices", corner_count.to_string(), "a multiple of three".into()))
         }
         wgpu::PrimitiveTopology::TriangleStrip => corner_count.saturating_sub(2).checked_mul(3).ok_or_else(|| {
-            bad("the number of indices", corner_count.to_string(), "less than a third of 2³² in a strip".into())
+            bad("the number of indices", corner_count.to_string(), "less than 2³² / 3 in a strip".into())
         }),
         other => Err(bad("the mesh's topology", format!("{other:?}"), "TriangleList or TriangleStrip".into())),
     }
@@ -249,7 +250,7 @@ fn index_words(indices: &Indices<'_>) -> Result<Words, Error> {
     };
     let begin = u64::from(indices.first_index) * size / 4 * 4;
     let end = (u64::from(indices.first_index) + u64::from(indices.count)) * size;
-    Words::new("the indices", indices.buffer, begin, end - begin.min(end))
+    Words::new("the index data", indices.buffer, begin, end - begin.min(end))
 }
 
 /// Target of a packed mesh.
@@ -385,7 +386,7 @@ impl InstanceSource {
     pub(super) fn new(instances: &InstanceBuffer<'_>) -> Result<Self, Error> {
         let InstanceBuffer { buffer, offset, stride, layout, count, .. } = *instances;
         Ok(Self {
-            words: Words::of_items("the instances", buffer, [offset, stride, layout.bytes()], count)?,
+            words: Words::of_items("the instance data", buffer, [offset, stride, layout.bytes()], count)?,
             stride_words: (stride / 4) as u32,
             is_rows: layout == InstanceLayout::Rows3x4,
             count,

@@ -36,7 +36,7 @@ impl<'a> PlacedInstances<'a> {
                 })
             }
             Instances::Buffer(buffer) => {
-                check_box("the instances' box", buffer.bounds.unwrap_or(Aabb::EVERYTHING), buffer.count > 0)?;
+                check_box("the instances' bounding box", buffer.bounds.unwrap_or(Aabb::EVERYTHING), buffer.count > 0)?;
                 Ok(Self {
                     count: buffer.count,
                     matrices: None,

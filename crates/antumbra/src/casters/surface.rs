@@ -64,22 +64,22 @@ pub(super) fn check_surface(gpu: &Gpu, surface: &Surface, mesh: &MeshEntry) -> R
         Surface::Translucent { coverage, transmitted, .. } => coverage.is_finite() && transmitted.is_finite(),
     };
     if !is_finite {
-        return Err(bad("the caster's surface", "of numbers that are not finite".into(), "of finite ones".into()));
+        return Err(bad("the caster's surface", "not finite".into(), "finite".into()));
     }
     let Some(texture) = surface.texture() else { return Ok(()) };
     if !mesh.source.has_uvs() {
         return Err(bad(
             "the caster's surface",
             "textured on a mesh without texture coordinates".into(),
-            "on a mesh that has some".into(),
+            "on a mesh that has them".into(),
         ));
     }
     let validation_error = ViewKind::Filtered.validation_error(gpu, &texture.view);
     validation_error.map_or(Ok(()), |validation_error| {
         Err(bad(
             "the surface's texture",
-            format!("one that cannot be bound ({validation_error})"),
-            "a 2D view of one layer, of a filterable colour format".into(),
+            format!("a view that cannot be bound ({validation_error})"),
+            "a 2D view of one layer with a filterable colour format".into(),
         ))
     })
 }

@@ -331,7 +331,7 @@ fn what_is_wrong_is_said() {
     let bad_meshes = [
         (of(Positions { buffer: &unread, ..good.positions }), "COPY_SRC"),
         (of(Positions { stride: 8, ..good.positions }), "a stride of at least 12"),
-        (of(Positions { offset: 2, ..good.positions }), "multiples of four"),
+        (of(Positions { offset: 2, ..good.positions }), "multiples of 4"),
         (Mesh { vertex_count: 5, ..good }, "within the buffer"),
     ];
     for (mesh, needed) in bad_meshes {
@@ -342,7 +342,7 @@ fn what_is_wrong_is_said() {
     let nan = [Mat4::from_translation(Vec3::splat(f32::NAN))];
     assert!(set.add(&Caster::new(id, Instances::Matrices(&nan))).unwrap_err().to_string().contains("finite"));
     let used = set.casters[ids[0]].mesh;
-    assert!(set.remove_mesh(used).unwrap_err().to_string().contains("remove them first"));
+    assert!(set.remove_mesh(used).unwrap_err().to_string().contains("remove these casters first"));
     set.remove_mesh(id).expect("nobody has it");
     assert!(set.remove_mesh(id).unwrap_err().to_string().contains("not in this set"));
 }

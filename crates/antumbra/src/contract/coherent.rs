@@ -40,7 +40,7 @@ impl VertexFaces {
     /// # Panics
     /// If the numbers of normals and positions differ, or an index is out of range.
     pub fn new(positions: &[Vec3], normals: &[Vec3], indices: &[u32]) -> Self {
-        assert_eq!(positions.len(), normals.len(), "a normal for each position");
+        assert_eq!(positions.len(), normals.len(), "the number of normals must equal the number of positions");
         // Adding zero turns −0 into +0, so that both have one key.
         let key = |v: usize| [positions[v], normals[v]].map(|p| (p + Vec3::ZERO).to_array().map(f32::to_bits));
         let mut places = HashMap::with_capacity(positions.len());

@@ -38,7 +38,7 @@ pub enum ListOrder {
     /// the row's first.
     Halvings,
     /// Rows or halvings, as chosen on the GPU.
-    Told {
+    Chosen {
         /// Index of the word in the buffer that has the choice: 0 for rows, 1 for halvings.
         word: u32,
     },

@@ -6,7 +6,7 @@ use antumbra_light::LightError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     /// The device lacks a feature or a limit is too low.
-    #[error("{technique}: needs {needed}, and this device has {had}; {remedy}")]
+    #[error("{technique}: needs {needed}, but this device has {had}; {remedy}")]
     Unsupported {
         /// Name of the technique.
         technique: &'static str,
@@ -46,7 +46,7 @@ pub enum Error {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParamError {
     /// No such key.
-    #[error("{technique} has no parameter `{key}`; it has: {known}")]
+    #[error("{technique} has no parameter `{key}`; available: {known}")]
     UnknownKey {
         /// Name of the technique.
         technique: &'static str,
@@ -56,7 +56,7 @@ pub enum ParamError {
         known: String,
     },
     /// The value does not parse or lies outside the range.
-    #[error("{technique}: `{key}` cannot be `{value}`; it takes {expected}")]
+    #[error("{technique}: `{key}` cannot be `{value}`; expected {expected}")]
     BadValue {
         /// Name of the technique.
         technique: &'static str,

@@ -53,6 +53,6 @@ pub struct Overflow {
 
 impl fmt::Display for Overflow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {} and room for {}", self.needed, self.what, self.had)
+        write!(f, "{} {}, but capacity for {}", self.needed, self.what, self.had)
     }
 }

@@ -120,7 +120,7 @@ impl Mask {
         }
         let (had, needed) = (texture.usage(), Self::usages(format));
         if !had.contains(needed) {
-            return bad("the texture's usage", format!("{had:?}"), format!("{needed:?} at least"));
+            return bad("the texture's usage", format!("{had:?}"), format!("at least {needed:?}"));
         }
         let (layers, count) = (texture.depth_or_array_layers(), layers_of(format, channels));
         let layer_end = place.layer.saturating_add(count);
@@ -128,17 +128,21 @@ impl Mask {
             return bad(
                 "the mask's last layer",
                 (layer_end - 1).to_string(),
-                format!("below {layers}, as the texture's"),
+                format!("below the texture's number of layers, {layers}"),
             );
         }
         let end_px = place.origin_px.saturating_add(place.size_px);
         let size_px = UVec2::new(texture.width(), texture.height());
         if end_px.cmpgt(size_px).any() {
-            return bad("the mask's far corner", end_px.to_string(), format!("within the texture's {size_px}"));
+            return bad("the mask's far corner", end_px.to_string(), format!("within the texture's size, {size_px}"));
         }
         let components = u32::from(format.components());
         if place.component >= components {
-            return bad("the mask's component", place.component.to_string(), format!("below {components}"));
+            return bad(
+                "the mask's component",
+                place.component.to_string(),
+                format!("below the number of components, {components}"),
+            );
         }
         Ok(Self::at(texture, place, channels))
     }

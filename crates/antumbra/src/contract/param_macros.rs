@@ -34,28 +34,29 @@ macro_rules! params_in_full {
             /// Texels along a side of a map with one texel per list of receivers; rounded up to a power of two. The lists divide
             /// space by distance from the light too.
             map_size: u32 = 512, in 16..=2048, unit "texels", scale Log,
-                more "Shorter lists, which changes the time and never the shadow.";
+                more "Shorter lists: changes the time, but not the shadow.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared sub; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Evaluation of every other pixel in both directions, with interpolation.
             sub: bool = false,
-                more "true evaluates down to a quarter of the pixels; shadows of things a pixel wide blur.";
+                more "true evaluates as few as a quarter of the pixels, but blurs shadows as narrow as a pixel.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared edge_goes_on; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Whether casters at the map's edge are extended beyond it, for blockers nearer to the light than the map holds.
             edge_goes_on: bool = true,
-                more "false is as published: light passes beside the map where a cover is nearer to the light than the light is large.";
+                more "false, as published, leaks light past the map's edge where an occluder is closer to the light than the \
+                     light is wide.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared seed; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Seed of the sample points.
             seed: u32 = 1, in 0..=65535,
-                more "Another set of samples of the same quality.";
+                more "Selects another sample set of the same quality.";
         ] $rest $($body)* }
     };
     // The type is named as the caller imports it, because one of these macros declares it.
@@ -69,14 +70,14 @@ macro_rules! params_in_full {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Scale of the automatic bias.
             bias_scale: f32 = 1.0, in 0.0..=8.0,
-                more "Above 1 detaches contact shadows, below 1 risks acne in concave corners.";
+                more "Values above 1 detach contact shadows; values below 1 risk acne in concave corners.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt shared bias_scale of rays; $($body:tt)*) => {
         $crate::contract::params_in_full! { $head [ $($done)*
             /// Scale of the ray offset on casters that are not closed.
             bias_scale: f32 = 1.0, in 0.0..=8.0,
-                more "Above 1 detaches contact shadows by thousandths of a pixel, below 1 risks acne on open meshes.";
+                more "Values above 1 detach contact shadows by thousandths of a pixel; values below 1 risk acne on open meshes.";
         ] $rest $($body)* }
     };
     ($head:tt [$($done:tt)*] $rest:tt

@@ -124,7 +124,7 @@ impl ParamSpec {
             (ParamValue::F32(_), Some((low, high))) => format!("a number from {low} to {high}"),
             (_, Some((low, high))) => format!("a whole number from {low} to {high}{other}"),
             (ParamValue::Bool(_), _) => "true or false".into(),
-            (ParamValue::List(_), _) => format!("up to {} numbers with commas between them", ParamList::CAPACITY),
+            (ParamValue::List(_), _) => format!("up to {} numbers separated by commas", ParamList::CAPACITY),
             _ => format!("one of {}", self.choices.join(", ")),
         }
     }

@@ -120,7 +120,7 @@ macro_rules! bindings {
         $(
             #[cfg(test)]
             #[test]
-            #[allow(non_snake_case, reason = "named as what it tests")]
+            #[allow(non_snake_case, reason = "the test is named after the function it tests")]
             fn $name() {
                 let shaders = [$( (stringify!($shader), $crate::shaders::$shader) ),+];
                 $crate::gpu::bindings::tests::assert_as_declared::<$name<'_>>($group, &shaders);

@@ -19,10 +19,10 @@ pub struct GpuField {
 /// every linked shader.
 pub trait GpuStruct: bytemuck::Pod {
     /// Name of the struct in the shaders.
-    #[cfg_attr(not(test), expect(dead_code, reason = "read by the layout test alone"))]
+    #[cfg_attr(not(test), expect(dead_code, reason = "read only by the layout test"))]
     const WGSL_NAME: &'static str;
     /// Members in order, including padding.
-    #[cfg_attr(not(test), expect(dead_code, reason = "read by the layout test alone"))]
+    #[cfg_attr(not(test), expect(dead_code, reason = "read only by the layout test"))]
     const FIELDS: &'static [GpuField];
 }
 

@@ -193,7 +193,7 @@ impl Device {
         &self,
         descriptor: &wgpu::PipelineLayoutDescriptor<'_>,
     ) -> wgpu::PipelineLayout {
-        debug_assert_eq!(descriptor.immediate_size, 0, "layouts are told apart by their bind groups alone");
+        debug_assert_eq!(descriptor.immediate_size, 0, "the cache key of a layout has only its bind groups");
         let key: Vec<_> = descriptor.bind_group_layouts.iter().map(|layout| layout.cloned()).collect();
         debug_assert!(
             self.is_within_defaults(&key),
@@ -261,7 +261,7 @@ impl Device {
             ComputeKey { layout: descriptor.layout.cloned(), entry },
             &counts.programs,
             || {
-                programs::tell(programs::Made::Compute(descriptor));
+                programs::tell(programs::CreatedObject::Compute(descriptor));
                 let cache = pipeline_cache.as_ref();
                 let module = &self.specialize(descriptor.label, descriptor.module, &descriptor.compilation_options);
                 let descriptor = wgpu::ComputePipelineDescriptor { cache, module, ..descriptor.clone() };
@@ -277,7 +277,7 @@ impl Device {
     ) -> wgpu::RenderPipeline {
         let Programs { render_pipelines, counts, pipeline_cache, .. } = &*self.programs;
         render_pipelines.get_or_make(RenderKey::new(descriptor), &counts.programs, || {
-            programs::tell(programs::Made::Render(descriptor));
+            programs::tell(programs::CreatedObject::Render(descriptor));
             let (cache, label) = (pipeline_cache.as_ref(), descriptor.label);
             let wgpu::RenderPipelineDescriptor { vertex, fragment, .. } = descriptor.clone();
             let vertex_module = self.specialize(label, vertex.module, &vertex.compilation_options);

@@ -32,9 +32,9 @@ const UNDER_WAY: u8 = 1;
 const ARRIVED: u8 = 2;
 
 /// Guard that frees a slot if its commands are dropped or its buffer cannot be mapped.
-struct UnderWay(Arc<AtomicU8>);
+struct SlotGuard(Arc<AtomicU8>);
 
-impl Drop for UnderWay {
+impl Drop for SlotGuard {
     fn drop(&mut self) {
         let _ = self.0.compare_exchange(UNDER_WAY, FREE, Ordering::AcqRel, Ordering::Acquire);
     }
@@ -64,7 +64,7 @@ impl Feedback {
         let slot = self.slots.iter().find(free);
         self.is_missing.store(slot.is_none(), Ordering::Release);
         let Some(slot) = slot else { return };
-        let under_way = UnderWay(Arc::clone(&slot.state));
+        let under_way = SlotGuard(Arc::clone(&slot.state));
         recorder.read_back(source, &slot.buffer, self.bytes, move |result| {
             if result.is_ok() {
                 under_way.0.store(ARRIVED, Ordering::Release);

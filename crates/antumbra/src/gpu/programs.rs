@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 /// Created object, with its description.
 #[derive(Debug)]
-pub enum Made<'a> {
+pub enum CreatedObject<'a> {
     /// Bind group layout and its entries.
     BindGroupLayout(&'a wgpu::BindGroupLayout, &'a [wgpu::BindGroupLayoutEntry]),
     /// Pipeline layout and its bind group layouts.
@@ -20,7 +20,7 @@ pub enum Made<'a> {
     Render(&'a wgpu::RenderPipelineDescriptor<'a>),
 }
 
-type Listener = Box<dyn Fn(Made<'_>) + Send + Sync>;
+type Listener = Box<dyn Fn(CreatedObject<'_>) + Send + Sync>;
 
 static LISTENER: OnceLock<Listener> = OnceLock::new();
 
@@ -28,12 +28,12 @@ static LISTENER: OnceLock<Listener> = OnceLock::new();
 ///
 /// # Panics
 /// If a listener is already set.
-pub fn listen(listener: impl Fn(Made<'_>) + Send + Sync + 'static) {
+pub fn listen(listener: impl Fn(CreatedObject<'_>) + Send + Sync + 'static) {
     assert!(LISTENER.set(Box::new(listener)).is_ok(), "one listener is enough");
 }
 
 /// Tells the listener, if there is one.
-pub(super) fn tell(made: Made<'_>) {
+pub(super) fn tell(made: CreatedObject<'_>) {
     if let Some(listener) = LISTENER.get() {
         listener(made);
     }
@@ -45,7 +45,7 @@ pub fn create_bind_group_layout(
     descriptor: &wgpu::BindGroupLayoutDescriptor<'_>,
 ) -> wgpu::BindGroupLayout {
     let layout = device.create_bind_group_layout(descriptor);
-    tell(Made::BindGroupLayout(&layout, descriptor.entries));
+    tell(CreatedObject::BindGroupLayout(&layout, descriptor.entries));
     layout
 }
 
@@ -55,7 +55,7 @@ pub fn create_pipeline_layout(
     descriptor: &wgpu::PipelineLayoutDescriptor<'_>,
 ) -> wgpu::PipelineLayout {
     let layout = device.create_pipeline_layout(descriptor);
-    tell(Made::PipelineLayout(&layout, descriptor.bind_group_layouts));
+    tell(CreatedObject::PipelineLayout(&layout, descriptor.bind_group_layouts));
     layout
 }
 
@@ -63,7 +63,7 @@ pub fn create_pipeline_layout(
 pub fn create_shader_module(device: &wgpu::Device, label: &str, wgsl: std::borrow::Cow<'_, str>) -> wgpu::ShaderModule {
     let source = wgpu::ShaderSource::Wgsl(wgsl.clone());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source });
-    tell(Made::Module(&module, label, &wgsl));
+    tell(CreatedObject::Module(&module, label, &wgsl));
     module
 }
 
@@ -72,7 +72,7 @@ pub fn create_compute_pipeline(
     device: &wgpu::Device,
     descriptor: &wgpu::ComputePipelineDescriptor<'_>,
 ) -> wgpu::ComputePipeline {
-    tell(Made::Compute(descriptor));
+    tell(CreatedObject::Compute(descriptor));
     device.create_compute_pipeline(descriptor)
 }
 
@@ -81,6 +81,6 @@ pub fn create_render_pipeline(
     device: &wgpu::Device,
     descriptor: &wgpu::RenderPipelineDescriptor<'_>,
 ) -> wgpu::RenderPipeline {
-    tell(Made::Render(descriptor));
+    tell(CreatedObject::Render(descriptor));
     device.create_render_pipeline(descriptor)
 }

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::light_spread::LightSpread;
 use super::light_view::{FitTo, FollowedLight, LightView, ViewFit, WindowShape};
-use super::occluding_bounds::Between;
+use super::occluding_bounds::OccludingBounds;
 use crate::contract::SeenPoint;
 
 /// Returns the light's view with a square window, fitted to casters' boxes and receivers' corners.
@@ -31,7 +31,7 @@ pub(crate) fn central_fit(
     casters: &[Aabb],
     receivers: &[Vec3],
 ) -> ViewFit {
-    let casters = &Between::new(light, casters, receivers);
+    let casters = &OccludingBounds::new(light, casters, receivers);
     if light.is_distant() {
         ViewFit::orthographic(light.frame(), reach, casters, receivers)
     } else {

@@ -23,10 +23,9 @@ pub(crate) fn view_of_hosts_map(
             .ok_or_else(|| Error::BadFrame {
                 technique,
                 what: "the depth map's matrix",
-                had: "not a view from the light's centre along its axis".into(),
+                had: "not a view from the light's centre along the light's axis".into(),
                 needed:
-                    "a perspective from the light's centre along its axis, or for a sun an orthographic projection \
-                         along it"
+                    "a perspective projection from the light's centre along its axis, or an orthographic projection along the axis of a sun"
                         .into(),
             })?;
     let along = (frame.receivers.corners().iter())

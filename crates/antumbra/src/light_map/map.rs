@@ -224,10 +224,10 @@ impl LightMap {
             self.layers_behind.iter_mut().for_each(LayersBehind::release);
             self.textures = Some(Textures::new(stage, shape, self.pyramid.is_some()));
         }
-        let textures = self.textures.as_ref().expect("made above where they were missing");
+        let textures = self.textures.as_ref().expect("created above if missing");
         let lease = &textures.lease;
         let map =
-            hosts_map.or(textures.map.as_ref().map(|(_, map)| map)).expect("the host's, or made with the textures");
+            hosts_map.or(textures.map.as_ref().map(|(_, map)| map)).expect("the host's, or created with the textures");
         let of = [bytemuck::bytes_of(&view), bytemuck::bytes_of(&shape), bytemuck::bytes_of(&light_half_extent_m)];
         let key = stage.casters().filter(|_| lease.is_own()).map(|casters| (casters, of.concat()));
         let is_drawn = self.content.ask(key);

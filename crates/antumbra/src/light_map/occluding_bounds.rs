@@ -25,14 +25,14 @@ const SLACK: f32 = 1e-3;
 
 /// Bounding boxes of the parts of casters between light and receivers.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Between {
+pub(crate) struct OccludingBounds {
     /// Boxes of casters with known bounds.
     pub(crate) known: Vec<Aabb>,
     /// Union of the boxes of all others; `None` if there are none.
     pub(crate) unknown: Option<Aabb>,
 }
 
-impl Between {
+impl OccludingBounds {
     /// Cuts the casters' boxes. The convex hull of `receivers` contains all receivers; if it is empty, boxes stay whole.
     pub(crate) fn new(light: &Light, casters: &[Aabb], receivers: &[Vec3]) -> Self {
         let parts = Parts::of(light, receivers);

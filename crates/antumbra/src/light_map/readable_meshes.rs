@@ -12,9 +12,9 @@ pub(crate) fn readable_meshes<'a>(
     let PreparedCasters::Draws(meshes) = frame.casters else {
         return Err(Error::BadFrame {
             technique,
-            what: "the casters",
-            had: "a depth map".into(),
-            needed: format!("meshes: their triangles are tested one by one{or}"),
+            what: "the kind of casters",
+            had: "`Casters::DepthMap`".into(),
+            needed: format!("meshes, because each triangle is tested{or}"),
         });
     };
     for mesh in meshes {
@@ -26,9 +26,9 @@ pub(crate) fn readable_meshes<'a>(
             return Err(Error::BadFrame {
                 technique,
                 what: "a caster's buffer",
-                had: format!("`{what}` without the usage STORAGE"),
+                had: format!("`{what}`, created without the usage STORAGE"),
                 needed: format!(
-                    "readable in compute: add BufferUsages::STORAGE to positions, indices, instances and uvs{or}"
+                    "readable in compute shaders: add BufferUsages::STORAGE to positions, indices, instances and uvs{or}"
                 ),
             });
         }

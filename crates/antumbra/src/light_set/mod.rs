@@ -87,7 +87,7 @@ impl RangedLight {
         self.light.validate().map_err(|source| Error::Light { technique: ERROR_SOURCE, source })?;
         let range_m = self.range_m;
         if range_m.is_nan() || range_m <= 0.0 {
-            return bad("a light's range", format!("{range_m} m"), "above 0 m, infinite for none");
+            return bad("a light's range", format!("{range_m} m"), "above 0 m, or infinite for no limit");
         }
         if self.light.is_distant() && range_m.is_finite() {
             return bad("a sun's range", format!("{range_m} m"), "infinite");
@@ -161,7 +161,7 @@ struct Entry {
 type Drawing = (Light, Option<CastersKey>);
 
 /// Prepared frame of a light set.
-#[must_use = "nothing is drawn before it is recorded"]
+#[must_use = "`prepare` draws nothing until its result is recorded"]
 #[derive(Debug)]
 pub struct PreparedLights<'a> {
     works: Vec<(LightId, Prepared<'a>)>,
@@ -311,7 +311,11 @@ impl LightSet {
 
     fn check_mask(&self, of: Option<LightId>, mask: &Mask) -> Result<(), Error> {
         let is_taken = self.lights.iter().any(|(id, entry)| Some(id) != of && entry.mask.overlaps(mask));
-        if is_taken { bad("a light's mask", "another light's, or part of it", "one of its own") } else { Ok(()) }
+        if is_taken {
+            bad("a light's mask", "in use: it overlaps the mask of another light", "used by one light only")
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -389,13 +393,13 @@ impl Entry {
 
 fn check_budget(budget: Budget) -> Result<(), Error> {
     match budget {
-        Budget::Lights(0) | Budget::Texels(0) => bad("the budget", format!("{budget:?}"), "1 or more"),
+        Budget::Lights(0) | Budget::Texels(0) => bad("the budget", format!("{budget:?}"), "at least 1"),
         Budget::Lights(_) | Budget::Texels(_) => Ok(()),
     }
 }
 
 fn gone() -> Error {
-    let (had, needed) = ("not in this set".into(), "one that was added and not removed".into());
+    let (had, needed) = ("not in this set".into(), "one that was added to this set and not removed".into());
     Error::BadFrame { technique: ERROR_SOURCE, what: "the light", had, needed }
 }
 

@@ -109,7 +109,7 @@ mod tests {
     /// Lights that change in every frame are all redrawn again and again, for any areas and costs: after [`MAX_ROUNDS`] rounds
     /// they are overdue, and each frame draws at least the overdue light that has waited longest.
     #[test]
-    fn none_waits_for_ever() {
+    fn every_changed_light_is_redrawn_eventually() {
         for (count, budget, max_cost) in [(16, 1, 1), (16, 5, 1), (64, 4, 1), (64, 1, 1), (24, 30, 20), (24, 7, 20)] {
             let area = |i: usize| if i == 0 { 1.0 } else { 0.9 / (i * i) as f32 };
             let cost = |i: usize| 1 + i as u64 % max_cost;

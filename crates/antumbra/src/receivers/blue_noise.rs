@@ -66,7 +66,7 @@ impl Filling {
     fn extreme(&self, is_filled: bool, is_more: impl Fn(f32, f32) -> bool) -> usize {
         let candidates = (0..TEXELS).filter(|texel| self.is_filled[*texel] == is_filled);
         let further = |a: usize, b: usize| if is_more(self.fullness[b], self.fullness[a]) { b } else { a };
-        candidates.reduce(further).expect("never all nor none are filled when asked")
+        candidates.reduce(further).expect("the pattern is neither full nor empty")
     }
 }
 
@@ -163,7 +163,7 @@ mod tests {
 
     /// Each rank occurs once. The tile, and each thresholding of it, has almost no low frequencies.
     #[test]
-    fn what_is_next_is_far_and_nothing_is_low() {
+    fn blue_noise_has_no_low_frequencies() {
         let mut sorted = RANKS.clone();
         sorted.sort_unstable();
         assert!((0..TEXELS as u16).eq(sorted), "each rank once");

@@ -6,7 +6,7 @@
 use antumbra_light::{Aabb, Light, anchor_near};
 use glam::{DVec3, Mat4, Vec3};
 
-use super::frame::Asked;
+use super::frame::FrameRequest;
 use crate::contract::{
     Camera, DepthMapCaster, MeshCaster, PreparedCasters, PreparedFrame, PreparedReceivers, Surfaces,
 };
@@ -31,11 +31,11 @@ pub(super) struct Anchored<'a> {
 }
 
 /// Returns the anchor of a frame: near the light; for a sun, near the camera or the middle of the points' box, if known.
-pub(super) fn anchor_of(asked: &Asked<'_>) -> Vec3 {
-    let about = match asked {
-        _ if !asked.light().is_distant() => asked.light().center,
-        Asked::Mask(frame) => frame.receivers.camera().eye_in_world().as_vec3(),
-        Asked::Points(frame) => {
+pub(super) fn anchor_of(request: &FrameRequest<'_>) -> Vec3 {
+    let about = match request {
+        _ if !request.light().is_distant() => request.light().center,
+        FrameRequest::Mask(frame) => frame.receivers.camera().eye_in_world().as_vec3(),
+        FrameRequest::Points(frame) => {
             let Aabb { min, max } = frame.receivers.bounds;
             let are_known = min.is_finite_mask() & max.is_finite_mask();
             Vec3::select(are_known, 0.5 * min + 0.5 * max, Vec3::ZERO)

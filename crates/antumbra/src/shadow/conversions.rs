@@ -1,14 +1,14 @@
 //! Conversions at both ends of a frame's data: textures that techniques read and write in place of the host's receivers and mask,
 //! if they need other formats.
 
-use super::frame::{Asked, Frame, PointFrame};
+use super::frame::{Frame, FrameRequest, PointFrame};
 use crate::contract::{Mask, PreparedReceivers};
 use crate::gpu::{Recorder, Stage};
 use crate::mask::format::NarrowMask;
 use crate::receivers::points::PointTextures;
 
 /// Inputs and output of one frame, with their conversions.
-pub(super) enum Ends<'a> {
+pub(super) enum Conversions<'a> {
     /// A mask of a depth buffer.
     Mask {
         frame: Frame<'a>,
@@ -21,7 +21,7 @@ pub(super) enum Ends<'a> {
 
 /// Resources of the last frame's conversions.
 #[derive(Clone, Debug, Default)]
-pub(super) enum KeptEnds {
+pub(super) enum RetainedConversions {
     /// No conversion.
     #[default]
     Nothing,
@@ -29,17 +29,17 @@ pub(super) enum KeptEnds {
     Points(Box<PointTextures>),
 }
 
-impl<'a> Ends<'a> {
+impl<'a> Conversions<'a> {
     /// Prepares the conversions of a host's request. `earlier` has the resources of the previous frame.
-    pub(super) fn prepare(stage: &Stage<'_>, asked: &Asked<'a>, earlier: KeptEnds) -> Self {
-        match asked {
-            Asked::Mask(frame) => {
-                let earlier = if let KeptEnds::Narrow(earlier) = earlier { Some(*earlier) } else { None };
+    pub(super) fn prepare(stage: &Stage<'_>, request: &FrameRequest<'a>, earlier: RetainedConversions) -> Self {
+        match request {
+            FrameRequest::Mask(frame) => {
+                let earlier = if let RetainedConversions::Narrow(earlier) = earlier { Some(*earlier) } else { None };
                 let narrow = NarrowMask::serves(frame.mask).then(|| NarrowMask::prepare(stage, frame.mask, earlier));
                 Self::Mask { frame: *frame, narrow }
             }
-            Asked::Points(frame) => {
-                let earlier = if let KeptEnds::Points(earlier) = earlier { Some(*earlier) } else { None };
+            FrameRequest::Points(frame) => {
+                let earlier = if let RetainedConversions::Points(earlier) = earlier { Some(*earlier) } else { None };
                 let PointFrame { receivers, visibilities, channels, .. } = frame;
                 let textures = PointTextures::prepare(stage, receivers, visibilities, *channels, earlier);
                 Self::Points { frame: *frame, textures }
@@ -74,11 +74,11 @@ impl<'a> Ends<'a> {
     }
 
     /// Handles of the resources, for the next frame.
-    pub(super) fn kept(&self) -> KeptEnds {
+    pub(super) fn kept(&self) -> RetainedConversions {
         match self {
-            Self::Mask { narrow: Some(narrow), .. } => KeptEnds::Narrow(Box::new(narrow.clone())),
-            Self::Mask { narrow: None, .. } => KeptEnds::Nothing,
-            Self::Points { textures, .. } => KeptEnds::Points(Box::new(textures.clone())),
+            Self::Mask { narrow: Some(narrow), .. } => RetainedConversions::Narrow(Box::new(narrow.clone())),
+            Self::Mask { narrow: None, .. } => RetainedConversions::Nothing,
+            Self::Points { textures, .. } => RetainedConversions::Points(Box::new(textures.clone())),
         }
     }
 }

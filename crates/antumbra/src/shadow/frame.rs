@@ -40,14 +40,14 @@ pub struct PointFrame<'a> {
 
 /// Request of a host.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Asked<'a> {
+pub(super) enum FrameRequest<'a> {
     /// A mask of a depth buffer.
     Mask(Frame<'a>),
     /// Visibilities of points.
     Points(PointFrame<'a>),
 }
 
-impl<'a> Asked<'a> {
+impl<'a> FrameRequest<'a> {
     pub(super) fn light(&self) -> &'a Light {
         match self {
             Self::Mask(frame) => frame.light,

@@ -3,7 +3,7 @@
 use antumbra_light::{Aabb, Light, ShadowDistance};
 use glam::{UVec2, Vec3};
 
-use super::frame::Asked;
+use super::frame::FrameRequest;
 use super::{Frame, PointFrame};
 use crate::contract::{Camera, CastersKey, Denoise, MaskChannels, MaskPlace, Params, PointBuffer, PointWidths};
 
@@ -82,14 +82,16 @@ impl<P: Params> FrameKey<P> {
     pub(super) fn of(
         params: &P,
         (denoise, is_half_resolution): (Option<&Denoise>, bool),
-        asked: &Asked<'_>,
+        request: &FrameRequest<'_>,
         casters: Option<CastersKey>,
     ) -> Option<Self> {
         let (casters, (version, points)) = (
             casters?,
-            match asked {
-                Asked::Mask(Frame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
-                Asked::Points(PointFrame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
+            match request {
+                FrameRequest::Mask(Frame { receivers, .. }) => (receivers.version?, [receivers.hull, receivers.seen]),
+                FrameRequest::Points(PointFrame { receivers, .. }) => {
+                    (receivers.version?, [receivers.hull, receivers.seen])
+                }
             },
         );
         Some(Self {
@@ -98,10 +100,10 @@ impl<P: Params> FrameKey<P> {
             params: params.clone(),
             denoise: denoise.cloned(),
             is_half_resolution,
-            light: asked.light().for_shadows(),
-            receivers: match asked {
-                Asked::Mask(frame) => ReceiversKey::of_mask(frame),
-                Asked::Points(frame) => ReceiversKey::of_points(frame),
+            light: request.light().for_shadows(),
+            receivers: match request {
+                FrameRequest::Mask(frame) => ReceiversKey::of_mask(frame),
+                FrameRequest::Points(frame) => ReceiversKey::of_points(frame),
             },
             points: points.map(<[Vec3]>::to_vec),
         })

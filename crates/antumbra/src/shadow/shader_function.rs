@@ -69,20 +69,20 @@ impl<T: Technique> Shadow<T> {
         };
         if self.parts_in_use().is_some() {
             return refuse(
-                "one map for a shader function",
-                "a map for each part of the light",
-                "hold the light to a frustum (`fov_rad`), or use `prepare_points`",
+                "a single shadow map for the shader function",
+                "a shadow map for each part of this light",
+                "limit the light to a frustum (`fov_rad`), or use `prepare_points`",
             );
         }
         match self.technique.embeddable() {
             Some(of) if of.is_own => Ok(of),
             Some(_) => refuse(
-                "a map of the light's own for a shader function",
-                "one that lights share",
-                "raise `Gpu::set_map_budget`",
+                "a shadow map that belongs to this light",
+                "only one that lights share",
+                "increase the budget with `Gpu::set_map_budget`",
             ),
             None => refuse(
-                "a technique with a shader function, and a frame prepared",
+                "a technique with a shader function and a prepared frame",
                 "none",
                 "use `hard`, `pcf` or `pcss` after `prepare`, or `prepare_points`",
             ),
@@ -99,6 +99,6 @@ fn check_prefix(technique: &'static str, prefix: &str) -> Result<(), Error> {
         technique,
         what: "the prefix of a shader function",
         had: format!("`{prefix}`"),
-        needed: "letters, digits and single underscores, a letter first".into(),
+        needed: "letters, digits and single underscores, beginning with a letter".into(),
     })
 }

@@ -6,7 +6,7 @@
 use antumbra_light::{Light, LightShape};
 use glam::{UVec2, Vec3};
 
-use super::frame::Asked;
+use super::frame::FrameRequest;
 use super::{Casters, Frame, PointFrame};
 use crate::contract::{Denoise, DepthMapCaster, Error, MeshCaster, Opacity};
 use crate::gpu::{Gpu, ViewKind};
@@ -15,13 +15,13 @@ mod on_trial;
 mod pixels;
 mod points;
 
-use on_trial::Good;
+use on_trial::BindableCache;
 
 /// Validator of frames. It remembers which views and buffers could be bound.
 #[derive(Debug, Default)]
 pub(super) struct Validator {
-    views: Good<(wgpu::TextureView, ViewKind)>,
-    buffers: Good<wgpu::Buffer>,
+    views: BindableCache<(wgpu::TextureView, ViewKind)>,
+    buffers: BindableCache<wgpu::Buffer>,
 }
 
 /// Frame to validate, with the technique's name for errors.
@@ -37,14 +37,14 @@ impl Validator {
         &mut self,
         technique: &'static str,
         gpu: &Gpu,
-        asked: &Asked<'_>,
+        request: &FrameRequest<'_>,
         denoise: Option<&Denoise>,
     ) -> Result<(), Error> {
         self.views.begin_frame();
         self.buffers.begin_frame();
-        match asked {
-            Asked::Mask(frame) => self.check_mask(&Check { technique, gpu, frame }, denoise),
-            Asked::Points(frame) => self.check_points(&Check { technique, gpu, frame }, denoise),
+        match request {
+            FrameRequest::Mask(frame) => self.check_mask(&Check { technique, gpu, frame }, denoise),
+            FrameRequest::Points(frame) => self.check_points(&Check { technique, gpu, frame }, denoise),
         }
     }
 
@@ -72,7 +72,11 @@ impl Validator {
         check.casters(&frame.casters)?;
         check.host_map(self, &frame.casters)?;
         let Some(Denoise { max_frames, .. }) = denoise else { return Ok(()) };
-        check.bad("`denoise`", format!("of {max_frames} frames"), "`None` for points, which have no neighbours")
+        check.bad(
+            "`denoise`",
+            format!("set, with {max_frames} frames"),
+            "`None`, because points have no neighbouring pixels",
+        )
     }
 }
 
@@ -90,7 +94,7 @@ impl<F> Check<'_, F> {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{bytes} bytes for the light's points or texture"),
-                had: format!("{limit} bytes a binding"),
+                had: format!("at most {limit} bytes per binding"),
                 remedy: "use fewer points or a smaller texture",
             });
         }
@@ -107,12 +111,12 @@ impl<F> Check<'_, F> {
         needed: &str,
     ) -> Result<(), Error> {
         if !view.texture().usage().contains(wgpu::TextureUsages::TEXTURE_BINDING) {
-            return self.bad(what, "a texture without the usage TEXTURE_BINDING", "one with it");
+            return self.bad(what, "created without the usage TEXTURE_BINDING", "created with it");
         }
         let trial = |(view, kind): &(wgpu::TextureView, ViewKind)| kind.validation_error(self.gpu, view);
         let validation_error = validator.views.validation_error((view.clone(), kind), trial);
         validation_error.map_or(Ok(()), |validation_error| {
-            self.bad(what, format!("one that cannot be bound ({validation_error})"), needed)
+            self.bad(what, format!("a view that cannot be bound ({validation_error})"), needed)
         })
     }
 
@@ -120,12 +124,12 @@ impl<F> Check<'_, F> {
         match casters {
             Casters::Set { set, .. } | Casters::Within { set, .. } if !self.gpu.reads_of(set.gpu()) => self.bad(
                 "the set of casters",
-                "of another device or another `Gpu`",
-                "made with a clone of the light's `Gpu`: one serves a device",
+                "from another device or another `Gpu`",
+                "created with a clone of the light's `Gpu`; use one `Gpu` per device",
             ),
             Casters::Within { center, radius_m, .. } if !center.is_finite() || radius_m.is_nan() || *radius_m < 0.0 => {
-                let had = format!("of {radius_m} m about {center}");
-                self.bad("the casters' ball", had, "about a finite centre, of 0 m or more")
+                let had = format!("{center} with a radius of {radius_m} m");
+                self.bad("the casters' bounding sphere", had, "a finite centre with a radius of at least 0 m")
             }
             Casters::Set { .. } | Casters::Within { .. } | Casters::DepthMap(_) => Ok(()),
             Casters::Meshes(meshes) => meshes.iter().enumerate().try_for_each(|(i, mesh)| self.mesh(i, mesh)),
@@ -144,25 +148,31 @@ impl<F> Check<'_, F> {
             );
         }
         for (what, buffer, usage, end) in [
-            ("a caster's positions", mesh.positions, vertex, 0),
-            ("a caster's indices", mesh.indices, wgpu::BufferUsages::INDEX, end_of(mesh.first_triangle, triangles, 12)),
-            ("a caster's instances", mesh.instances, vertex, end_of(mesh.first_instance, mesh.instance_count, 64)),
+            ("a caster's position buffer", mesh.positions, vertex, 0),
+            (
+                "a caster's index buffer",
+                mesh.indices,
+                wgpu::BufferUsages::INDEX,
+                end_of(mesh.first_triangle, triangles, 12),
+            ),
+            (
+                "a caster's instance buffer",
+                mesh.instances,
+                vertex,
+                end_of(mesh.first_instance, mesh.instance_count, 64),
+            ),
         ] {
             if !buffer.usage().contains(usage) {
-                return self.bad(
-                    what,
-                    format!("in a buffer without the usage {usage:?} (caster {i})"),
-                    "in one with it",
-                );
+                return self.bad(what, format!("created without the usage {usage:?} (caster {i})"), "created with it");
             }
             if end > buffer.size() {
-                let had = format!("up to byte {end} of a buffer of {} (caster {i})", buffer.size());
-                return self.bad(what, had, "within the buffer");
+                let had = format!("{} bytes long (caster {i})", buffer.size());
+                return self.bad(what, had, format!("at least {end} bytes long"));
             }
         }
         let draws = mesh.index_count > 0 && mesh.instance_count > 0;
         if let Some(problem) = mesh.bounds.problem().filter(|_| draws) {
-            let needed = "a box with its least corner first, infinite where it is not known";
+            let needed = "a box whose first corner is the minimum; use infinite bounds if they are unknown";
             return self.bad("a caster's `bounds`", format!("{problem} (caster {i})"), needed);
         }
         let is_finite = match mesh.opacity {
@@ -184,16 +194,10 @@ impl<F> Check<'_, F> {
             return self.bad(
                 "the depth map's `size_px`",
                 format!("{}", map.size_px),
-                format!("the texture's {}", size_of(texture)),
+                format!("the size of the texture, {}, or of one of its mip levels", size_of(texture)),
             );
         }
-        self.bindable(
-            validator,
-            WHAT,
-            map.view,
-            ViewKind::Depth,
-            "a 2D view of one layer and of the depth aspect alone",
-        )
+        self.bindable(validator, WHAT, map.view, ViewKind::Depth, "a 2D view of one layer and only the depth aspect")
     }
 
     fn host_map(&self, validator: &mut Validator, casters: &Casters<'_>) -> Result<(), Error> {
@@ -203,7 +207,7 @@ impl<F> Check<'_, F> {
     /// Refuses points that are not finite.
     fn finite(&self, what: &'static str, points: &[Vec3]) -> Result<(), Error> {
         let Some(i) = points.iter().position(|point| !point.is_finite()) else { return Ok(()) };
-        self.bad(what, format!("not finite (point {i})"), "finite points in the world")
+        self.bad(what, format!("not finite (point {i})"), "finite positions in world space")
     }
 }
 

@@ -40,7 +40,7 @@ impl Default for WarmUp {
 
 /// Steps of compilation before the first frame, for hosts that show progress: each item compiles at most what one frame of a light
 /// needs. The length is the number of steps left. In a browser, which has no threads to spare, take one per frame.
-#[must_use = "nothing is compiled before a step is taken"]
+#[must_use = "nothing is compiled until `step` is called"]
 pub struct WarmUpSteps {
     steps: VecDeque<Box<dyn Step>>,
 }

@@ -308,7 +308,7 @@ fn a_host_s_depth_map_gives_what_our_own_gives() {
         assert!(differing < 20, "{kind}: {differing} pixels differ");
     }
     let error = case.run_with(gpu, TechniqueKind::MultiView, &[], given).unwrap_err();
-    assert!(error.to_string().contains("every light point has a view of its own"));
+    assert!(error.to_string().contains("each light point has its own view"));
 }
 
 /// How deep a host's map reaches is no matter: what lies behind the receivers, and texels in which there is nothing, shade none.

@@ -55,7 +55,7 @@ impl Exceptions {
         let version = table.driver.strip_prefix("Mesa ").unwrap_or(&table.driver);
         let is_it =
             version.strip_prefix(&self.mesa).is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()));
-        if is_it { Ok(()) } else { Err(format!("limits are for Mesa {}, and this is {}", self.mesa, table.driver)) }
+        if is_it { Ok(()) } else { Err(format!("limits are for Mesa {}, but this is {}", self.mesa, table.driver)) }
     }
 
     /// Returns the reason of a label's exception.
@@ -84,7 +84,7 @@ impl Exceptions {
                 ];
                 faults.extend(counted.into_iter().filter(|(_, count, most)| count > most).map(
                     |(what, count, most)| {
-                        format!("{}: {}: {count} {what}, and may have {most}", table.family, row.name.text())
+                        format!("{}: {}: {count} {what}; at most {most} are allowed", table.family, row.name.text())
                     },
                 ));
             }
@@ -109,10 +109,10 @@ impl Exception {
         let in_vain = limits.into_iter().filter(|(_, exception, most, limit)| exception.is_some() && most <= limit);
         let mut faults: Vec<String> = in_vain
             .map(|(what, _, most, _)| {
-                format!("exceptions.toml: {} needs no exception for {what}: the most is {most}", self.label)
+                format!("exceptions.toml: {} needs no exception for {what}, because its maximum is {most}", self.label)
             })
             .collect();
-        faults.extend(is_empty.then(|| format!("exceptions.toml: {} has an exception for nothing", self.label)));
+        faults.extend(is_empty.then(|| format!("exceptions.toml: the exception of {} has no limit", self.label)));
         faults
     }
 }

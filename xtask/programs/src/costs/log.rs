@@ -41,8 +41,8 @@ impl Log {
             }
         }
         if !has_ended {
-            let last = text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("nothing was printed");
-            return Err(format!("the driver did not come to the end of the pipelines: {last}"));
+            let last = text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or("the driver printed nothing");
+            return Err(format!("the driver ended before the last pipeline: {last}"));
         }
         if log.table.rows.is_empty() {
             return Err("the driver printed no statistics".to_owned());

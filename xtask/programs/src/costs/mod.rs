@@ -62,7 +62,12 @@ pub fn run(options: &Options) -> Result<(), String> {
     for (_, log) in &logs {
         let file = options.folder.join(format!("{}.tsv", log.table.family.to_lowercase()));
         write(&file, &log.table.to_text())?;
-        eprintln!("programs: {} programs for {} are in {}", log.table.rows.len(), log.table.family, file.display());
+        eprintln!(
+            "programs: counted {} programs for {}, in {}",
+            log.table.rows.len(),
+            log.table.family,
+            file.display()
+        );
         if let Some(earlier) = earlier.as_ref().filter(|earlier| earlier.family == log.table.family) {
             print!("{}", log.table.difference(earlier));
         }
@@ -92,7 +97,7 @@ fn judge(exceptions: &Exceptions, tables: Vec<Table>, fails: bool) -> Result<(),
     }
     match faults.len() {
         0 => Ok(()),
-        count if fails => Err(format!("{count} limits are passed, or exceptions not needed")),
+        count if fails => Err(format!("{count} limits are exceeded, or exceptions are not needed")),
         _ => Ok(()),
     }
 }
@@ -107,7 +112,7 @@ fn measure(options: &Options, device: &NullDevice<'_>, family: &Family) -> Resul
         match Log::read(&text) {
             Ok(log) => return Ok(Some((Title(family.title), log))),
             Err(error) if error.contains("Unknown family") => problem = error,
-            Err(error) => return Err(format!("{name}: {error}; all of it is in {}", file.display())),
+            Err(error) => return Err(format!("{name}: {error}; the whole output is in {}", file.display())),
         }
     }
     eprintln!("programs: SKIPPED {}: this Mesa has no such family: {problem}", family.title);
@@ -116,7 +121,7 @@ fn measure(options: &Options, device: &NullDevice<'_>, family: &Family) -> Resul
 
 /// Returns the standard error of this program on the null device.
 fn log_of(device: &NullDevice<'_>, family: &str) -> Result<String, String> {
-    let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program is: {error}"))?;
+    let own = std::env::current_exe().map_err(|error| format!("cannot find the path of this program: {error}"))?;
     let mut command = device.command(&own, family);
     // Cached pipelines print nothing.
     command.arg(ANNOUNCE).env("RADV_DEBUG", "shaderstats,nocache").env("MESA_SHADER_CACHE_DISABLE", "true");

@@ -112,12 +112,12 @@ impl Table {
     pub fn of_text(text: &str) -> Result<Self, String> {
         let mut lines = text.lines();
         let mut heading = || lines.next()?.strip_prefix("# ").map(str::to_owned);
-        let (Some(family), Some(driver)) = (heading(), heading()) else { return Err("no table of gpu-cost".into()) };
+        let (Some(family), Some(driver)) = (heading(), heading()) else { return Err("not a table of gpu-cost".into()) };
         let empty = Self { family, driver, rows: Vec::new() };
         if lines.next() != empty.to_text().lines().nth(2) {
             return Err("a table of gpu-cost with other columns".into());
         }
-        let rows = lines.map(|line| row_of(line).ok_or_else(|| format!("no row of a table of gpu-cost: {line}")));
+        let rows = lines.map(|line| row_of(line).ok_or_else(|| format!("not a row of a table of gpu-cost: {line}")));
         Ok(Self { rows: rows.collect::<Result<_, _>>()?, ..empty })
     }
 

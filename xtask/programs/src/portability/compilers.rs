@@ -28,7 +28,7 @@ impl Compilers {
     /// # Errors
     /// If the path of this program is unknown.
     pub fn new(options: &Options) -> Result<Self, String> {
-        let own = std::env::current_exe().map_err(|error| format!("cannot tell where this program is: {error}"))?;
+        let own = std::env::current_exe().map_err(|error| format!("cannot find the path of this program: {error}"))?;
         Ok(Self { own, dxc: options.dxc.clone(), spirv_val: options.spirv_val.clone() })
     }
 
@@ -56,8 +56,8 @@ impl Compilers {
 fn run(command: &mut Command, log: &Path) -> Option<String> {
     let status = match limited(command, log) {
         Ok(Some(status)) => status,
-        Ok(None) => return Some(format!("not done after {} s", PATIENCE.as_secs())),
-        Err(error) => return Some(format!("cannot be run: {error}")),
+        Ok(None) => return Some(format!("not finished after {} s", PATIENCE.as_secs())),
+        Err(error) => return Some(format!("cannot run: {error}")),
     };
     if status.success() {
         return None;
@@ -66,7 +66,7 @@ fn run(command: &mut Command, log: &Path) -> Option<String> {
     Some(if status.code().is_some() {
         first_error(&String::from_utf8_lossy(&messages)).unwrap_or_else(|| status.to_string())
     } else {
-        format!("the compiler died: {status}")
+        format!("the compiler crashed: {status}")
     })
 }
 
@@ -116,8 +116,8 @@ mod tests {
         assert_eq!(outcomes[0], None);
         assert_eq!(outcomes[1].as_deref(), Some("1:2: error: no"));
         assert!(outcomes[2].as_ref().is_some_and(|error| error.contains('3')), "{outcomes:?}");
-        assert!(outcomes[3].as_ref().is_some_and(|error| error.contains("died")), "{outcomes:?}");
-        assert!(run(&mut Command::new("no-such-compiler"), &log).is_some_and(|error| error.contains("cannot be run")));
+        assert!(outcomes[3].as_ref().is_some_and(|error| error.contains("crashed")), "{outcomes:?}");
+        assert!(run(&mut Command::new("no-such-compiler"), &log).is_some_and(|error| error.contains("cannot run")));
         let _ = fs::remove_file(&log);
     }
 }

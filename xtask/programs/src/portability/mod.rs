@@ -110,7 +110,7 @@ pub fn check(options: &Options) -> Result<(), String> {
     }
     match count {
         0 => Ok(()),
-        _ => Err(format!("{count} failures; translations are in {}, by the numbers above", options.folder.display())),
+        _ => Err(format!("{count} failures; translations are in {}, numbered as above", options.folder.display())),
     }
 }
 

@@ -16,7 +16,7 @@ pub(super) fn baselines(args: &CompareArgs, folders: &[String]) -> Result<Vec<Op
     let Some(given) = &args.run.baseline else { return Ok(vec![None; folders.len()]) };
     if folders.len() > 1 && given.is_file() {
         let why = format!(
-            "--baseline {}: it is of one scene, and here are several; give the folder that `compare` wrote of the same scenes",
+            "--baseline {}: it contains one scene, but this run has several; give the folder that `compare` wrote for the same scenes",
             given.display()
         );
         return Err(Failure::Input(why));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::advise::store::Measured;
 
-/// Growth of a technique's time from a rung to full size, measured with one of its configurations.
+/// Growth of a technique's time from a smaller size to full size, measured with one of its configurations.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Growth {
     by_pass: BTreeMap<String, f64>,
@@ -28,7 +28,7 @@ impl Growth {
         Some(Self { by_pass: full.pass_ms.iter().map(of_pass).collect(), whole })
     }
 
-    /// Returns the growth of a configuration measured on the rung.
+    /// Returns the growth of a configuration measured at the smaller size.
     pub(super) fn of(&self, measured: &Measured) -> f64 {
         let passes_ms: f64 = measured.pass_ms.values().sum();
         // Time between passes, which timestamps do not cover.

@@ -6,7 +6,7 @@ use antumbra::contract::ParamSpec;
 use super::Search;
 use super::combinations::{Move, combinations};
 use crate::advise::bench::FULL;
-use crate::advise::space::{Config, Stride, axes, set_by_qualities, steps};
+use crate::advise::space::{Config, StepSize, axes, set_by_qualities, steps};
 use crate::advise::store::Measured;
 use crate::error::LabError;
 
@@ -27,28 +27,28 @@ impl Search<'_, '_> {
     pub(super) fn refine(
         &mut self,
         kind: TechniqueKind,
-        rung: usize,
+        size_index: usize,
         keys: Option<&[&'static str]>,
-        stride: Stride,
+        stride: StepSize,
     ) -> Result<Vec<&'static str>, LabError> {
-        self.descend(kind, rung)?;
-        let Some((centre, score)) = self.best(kind, rung, 1).pop() else { return Ok(Vec::new()) };
-        let load = self.known(&centre, rung).map_or(0.0, |measured| self.load(kind, rung, measured));
+        self.descend(kind, size_index)?;
+        let Some((centre, score)) = self.best(kind, size_index, 1).pop() else { return Ok(Vec::new()) };
+        let load = self.known(&centre, size_index).map_or(0.0, |measured| self.load(kind, size_index, measured));
         if load > TOO_DEAR {
             return Ok(Vec::new());
         }
         let is_wanted = |spec: &&'static ParamSpec| keys.is_none_or(|keys| keys.contains(&spec.key));
         let specs: Vec<&'static ParamSpec> = axes(kind).filter(is_wanted).collect();
-        let moves = self.moves(&centre, rung, &specs, stride, |_, _| true)?;
-        let here = self.known(&centre, rung).map_or(0.0, Measured::error).max(1e-9);
-        let best = self.best(kind, rung, 1).pop().map_or(f64::INFINITY, |(_, score)| score);
+        let moves = self.moves(&centre, size_index, &specs, stride, |_, _| true)?;
+        let here = self.known(&centre, size_index).map_or(0.0, Measured::error).max(1e-9);
+        let best = self.best(kind, size_index, 1).pop().map_or(f64::INFINITY, |(_, score)| score);
         for chosen in combinations(&moves, load) {
             // A combination is measured only if its predicted error is below the best score.
             if chosen.iter().map(|step| step.error).sum::<f64>() >= (best / here).ln() {
                 continue;
             }
             let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
-            self.measure(&config, rung)?;
+            self.measure(&config, size_index)?;
         }
         let matters = |spec: &&&'static ParamSpec| {
             let of_key = moves.iter().filter(|step| step.key == spec.key);
@@ -62,32 +62,33 @@ impl Search<'_, '_> {
         relevant.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
         relevant.truncate(MAX_RELEVANT);
         // At full size, refine again from a clearly better configuration.
-        if rung == FULL
-            && let Some((_, better)) = self.best(kind, rung, 1).pop()
+        if size_index == FULL
+            && let Some((_, better)) = self.best(kind, size_index, 1).pop()
             && better < LEADS_ON * score
         {
-            self.refine(kind, rung, Some(&relevant), stride)?;
+            self.refine(kind, size_index, Some(&relevant), stride)?;
         }
         Ok(relevant)
     }
 
     /// Descends from a best configuration beyond the budget by reducing the numbers that qualities set.
-    fn descend(&mut self, kind: TechniqueKind, rung: usize) -> Result<(), LabError> {
+    fn descend(&mut self, kind: TechniqueKind, size_index: usize) -> Result<(), LabError> {
         for _ in 0..DESCENTS {
-            let Some((centre, _)) = self.best(kind, rung, 1).pop() else { return Ok(()) };
-            let load = self.known(&centre, rung).map_or(0.0, |measured| self.load(kind, rung, measured));
+            let Some((centre, _)) = self.best(kind, size_index, 1).pop() else { return Ok(()) };
+            let load = self.known(&centre, size_index).map_or(0.0, |measured| self.load(kind, size_index, measured));
             if load <= TOO_DEAR {
                 return Ok(());
             }
             let specs: Vec<&'static ParamSpec> = set_by_qualities(kind).into_iter().map(|(spec, _)| spec).collect();
-            let moves =
-                self.moves(&centre, rung, &specs, Stride::Whole, |value, next| match (value.parse(), next.parse()) {
+            let moves = self.moves(&centre, size_index, &specs, StepSize::Whole, |value, next| {
+                match (value.parse(), next.parse()) {
                     (Ok::<f64, _>(value), Ok::<f64, _>(next)) => next < value,
                     _ => false,
-                })?;
+                }
+            })?;
             for chosen in combinations(&moves, load) {
                 let config = chosen.iter().fold(centre.clone(), |config, step| config.with(step.key, &step.value));
-                self.measure(&config, rung)?;
+                self.measure(&config, size_index)?;
             }
         }
         Ok(())
@@ -97,24 +98,24 @@ impl Search<'_, '_> {
     fn moves(
         &mut self,
         centre: &Config,
-        rung: usize,
+        size_index: usize,
         specs: &[&'static ParamSpec],
-        stride: Stride,
+        stride: StepSize,
         is_wanted: impl Fn(&str, &str) -> bool,
     ) -> Result<Vec<Move>, LabError> {
-        let at_centre = self.measure(centre, rung)?;
-        let (error, load) = (at_centre.error(), self.load(centre.kind, rung, &at_centre));
+        let at_centre = self.measure(centre, size_index)?;
+        let (error, load) = (at_centre.error(), self.load(centre.kind, size_index, &at_centre));
         let mut moves = Vec::new();
         for spec in specs {
             let here = centre.value(spec);
             for value in steps(spec, &here, stride).into_iter().filter(|next| is_wanted(&here, next)) {
-                let measured = self.measure(&centre.with(spec.key, &value), rung)?;
+                let measured = self.measure(&centre.with(spec.key, &value), size_index)?;
                 if measured.refused.is_none() {
                     moves.push(Move {
                         key: spec.key,
                         value,
                         error: (measured.error().max(1e-9) / error.max(1e-9)).ln(),
-                        load: self.load(centre.kind, rung, &measured) - load,
+                        load: self.load(centre.kind, size_index, &measured) - load,
                     });
                 }
             }

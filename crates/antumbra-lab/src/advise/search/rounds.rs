@@ -8,7 +8,7 @@ use antumbra::contract::ParamSpec;
 use super::Search;
 use super::growth::Growth;
 use crate::advise::bench::FULL;
-use crate::advise::space::{Config, QUALITIES, Stride, set_by_qualities};
+use crate::advise::space::{Config, QUALITIES, StepSize, set_by_qualities};
 use crate::error::LabError;
 
 /// Multiple of the budget: a quality expected to exceed it on a small image is skipped with all dearer ones,
@@ -35,20 +35,20 @@ impl Search<'_, '_> {
         self.survey(kinds)?;
         let mut left = self.keep(kinds, 0, 0);
         let mut relevant: HashMap<TechniqueKind, Vec<&'static str>> = HashMap::new();
-        for rung in 0..FULL {
-            let what = ["small", "middling"][rung];
-            let stage = format!("round {}: {} techniques on {what} pictures", rung + 2, left.len());
+        for size_index in 0..FULL {
+            let what = ["small", "medium"][size_index];
+            let stage = format!("round {}: {} techniques on {what} images", size_index + 2, left.len());
             self.progress.begin(&stage, left.len() as u64);
             for (place, kind) in left.clone().into_iter().enumerate() {
-                self.carry_over(kind, rung)?;
+                self.carry_over(kind, size_index)?;
                 // On small images, refine only what qualities set; then all parameters of the techniques that are likely to be kept.
-                let looks_at_all = rung > 0 && place < LOOKED_AT_IN_FULL;
+                let looks_at_all = size_index > 0 && place < LOOKED_AT_IN_FULL;
                 let keys = (!looks_at_all).then(|| keys_of_qualities(kind));
-                let matters = self.refine(kind, rung, keys.as_deref(), Stride::Whole)?;
+                let matters = self.refine(kind, size_index, keys.as_deref(), StepSize::Whole)?;
                 relevant.insert(kind, matters);
                 self.progress.reach(place as u64 + 1);
             }
-            left = self.keep(&left, rung, rung + 1);
+            left = self.keep(&left, size_index, size_index + 1);
         }
         self.progress.begin(&format!("round 4: {} techniques at full size", left.len()), left.len() as u64);
         for (done, kind) in (1..).zip(left.clone()) {
@@ -56,17 +56,17 @@ impl Search<'_, '_> {
             for (config, _) in self.best(kind, FULL - 1, 2).into_iter().chain(sure) {
                 self.measure(&config, FULL)?;
             }
-            self.refine(kind, FULL, relevant.get(&kind).map(Vec::as_slice), Stride::Whole)?;
+            self.refine(kind, FULL, relevant.get(&kind).map(Vec::as_slice), StepSize::Whole)?;
             self.progress.reach(done);
         }
         // A promising technique may be too slow at full size, and the replacement has not been refined as closely.
         self.fall_back(kinds)?;
         if let Some(kind) = self.first_that_fits(kinds, FULL, 1.0).filter(|kind| !left.contains(kind)) {
-            self.refine(kind, FULL, Some(&keys_of_qualities(kind)), Stride::Whole)?;
+            self.refine(kind, FULL, Some(&keys_of_qualities(kind)), StepSize::Whole)?;
         }
         // Half steps, because the budget may lie between two whole ones.
         if let Some(kind) = self.first_that_fits(kinds, FULL, 1.0) {
-            self.refine(kind, FULL, Some(&keys_of_qualities(kind)), Stride::Half)?;
+            self.refine(kind, FULL, Some(&keys_of_qualities(kind)), StepSize::Half)?;
         }
         self.progress.end();
         Ok(())
@@ -102,29 +102,29 @@ impl Search<'_, '_> {
     }
 
     /// Returns the better half of the techniques by their best score, plus the best one that is sure to keep the budget.
-    fn keep(&self, kinds: &[TechniqueKind], rung: usize, round: usize) -> Vec<TechniqueKind> {
-        let best = |kind: &TechniqueKind| self.best(*kind, rung, 1).first().map(|(_, score)| (*kind, *score));
+    fn keep(&self, kinds: &[TechniqueKind], size_index: usize, round: usize) -> Vec<TechniqueKind> {
+        let best = |kind: &TechniqueKind| self.best(*kind, size_index, 1).first().map(|(_, score)| (*kind, *score));
         let mut scored: Vec<(TechniqueKind, f64)> = kinds.iter().filter_map(best).collect();
         scored.sort_by(|a, b| a.1.total_cmp(&b.1));
         let count = count_kept(&scored.iter().map(|(_, score)| *score).collect::<Vec<_>>(), kinds.len(), round);
         let mut kept: Vec<TechniqueKind> = scored.into_iter().take(count).map(|(kind, _)| kind).collect();
-        kept.extend(self.first_that_fits(kinds, rung, SURELY_FITS).filter(|kind| !kept.contains(kind)));
+        kept.extend(self.first_that_fits(kinds, size_index, SURELY_FITS).filter(|kind| !kept.contains(kind)));
         kept
     }
 
     /// Returns the configuration of a technique with the least error within a load, and its error.
-    fn best_that_fits(&self, kind: TechniqueKind, rung: usize, part: f64) -> Option<(Config, f64)> {
-        let fitting = self.tried[rung].iter().filter(|config| config.kind == kind).filter_map(|config| {
-            let measured = self.known(config, rung)?;
+    fn best_that_fits(&self, kind: TechniqueKind, size_index: usize, part: f64) -> Option<(Config, f64)> {
+        let fitting = self.tried[size_index].iter().filter(|config| config.kind == kind).filter_map(|config| {
+            let measured = self.known(config, size_index)?;
             let is_within = self.limits.keep(measured.memory_bytes, measured.roughness());
-            (is_within && self.load(kind, rung, measured) <= part).then(|| (config.clone(), measured.error()))
+            (is_within && self.load(kind, size_index, measured) <= part).then(|| (config.clone(), measured.error()))
         });
         fitting.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Returns the technique with the least error within a load.
-    fn first_that_fits(&self, kinds: &[TechniqueKind], rung: usize, part: f64) -> Option<TechniqueKind> {
-        let fitting = kinds.iter().filter_map(|kind| self.best_that_fits(*kind, rung, part));
+    fn first_that_fits(&self, kinds: &[TechniqueKind], size_index: usize, part: f64) -> Option<TechniqueKind> {
+        let fitting = kinds.iter().filter_map(|kind| self.best_that_fits(*kind, size_index, part));
         fitting.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(config, _)| config.kind)
     }
 
@@ -134,8 +134,9 @@ impl Search<'_, '_> {
             if self.first_that_fits(kinds, FULL, 1.0).is_some() {
                 return Ok(());
             }
-            let on_small =
-                |kind: &TechniqueKind| (0..FULL).rev().find_map(|rung| self.best_that_fits(*kind, rung, 1.0));
+            let on_small = |kind: &TechniqueKind| {
+                (0..FULL).rev().find_map(|size_index| self.best_that_fits(*kind, size_index, 1.0))
+            };
             let others = kinds.iter().filter_map(on_small).filter(|(config, _)| !self.tried[FULL].contains(config));
             let Some((config, _)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
             self.measure(&config, FULL)?;
@@ -143,19 +144,19 @@ impl Search<'_, '_> {
         Ok(())
     }
 
-    /// Times a technique's best configuration at full size, and measures the best ones of the previous rung on this one.
-    fn carry_over(&mut self, kind: TechniqueKind, rung: usize) -> Result<(), LabError> {
-        let before = rung.saturating_sub(1);
-        let best = self.best(kind, before, if rung == 0 { 1 } else { 2 });
+    /// Times a technique's best configuration at full size, and measures the best ones of the previous size at this one.
+    fn carry_over(&mut self, kind: TechniqueKind, size_index: usize) -> Result<(), LabError> {
+        let before = size_index.saturating_sub(1);
+        let best = self.best(kind, before, if size_index == 0 { 1 } else { 2 });
         let Some((first, _)) = best.first().cloned() else { return Ok(()) };
         for (config, _) in best {
-            self.measure(&config, rung)?;
+            self.measure(&config, size_index)?;
         }
         let full = self.measure(&first, FULL)?;
-        let small = self.measure(&first, rung)?;
-        let pixels = |rung| f64::from(self.bench.size_px(rung).element_product());
-        if let Some(growth) = Growth::between(&small, &full, &self.budget_ms, pixels(FULL) / pixels(rung)) {
-            self.scale.insert((kind, rung), growth);
+        let small = self.measure(&first, size_index)?;
+        let pixels = |size_index| f64::from(self.bench.size_px(size_index).element_product());
+        if let Some(growth) = Growth::between(&small, &full, &self.budget_ms, pixels(FULL) / pixels(size_index)) {
+            self.scale.insert((kind, size_index), growth);
         }
         Ok(())
     }
@@ -211,21 +212,21 @@ mod tests {
     use crate::progress::Silent;
     use crate::test_support::lab_or_skip;
 
-    /// Runs `judge` on a search with a budget of 1 ms and known measurements: technique, rung, error and milliseconds.
+    /// Runs `judge` on a search with a budget of 1 ms and known measurements: technique, index of the size, error and milliseconds.
     fn with_known(known: &[(TechniqueKind, usize, f64, f64)], judge: impl FnOnce(&mut Search<'_, '_>)) {
         let Some(lab) = lab_or_skip() else { return };
         let request = request("builtin:overlap", &[], Budget::Ms(1.0));
         let bench = Bench::new(lab, &request, &Silent).unwrap();
         let mut store = Store::open(None, about(lab, &request)).unwrap();
-        for (kind, rung, rmse, ms) in known {
+        for (kind, size_index, rmse, ms) in known {
             let measured = Measured { rmse: vec![*rmse], ms: vec![*ms], ..Measured::default() };
-            store.insert(&Config::default_of(*kind), &bench.place(*rung), measured).unwrap();
+            store.insert(&Config::default_of(*kind), &bench.place(*size_index), measured).unwrap();
         }
         let fresh = store.fresh();
         let mut search = Search::new(&bench, &mut store, &Silent, vec![1.0], Limits::default());
         // Known measurements on small images count as tried.
-        for (kind, rung, ..) in known.iter().filter(|(_, rung, ..)| *rung < FULL) {
-            search.measure(&Config::default_of(*kind), *rung).unwrap();
+        for (kind, size_index, ..) in known.iter().filter(|(_, size_index, ..)| *size_index < FULL) {
+            search.measure(&Config::default_of(*kind), *size_index).unwrap();
         }
         judge(&mut search);
         assert_eq!(search.store.fresh(), fresh, "nothing was measured");
@@ -233,7 +234,7 @@ mod tests {
 
     /// The best technique that is sure to keep the budget is kept whatever its error.
     #[test]
-    fn what_surely_fits_stays() {
+    fn a_technique_that_surely_fits_is_kept() {
         let kinds = &TechniqueKind::ALL[..12];
         let row = |i: usize| match i {
             11 => (kinds[i], 0, 0.5, 0.5 * SURELY_FITS),
@@ -248,7 +249,7 @@ mod tests {
 
     /// Fallbacks are tried in order of error until one keeps the budget at full size.
     #[test]
-    fn where_nothing_keeps_the_budget_what_did_on_smaller_pictures_is_looked_at() {
+    fn fallbacks_are_tried_in_order_of_error() {
         let kinds = [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss, TechniqueKind::Vsm];
         let [hard, pcf, pcss, vsm] = kinds;
         let small = [(hard, 0, 0.3, 0.2), (pcf, 0, 0.2, 0.2), (pcss, 0, 0.1, 0.2), (vsm, 0, 0.05, 1.2)];
@@ -263,7 +264,7 @@ mod tests {
             assert_eq!(search.first_that_fits(&kinds, FULL, 1.0), Some(pcf));
         });
         // The search for fallbacks ends if none keeps the budget.
-        let full = full.map(|(kind, rung, rmse, _)| (kind, rung, rmse, 5.0));
+        let full = full.map(|(kind, size_index, rmse, _)| (kind, size_index, rmse, 5.0));
         with_known(&[&small[..], &full[..]].concat(), |search| {
             search.fall_back(&kinds).unwrap();
             assert_eq!((search.tried[FULL].len(), search.first_that_fits(&kinds, FULL, 1.0)), (3, None));

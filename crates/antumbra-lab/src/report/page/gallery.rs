@@ -47,10 +47,10 @@ pub(super) fn gallery(report: &Report, rows: &[Measured]) -> String {
     let size_px = report.reference.visibility.size_px;
     let info = report.reference.info;
     let mut html = format!(
-        "<article class=\"row\" id=\"row-{REFERENCE_STEM}\"><header><h3>Reference</h3><span \
-         class=\"mono\">ray-traced truth</span></header><div class=\"shots\">{}{}<div class=\"shot text\">{} \
-         light points, {}, at one point of each pixel. Shaded pictures are antialiased, visibility is not.<br>Visibility as <a href=\"{}\">32-bit float OpenEXR</a>; \
-         the <a href=\"images/judged.png\">mask of judged pixels</a>.</div></div></article>",
+        "<article class=\"row\" id=\"row-{REFERENCE_STEM}\"><header><h3>Reference</h3><span class=\"mono\">ray-traced \
+         truth</span></header><div class=\"shots\">{}{}<div class=\"shot text\">{} light samples, {}, at one point of each \
+         pixel. Shaded images are antialiased, visibility is not.<br>Visibility as <a href=\"{}\">32-bit float OpenEXR</a>; \
+         the <a href=\"images/judged.png\">mask of measured pixels</a>.</div></div></article>",
         shot(&shaded_path(REFERENCE_STEM), "Reference, shaded", "Shaded", size_px),
         shot(&visibility_path(REFERENCE_STEM), "Reference, visibility", "Visibility: white is lit", size_px),
         grouped(info.samples.into()),

@@ -42,7 +42,7 @@ pub(super) fn scatters(rows: &[Measured]) -> String {
         ("lit loss", |row| row.measured.metrics.lit_loss),
     ];
     let costs: [(&str, &str, Value); 2] = [
-        ("milliseconds a frame", "ms", total_ms),
+        ("milliseconds per frame", "ms", total_ms),
         ("MiB of GPU memory", "MiB", |row| row.measured.memory_bytes.map(|bytes| bytes as f64 / f64::from(1 << 20))),
     ];
     let mut html = String::new();
@@ -83,7 +83,7 @@ pub(super) fn findings(rows: &[Measured]) -> String {
         html += &line("Closest to the truth", row, rmse_text(row));
     }
     if let Some(row) = least(&|row| row.measured.metrics.flip) {
-        html += &line("Closest to the eye", row, flip(row));
+        html += &line("Visually closest", row, flip(row));
     }
     let roughness = |row: &Measured| row.measured.metrics.roughness.map(|v| format!("roughness {}", metric_text(v)));
     if let Some(row) = least(&|row| row.measured.metrics.roughness) {
@@ -98,7 +98,7 @@ pub(super) fn findings(rows: &[Measured]) -> String {
     if front.len() > 1 {
         let _ = write!(
             html,
-            "<p class=\"note\">No other technique beats these in both error and time (the dashed line): {}.</p>",
+            "<p class=\"note\">No other technique is better than these in both error and time (dashed line): {}.</p>",
             front.join(" → ")
         );
     }
@@ -120,12 +120,11 @@ pub(super) fn bars(rows: &[Measured]) -> String {
     let sum_ms = |row: &Measured| row.measured.passes.iter().map(|pass| pass.median_ms).sum::<f64>();
     let longest_ms = rows.iter().map(sum_ms).fold(0.0, f64::max);
     if longest_ms <= 0.0 {
-        return "<p class=\"note\">This adapter gave no times of passes.</p>".into();
+        return "<p class=\"note\">This adapter reports no times of passes.</p>".into();
     }
-    let mut html = "<div class=\"bars\" id=\"bars\"><header><h3>Where it goes</h3><span class=\"kinds only-js\" \
-     role=\"group\" aria-label=\"Lengths\"><button type=\"button\" data-lengths=\"scale\" \
-     aria-pressed=\"true\">To scale</button><button type=\"button\" data-lengths=\"full\" \
-     aria-pressed=\"false\">Shares</button></span></header>"
+    let mut html = "<div class=\"bars\" id=\"bars\"><header><h3>Time by pass</h3><span class=\"kinds only-js\" role=\"group\" \
+         aria-label=\"Lengths\"><button type=\"button\" data-lengths=\"scale\" aria-pressed=\"true\">To scale</button><button \
+         type=\"button\" data-lengths=\"full\" aria-pressed=\"false\">Shares</button></span></header>"
         .to_owned();
     for row in rows {
         let _ = write!(

@@ -48,12 +48,12 @@ pub(super) fn table(report: &Report, rows: &[Measured]) -> String {
     let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"numbers-title\"><table \
      class=\"numbers\" id=\"table\"><thead><tr><th scope=\"col\" data-key=\"technique\">Technique</th>"
         .to_owned();
-    let meaning = "Median time of one frame's shadows, in milliseconds, with the number of timed frames and of warm-up frames before them.";
+    let meaning = "Median time of one frame's shadows in milliseconds, with the numbers of timed frames and of warm-up frames before them.";
     html += &head("total_ms", "ms", meaning, "lower is better");
     for info in &METRICS {
         html += &head(info.key, info.label, info.meaning, info.direction());
     }
-    html += &head("memory_bytes", "memory", "GPU memory that the technique holds.", "lower is better");
+    html += &head("memory_bytes", "memory", "GPU memory of the technique.", "lower is better");
     let _ = write!(
         html,
         "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\"><a \
@@ -104,14 +104,13 @@ pub(super) fn table(report: &Report, rows: &[Measured]) -> String {
 
 pub(super) fn time_note(report: &Report) -> String {
     let kind = if report.adapter.is_software {
-        "a software renderer on the CPU, not a GPU: frames by the processor's clock, passes by the driver's, which dates \
-         them inexactly"
+        "a software renderer on the CPU, not a GPU: frames are timed by the CPU clock, passes inexactly by the driver"
     } else {
         "GPU timestamps"
     };
     format!(
-        "Milliseconds for the shadows of one frame on <b>{}</b> ({kind}): medians of frames that are drawn once frames have come to \
-         take as long as one another. The table says of how many, after how many.",
+        "Milliseconds for the shadows of one frame on <b>{}</b> ({kind}): medians over frames after a warm-up, which ends when \
+         frame times are stable. The table has the numbers of timed and of warm-up frames.",
         escape(&report.adapter.name)
     )
 }

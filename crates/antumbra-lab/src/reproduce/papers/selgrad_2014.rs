@@ -40,14 +40,14 @@ const ONE_LAYER: Settings = &[("layers", "1")];
 const TWO_LAYERS: Settings = &[("layers", "2")];
 const SIXTEEN_LAYERS: Settings = &[("layers", "16")];
 
-const BOTH_FACES: &str = "ours keeps both faces of solids, so that two fragments of a list are one solid: two layers leave .0172 of the light on \
-     `lantern-wall`, and .0030 with `faces=back` (128 × 72).";
+const BOTH_FACES: &str = "ours keeps both faces of solids, so that two fragments of a list represent one solid: two layers \
+     leak .0172 of the light on `lantern-wall`, and .0030 with `faces=back` (128 × 72).";
 
-const MIXED_LEVELS: &str = "neighbouring levels mix, where the paper adds up what is in both: one and two fragments leave .164 and .091 of the light, and \
-                            .096 and .035 with `level_accumulation=add` (128 × 72).";
+const MIXED_LEVELS: &str = "our neighbouring levels mix, whereas the paper adds the opacities of both: one and two fragments \
+     leak .164 and .091 of the light, and .096 and .035 with `level_accumulation=add` (128 × 72).";
 
-const OWN_LEVELS: &str = "ours makes the levels that a receiver looks up and no more, of eleven about five, and keeps in each what is looked \
-                          up: little is left to save.";
+const OWN_LEVELS: &str = "ours computes only the levels that receivers look up, about five of eleven, and keeps in each only \
+     what is looked up, so little is left to save.";
 
 /// Numbers of the paper's tables 1 and 2, which are one table for two scenes.
 struct StageTimes {
@@ -102,11 +102,11 @@ const fn stage_rows(scene: &'static str, view: Option<&'static str>, paper: &Sta
     rows
 }
 
-const ADDED_TOO_DARK: &str = "leaves one behind the other are added up, and what two leaves of half a texel hide is all of it: min(½ + ½, 1) \
-                              where they cover ¾ or less (`tree`, 128 × 72: .122, with `list_accumulation=multiply` .099).";
-const MULTIPLIED_LEAVES: &str = "each fragment counts in two levels, w in one and 1 − w in the other, and (1 − w)(1 − (1 − w)) of the light \
-                                 passes an opaque one: up to a quarter (as published on `tree`, 128 × 72, one and two fragments \
-                                 leave .35 and .21 of the light, with `level_accumulation=add` .22 and .05).";
+const ADDED_TOO_DARK: &str = "leaves behind one another are added, so two leaves of half a texel hide all of it: min(½ + ½, \
+     1), where they cover ¾ or less (`tree`, 128 × 72: .122, with `list_accumulation=multiply` .099).";
+const MULTIPLIED_LEAVES: &str = "each fragment counts in two levels, with w in one and 1 − w in the other, so (1 − w)(1 − (1 − \
+     w)) of the light, up to a quarter, passes an opaque one (as published on `tree`, 128 × 72, one and two fragments leak .35 \
+     and .21 of the light, with `level_accumulation=add` .22 and .05).";
 
 /// Settings with a number of fragments per list, accumulated by multiplication.
 macro_rules! multiplied {
@@ -139,7 +139,7 @@ const STAGE_CLAIMS: &[Claim] = &[
     .because_ours(OWN_LEVELS)
     .on_any_adapter(),
     claim(
-        "Every other pixel alone takes less than half the time of all of them.",
+        "Computing every other pixel takes less than half the time of computing all.",
         &[Rule::RatioWithin(Ms, "soft shadows, sub", "soft shadows, default", [0.25, 0.5])],
     )
     .on_any_adapter(),
@@ -180,12 +180,13 @@ pub const PAPER: Paper = Paper {
                     ],
                 )
                 .because(
-                    "by addition what stands before what is added up: where panes' bars and their glass overlap more is hidden than \
-                     there is.",
+                    "addition counts overlapping occluders twice: where the bars of the panes overlap their glass, more light \
+                     is hidden than there is.",
                 ),
                 claim("On Sponza too.", &[Rule::AtMost(Rmse, "Sponza", 0.05)]).because(
-                    "fragments are held against one depth, and walls and floors that the light grazes shade themselves: at 128 × 72 .107, with .271 of \
-                     what is lit lost. Held against the receiver's plane (`planes=true`) they have .033 and .014.",
+                    "fragments are compared with one depth, so walls and floors at grazing angles to the light shadow \
+                     themselves: at 128 × 72 the error is .107, and .271 of the lit area is lost. Compared with the receiver's \
+                     plane (`planes=true`), the values are .033 and .014.",
                 ),
                 claim(
                     "ESSM does not capture distant and close occluders as well.",
@@ -206,8 +207,7 @@ pub const PAPER: Paper = Paper {
                 error("level 5 alone", LANTERN, "multi_layer").with(&[("fixed_level", "5")]).at(640, 360),
             ],
             claims: &[],
-            note: "a number for the width of one level's penumbra, because no metric of ours has it; the pictures \
-                   show it",
+            note: "the width of one level's penumbra as a number, because no metric measures it; the images show it",
         },
         Exhibit {
             id: "figure6",
@@ -217,10 +217,10 @@ pub const PAPER: Paper = Paper {
                 error("Y-map", "builtin:overlap", "multi_layer").with(&[Y_MAP]).ours(&[("hierarchy", "fine_y_map")]).at(640, 360),
             ],
             claims: &[claim(
-                "Y-maps have not the artefacts that MIP-maps have in wide filters.",
+                "Y-maps do not have the artefacts of MIP-maps in wide filters.",
                 &[Rule::RatioAtMost(Noise, "Y-map", "MIP-map", 0.75), Rule::RatioAtMost(Rmse, "Y-map", "MIP-map", 1.0)],
             )
-            .because_ours("it errs less, and what noise is left by ours is of edges, alike by both.")],
+            .because_ours("its error is smaller, but the remaining noise of ours is at edges, and the same for both.")],
             note: "",
         },
         drawing("figure7", "How a Y-map is made"),
@@ -261,14 +261,14 @@ pub const PAPER: Paper = Paper {
                 &[Rule::AtMost(Rmse, "close: multi-layer", 0.05), Rule::AtMost(Rmse, "distant: multi-layer", 0.05)],
             )
             .because(
-                "a level's bilinear lookup blurs by √(w² + 2 s²) where its texels, s apart, merge w: penumbrae come out too wide \
-                 (with `filter_widths=effective` the distant one has .053 where this has .068, 128 × 72).",
+                "the bilinear lookup of a level blurs by √(w² + 2 s²) where its texels, s apart, merge w, so penumbrae are too \
+                 wide (with `filter_widths=effective` the distant one has .053 instead of .068, 128 × 72).",
             )],
             note: "",
         },
         Exhibit {
             id: "figure12",
-            shows: "A tree: ESSM, and 1, 2 and 16 fragments in the base layer",
+            shows: "A tree: ESSM, and 1, 2 and 16 fragments in the base level",
             rows: &[
                 error("ESSM", TREE, "essm").at(640, 360),
                 error("1 fragment", TREE, "multi_layer").with(ONE_LAYER).at(640, 360),
@@ -281,7 +281,7 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[
                 claim(
-                    "One fragment a texel leaves light in a tree's shadow; with two it looks plausible.",
+                    "With one fragment per texel, light remains in a tree's shadow; with two, the shadow looks plausible.",
                     &[Rule::RatioAtMost(UmbraLeak, "2 fragments", "1 fragment", 0.5)],
                 )
                 .because_ours(MIXED_LEVELS),
@@ -308,7 +308,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure13",
-            shows: "What each parameter costs in quality",
+            shows: "Loss of quality by each parameter",
             rows: &[
                 error("conservative", LANTERN, "multi_layer").at(640, 360),
                 error("one layer", LANTERN, "multi_layer").with(ONE_LAYER).at(640, 360),
@@ -319,7 +319,7 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[
                 claim(
-                    "A single layer does not suffice: light gets where it is occluded behind the first.",
+                    "A single layer does not suffice: light reaches places that are occluded behind the first.",
                     &[Rule::RatioAtLeast(UmbraLeak, "one layer", "conservative", 1.5)],
                 )
                 .because_ours(BOTH_FACES),
@@ -379,9 +379,10 @@ pub const PAPER: Paper = Paper {
                     ],
                 )
                 .because_ours(
-                    "panels in a row darken where levels are added, and our levels are not: at 128 × 72 addition within lists has .0118 and \
-                     multiplication .0116 (`list_accumulation`). Where levels are multiplied, too, up to a quarter of the light passes an \
-                     opaque fragment, which counts in two of them (`level_accumulation`): .0271.",
+                    "aligned panels darken where levels are added, but our levels are not added: at 128 × 72, addition within \
+                     lists has .0118 and multiplication .0116 (`list_accumulation`). Where levels are multiplied too, up to a \
+                     quarter of the light passes an opaque fragment, because it counts in two of them (`level_accumulation`): \
+                     .0271.",
                 ),
                 claim(
                     "ESSM does not handle aligned panels well.",
@@ -392,7 +393,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "table1",
-            shows: "Milliseconds for each stage on Sponza: default, ε = 10w, 5 levels, sub-sampling, all",
+            shows: "Milliseconds per stage on Sponza: default, ε = 10w, 5 levels, sub-sampling, all",
             rows: &stage_rows(
                 SPONZA,
                 Some(HALL),
@@ -426,7 +427,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "table3",
-            shows: "Frames a second with MIP-maps and Y-maps, two resolutions, all three options on",
+            shows: "Frames per second with MIP-maps and Y-maps, two resolutions, all three options on",
             rows: &[
                 fps("Sponza, 1280x720, MIP", SPONZA, "multi_layer", 117.4).seen(HALL).with(ALL),
                 fps("Sponza, 1280x720, Y", SPONZA, "multi_layer", 101.2).seen(HALL).with(ALL_Y_MAP),
@@ -438,7 +439,7 @@ pub const PAPER: Paper = Paper {
                 fps("street, 1920x1080, Y", STREET, "multi_layer", 77.9).with(ALL_Y_MAP).at(1920, 1080),
             ],
             claims: &[claim(
-                "Y-maps cost some frames a second: on the street 7 to 18 of a hundred.",
+                "Y-maps lower the frame rate: by 7 to 18 % on the street.",
                 &[
                     Rule::RatioWithin(Ms, "street, 1280x720, Y", "street, 1280x720, MIP", [1.05, 1.35]),
                     Rule::RatioWithin(Ms, "street, 1920x1080, Y", "street, 1920x1080, MIP", [1.02, 1.25]),
@@ -446,7 +447,7 @@ pub const PAPER: Paper = Paper {
             )
             .on_any_adapter(),
             claim(
-                "On Sponza 10 to 14 of a hundred.",
+                "By 10 to 14 % on Sponza.",
                 &[
                     Rule::RatioWithin(Ms, "Sponza, 1280x720, Y", "Sponza, 1280x720, MIP", [1.05, 1.3]),
                     Rule::RatioWithin(Ms, "Sponza, 1920x1080, Y", "Sponza, 1920x1080, MIP", [1.03, 1.25]),
@@ -457,27 +458,27 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "table4",
-            shows: "ESSM and multi-layer at three sizes on three scenes, and rays: 128 a pixel, there by OptiX, \
-                    here by compute shaders on the same adapter",
+            shows: "ESSM and multi-layer at three sizes on three scenes, and 128 rays per pixel, in the paper by OptiX, here \
+                 by compute shaders on the same adapter",
             rows: &[
                 ms("Sponza: ESSM", SPONZA, "essm", "", Number(5.2)).seen(HALL),
                 ms("Sponza: multi-layer", SPONZA, "multi_layer", "", Number(8.5)).seen(HALL).with(ALL),
                 ms("Sponza: multi-layer, 2048²", SPONZA, "multi_layer", "", Number(45.0))
                     .seen(HALL)
                     .with(ALL_2048)
-                    .dear(),
+                    .slow(),
                 ms("Sponza: multi-layer, 512²", SPONZA, "multi_layer", "", Number(5.7)).seen(HALL).with(ALL_512),
-                ms("Sponza: ray tracing", SPONZA, "ray_traced", "", Number(2100.0)).seen(HALL).with(&[("samples", "128")]).dear(),
+                ms("Sponza: ray tracing", SPONZA, "ray_traced", "", Number(2100.0)).seen(HALL).with(&[("samples", "128")]).slow(),
                 ms("tree: ESSM", TREE, "essm", "", Number(5.5)),
                 ms("tree: multi-layer", TREE, "multi_layer", "", Number(6.1)).with(ALL),
                 ms("tree: multi-layer, 2048²", TREE, "multi_layer", "", Number(28.0)).with(ALL_2048),
                 ms("tree: multi-layer, 512²", TREE, "multi_layer", "", Number(4.4)).with(ALL_512),
-                ms("tree: ray tracing", TREE, "ray_traced", "", Number(1800.0)).with(&[("samples", "128")]).dear(),
+                ms("tree: ray tracing", TREE, "ray_traced", "", Number(1800.0)).with(&[("samples", "128")]).slow(),
                 ms("street: ESSM", STREET, "essm", "", Number(6.7)),
                 ms("street: multi-layer", STREET, "multi_layer", "", Number(9.5)).with(ALL),
-                ms("street: multi-layer, 2048²", STREET, "multi_layer", "", Number(38.0)).with(ALL_2048).dear(),
+                ms("street: multi-layer, 2048²", STREET, "multi_layer", "", Number(38.0)).with(ALL_2048).slow(),
                 ms("street: multi-layer, 512²", STREET, "multi_layer", "", Number(8.5)).with(ALL_512),
-                ms("street: ray tracing", STREET, "ray_traced", "", Number(1600.0)).with(&[("samples", "128")]).dear(),
+                ms("street: ray tracing", STREET, "ray_traced", "", Number(1600.0)).with(&[("samples", "128")]).slow(),
             ],
             claims: &[
                 claim(
@@ -508,7 +509,7 @@ pub const PAPER: Paper = Paper {
                     ],
                 )
                 .because(
-                    "rays on a graphics card of today, through trees that its compute units walk, are faster beside everything else \
+                    "compared with everything else, rays traversed by compute shaders on a current graphics card are faster \
                      than they were on one of 2013.",
                 ),
             ],
@@ -539,7 +540,7 @@ pub const PAPER: Paper = Paper {
                 )
                 .on_any_adapter(),
                 claim(
-                    "The same on the street, which the paper has no numbers for: Y-maps take longer, by less than half.",
+                    "The same on the street, for which the paper has no numbers: Y-maps take longer, by less than half.",
                     &[
                         Rule::RatioWithin(Ms, "street: filtering, Y", "street: filtering, MIP", [1.0, 1.5]),
                         Rule::RatioWithin(Ms, "street: lookup, Y", "street: lookup, MIP", [1.0, 1.5]),
@@ -558,18 +559,19 @@ pub const PAPER: Paper = Paper {
                 &[Rule::AtMost(Rmse, "multi-layer", 0.05)],
             )
             .because(
-                "of several departures from the truth none has most of it: of .111 (128 × 72) fragments held against one depth are \
-                 .006 (`planes=true`), interpolation beyond a level's width .005 (`filter_widths=effective`).",
+                "no single simplification causes most of the error: of .111 (128 × 72), comparing fragments with one depth \
+                 causes .006 (`planes=true`), interpolation beyond a level's width .005 (`filter_widths=effective`).",
             )
             .because_ours(
-                "many of the street's occluders are narrower than a texel: at 128 × 72 .089, .059 and .051 with `map_size` 512, 1024 and 1408; \
-                 with 2048 there are more fragments than a storage buffer of WebGPU's default size holds.",
+                "many occluders of the street are narrower than a texel: at 128 × 72 the error is .089, .059 and .051 with \
+                 `map_size` 512, 1024 and 1408; with 2048 there are too many fragments for a storage buffer of WebGPU's \
+                 default size.",
             )],
             note: "",
         },
         Exhibit {
             id: "figure17",
-            shows: "Multi-layer beside ray-traced shadows; the paper does not say how opacities accumulate there",
+            shows: "Multi-layer beside ray-traced shadows; the paper does not state how opacities accumulate there",
             rows: &[
                 error("additive", TREE, "multi_layer").at(640, 360),
                 error("multiplicative", TREE, "multi_layer").with(MULTIPLIED).at(640, 360),

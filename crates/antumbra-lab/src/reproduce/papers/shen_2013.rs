@@ -19,22 +19,21 @@ const TEXELS_2006: Settings = &[("occluders", "patches"), ("squares", "64"), ("r
 const OUTLINES_2007: Settings = &[("occluders", "outlines"), ("squares", "64")];
 const BITS_2007: Settings = &[("samples", "256"), ("layers", "1"), ("gaps", "all")];
 /// Reason of the errors of images as published.
-const R_AND_MU: &str = "R and μ exclude one another. With 20 bits the exponent that keeps every depth is 13.9, \
-                        and contacts leak, the more the deeper the scene; tiles with their own range keep both. \
-                        docs/papers.md has the algebra.";
+const R_AND_MU: &str = "R and μ contradict each other. With 20 bits, the largest exponent that represents every depth is 13.9, \
+     so contacts leak, more so in deeper scenes; tiles with their own range allow both. docs/papers.md has the algebra.";
 
 /// A row of Table 1: the host's G-buffer, the paper's three stages, and the total.
 macro_rules! table1 {
     ($(
-        $name:literal, $scene:ident, $settings:expr, $is_dear:literal:
+        $name:literal, $scene:ident, $settings:expr, $is_slow:literal:
         $gb:literal, $eb:literal, $stg:literal, $shadow:literal, $fps:literal;
     )+) => {
         &[$(
             scene_ms(concat!($name, ": G-buffer"), $scene, $gb).at(1280, 960),
-            stage(concat!($name, ": basis"), $scene, $settings, $is_dear, "basis", $eb),
-            stage(concat!($name, ": tile grids"), $scene, $settings, $is_dear, "table", $stg),
-            stage(concat!($name, ": shadow"), $scene, $settings, $is_dear, "resolve", $shadow),
-            fps(concat!($name, ": total"), $scene, "essm", $fps).with($settings).at(1280, 960).dear_where($is_dear).alone(),
+            stage(concat!($name, ": basis"), $scene, $settings, $is_slow, "basis", $eb),
+            stage(concat!($name, ": tile grids"), $scene, $settings, $is_slow, "table", $stg),
+            stage(concat!($name, ": shadow"), $scene, $settings, $is_slow, "resolve", $shadow),
+            fps(concat!($name, ": total"), $scene, "essm", $fps).with($settings).at(1280, 960).slow_if($is_slow).alone(),
         )+]
     };
 }
@@ -52,11 +51,11 @@ const fn stage(
     what: &'static str,
     scene: &'static str,
     settings: Settings,
-    is_dear: bool,
+    is_slow: bool,
     passes: &'static str,
     paper_ms: f64,
 ) -> Row {
-    ms(what, scene, "essm", passes, Number(paper_ms)).with(settings).at(1280, 960).dear_where(is_dear).alone()
+    ms(what, scene, "essm", passes, Number(paper_ms)).with(settings).at(1280, 960).slow_if(is_slow).alone()
 }
 
 /// Errors over the exponent c, each with several numbers of bits μ, for the published form only.
@@ -93,7 +92,7 @@ macro_rules! table2 {
     (row $size:literal, $what:literal, $table:literal, $scan:literal, $passes:literal, $paper:literal) => {
         ms(concat!($what, ", ", $size, "²"), TRAFFIC, "essm", $passes, Number($paper))
             .with(&[("table", $table), ("scan", $scan), ("map_size", $size)])
-            .dear_where($size.as_bytes()[0] == b'4')
+            .slow_if($size.as_bytes()[0] == b'4')
             .at(1280, 960)
     };
 }
@@ -138,16 +137,16 @@ pub const PAPER: Paper = Paper {
             )
             .because(R_AND_MU)
             .because_ours(
-                "one mean depth stands for what blocks near and far, and the street has both before most receivers: so has analytic \
-                 filtering by one mean, which has .129 there where ESSM has .099 (128 × 72, maps of 4096²).",
+                "one mean depth represents near and far blockers, and most receivers of the street have both. Analytic \
+                 filtering by one mean has the same fault: .129 where ESSM has .099 (128 × 72, maps of 4096²).",
             )],
             note: "",
         },
         drawing("figure2", "Functions that reconstruct the shadow test"),
-        drawing("figure3", "The soft shadow's filter convolved with the pixel's footprint"),
+        drawing("figure3", "Filter of the soft shadow, convolved with the pixel's footprint"),
         Exhibit {
             id: "figure4",
-            shows: "Rasterisation of the elliptical footprint: Level0, and Level1 and Level2 whose ends are finer",
+            shows: "Rasterisation of the elliptical footprint: Level0, and Level1 and Level2 with finer ends",
             rows: &[
                 level_row("Level0", &[("map_size", "512"), ("row_height", "4"), ("level", "0")]),
                 level_row("Level1", &[("map_size", "512"), ("row_height", "4"), ("level", "1")]),
@@ -176,21 +175,21 @@ pub const PAPER: Paper = Paper {
                     .at(640, 480),
             ],
             claims: &[claim(
-                "One table is noisy, since sums lose precision: what is lit turns dark in spots. Tile grids keep it.",
+                "One table is noisy, because sums lose precision: lit areas have dark spots. Tile grids preserve it.",
                 &[
                     Rule::RatioAtMost(LitLoss, "tile grids", "one table of floats", 0.25),
                     Rule::AtMost(LitLoss, "tile grids", 0.03),
                 ],
             )
             .because_ours(
-                "of the .047 that our float table loses .027 is lost with tiles, too, whose sums are exact (128 × 72): what is left to them \
-                 is less than half.",
+                "of the .047 that our float table loses, .027 is also lost with tiles, whose sums are exact (128 × 72): less \
+                 than half is due to precision.",
             )],
             note: "",
         },
         Exhibit {
             id: "table1",
-            shows: "Milliseconds for each stage, on four scenes; the total as frames a second",
+            shows: "Milliseconds per stage on four scenes; the total as frames per second",
             rows: table1! {
                 "ogre (a knot)", OGRE, &[], false: 2.10, 0.21, 1.90, 4.13, 119.9;
                 "plants (a tree)", PLANTS, &[], false: 2.32, 0.56, 4.43, 4.62, 83.82;
@@ -198,7 +197,7 @@ pub const PAPER: Paper = Paper {
                 "traffic (a street)", TRAFFIC, MAP_4096, true: 16.4, 9.6, 41.3, 10.4, 12.87;
             },
             claims: &[claim(
-                "Making tile grids and the shadow pass take most of the time.",
+                "Most of the time is taken by computing tile grids and by the shadow pass.",
                 &[
                     Rule::RatioAtLeast(Ms, "ogre (a knot): shadow", "ogre (a knot): basis", 1.0),
                     Rule::RatioAtLeast(Ms, "ogre (a knot): tile grids", "ogre (a knot): basis", 1.0),
@@ -210,7 +209,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "table2",
-            shows: "Summed-area tables and tile grids over the size of the map: making them, and the shadow pass",
+            shows: "Times of computing summed-area tables and tile grids, and of the shadow pass, by map size",
             rows: table2! {
                 "512": 1.8, 4.0, 1.5, 4.1;
                 "1024": 6.8, 4.2, 4.5, 4.6;
@@ -219,8 +218,7 @@ pub const PAPER: Paper = Paper {
             },
             claims: &[
                 claim(
-                    "Tile grids are made faster than one table, the more so the larger the map: three times at \
-                     4096².",
+                    "Tile grids are computed faster than one table, the more so the larger the map: three times at 4096².",
                     &[
                         Rule::RatioAtMost(Ms, "tile grids, doubling, 1024²", "one table, doubling, 1024²", 1.0),
                         Rule::RatioAtMost(Ms, "tile grids, doubling, 2048²", "one table, doubling, 2048²", 0.9),
@@ -228,16 +226,16 @@ pub const PAPER: Paper = Paper {
                     ],
                 ),
                 claim(
-                    "The shadow pass pays little for tiles.",
+                    "The shadow pass takes little more time with tiles.",
                     &[
                         Rule::RatioAtMost(Ms, "tile grids: shadow, 1024²", "one table: shadow, 1024²", 1.3),
                         Rule::RatioAtMost(Ms, "tile grids: shadow, 2048²", "one table: shadow, 2048²", 1.3),
                     ],
                 ),
             ],
-            note: "rows for the numbers of passes: 6, 8, 8 and 8 for one table and 4 for tile grids, which a test of \
-                   the table counts. Ours are the same, 2 ⌈log₈ side⌉. Which tile fits is chosen on the GPU: up to \
-                   64² texels the two further passes are dispatched without workgroups, and do nothing.",
+            note: "rows for the numbers of passes, which a test of the table counts: 6, 8, 8 and 8 for one table and 4 for \
+                 tile grids. Ours are the same, 2 ⌈log₈ side⌉. The tile size is chosen on the GPU: up to 64² texels, the two \
+                 further passes are dispatched without workgroups.",
         },
         Exhibit {
             id: "figure6",
@@ -274,9 +272,10 @@ pub const PAPER: Paper = Paper {
                     &[Rule::RatioAtMost(Noise, "ESSM", "VSSM", 0.9)],
                 )
                 .because_both(
-                    "ESSM has no more noise than analytic filtering, which has no sums to lose: both take one mean depth for the fence's \
-                     near and far bars, and maps of 2048² take little of it away (at 128 × 72 .034 and .032 by ESSM, .036 and .036 by \
-                     analytic filtering). What VSSM has is of texels: .033, and .018 with 2048².",
+                    "ESSM has no more noise than analytic filtering, which has no sums whose precision could be lost: both use \
+                     one mean depth for the fence's near and far bars, and maps of 2048² help little (at 128 × 72, .034 and \
+                     .032 by ESSM, .036 and .036 by analytic filtering). The noise of VSSM is caused by texels: .033, and .018 \
+                     with 2048².",
                 ),
             ],
             note: "",
@@ -297,7 +296,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure8",
-            shows: "Artefacts of ESSM and PCSS against 32 × 32 light points, map of 512²",
+            shows: "Artefacts of ESSM and PCSS compared with 32 × 32 light samples, map of 512²",
             rows: &[
                 error("PCSS", "builtin:overlap", "pcss")
                     .with(&[("map_size", "512"), ("attach_contacts", "false")])
@@ -311,16 +310,16 @@ pub const PAPER: Paper = Paper {
                     "Both underestimate the umbra where blockers of several depths are averaged.",
                     &[Rule::AtLeast(UmbraLeak, "ESSM", 0.005), Rule::AtLeast(UmbraLeak, "PCSS", 0.005)],
                 )
-                .because_ours("blockers that hide another part of the light than their mean are looked at one by one (`second_look`)."),
+                .because_ours("blockers that hide another part of the light than their mean are evaluated separately (`second_look`)."),
             ],
             note: "",
         },
         Exhibit {
             id: "section6",
-            shows: "Errors over the exponent c, for 16, 20 and 24 bits of precision μ",
+            shows: "Errors by the exponent c, for 16, 20 and 24 bits of precision μ",
             rows: over_exponents![3.0 6.0 10.0 13.86 17.0 24.0 40.0 80.0],
             claims: &[claim(
-                "The optimal parameter c is as large as a float's exponent holds (section 7), with μ = 20 (section 8).",
+                "The optimal parameter c is the largest that a float's exponent allows (section 7), with μ = 20 (section 8).",
                 &[Rule::RatioAtMost(Rmse, "c = 80.0, μ = 20", "c = 13.86, μ = 20", 1.0)],
             )
             .because(R_AND_MU)],
@@ -337,19 +336,19 @@ pub const PAPER: Paper = Paper {
                 over_range("light at 10°: a deep range", "builtin:tilted-planes?light_elevation_deg=10"),
             ],
             claims: &[claim(
-                "The narrower the effective range of depth, the nearer to the shadow test, and the less contacts leak.",
+                "The narrower the effective depth range, the closer the result to the shadow test, and the less contacts leak.",
                 &[Rule::RatioAtMost(UmbraLeak, "light at 90°: a shallow range", "light at 10°: a deep range", 0.75)],
             )
             .because_ours(
-                "each tile has a range of its own, so contacts under a light that sees a deep one leak no more (.039 of the light at 10° and \
-                 .078 at 90°, 128 × 72). In one range (`table=tile_grid`, `exponent=13.86`) it is .104 and .078, and .270 and .133 where \
-                 narrow kernels are not read from the map (`direct_texels=0`).",
+                "each tile has its own range, so contacts under a light with a deep range leak no more than others (.039 of \
+                 the light at 10° and .078 at 90°, 128 × 72). With one range (`table=tile_grid`, `exponent=13.86`) the leak is \
+                 .104 and .078, and .270 and .133 if narrow kernels are not read from the map (`direct_texels=0`).",
             )],
             note: "",
         },
         Exhibit {
             id: "section2",
-            shows: "Constant time for any size of light: the shadow pass where the image is penumbra all over",
+            shows: "Constant time for any light size: the shadow pass of an image that is all penumbra",
             rows: &[
                 over_light("ESSM, 0.6 m", "essm", 2.0),
                 over_light("ESSM, 1.2 m", "essm", 4.0),
@@ -364,7 +363,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "section2-backprojection",
-            shows: "Texels of the map projected back onto the light: their areas added up, as bits, and inside outlines",
+            shows: "Texels of the map projected back onto the light: as added areas, as bits, and inside outlines",
             rows: &[
                 error("texels, added up", PLANTS, "backprojection").with(TEXELS_2006).at(128, 128),
                 error("outlines", PLANTS, "backprojection").with(OUTLINES_2007).at(128, 128),

@@ -65,7 +65,7 @@ pub const PAPER: Paper = Paper {
     exhibits: &[
         Exhibit {
             id: "equation1",
-            shows: "Visibility apart from lighting against irradiance sample by sample, under lights of several sizes",
+            shows: "Visibility separate from lighting, compared with irradiance per light sample, under lights of several sizes",
             rows: &[
                 factored("a ninth of its distance", 1.0),
                 factored("two ninths", 2.0),
@@ -73,7 +73,7 @@ pub const PAPER: Paper = Paper {
                 factored("eight ninths", 8.0),
             ],
             claims: &[claim(
-                "The difference of the factored solution is subtle when receivers are at a certain distance from the source.",
+                "The factored solution differs little if receivers are at a certain distance from the source.",
                 &[
                     Rule::AtMost(Rmse, "a ninth of its distance", 0.01),
                     Rule::RatioAtLeast(Rmse, "eight ninths", "a ninth of its distance", 3.0),
@@ -83,7 +83,8 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure1",
-            shows: "One depth layer against accurate visibility, where four depths lie behind one another and a face is aligned with the light",
+            shows: "One depth layer compared with accurate visibility, where four depths are behind one another and a face is \
+                 aligned with the light",
             rows: &[
                 error("one depth layer (bitmask)", PANELS, "bitmask").with(ONE_LAYER).at(512, 512),
                 error("two depth layers (bitmask)", PANELS, "bitmask").with(TWO_LAYERS).at(512, 512),
@@ -95,7 +96,8 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[
                 claim(
-                    "One depth layer is not enough, even with the light's points as bits or occluders as outlines; sampled visibility is accurate.",
+                    "One depth layer is not enough, even with light samples as bits or occluders as outlines; sampled \
+                     visibility is accurate.",
                     &[
                         Rule::RatioAtMost(Rmse, "sample-based, 256", "one depth layer (bitmask)", 0.5),
                         Rule::RatioAtMost(Rmse, "sample-based, 256", "one depth layer (backprojection)", 0.5),
@@ -104,7 +106,7 @@ pub const PAPER: Paper = Paper {
                     ],
                 ),
                 claim(
-                    "This case needs four layers: with three the bits of Schwarz and Stamminger still leave light.",
+                    "This case needs four layers: with three, the bitmasks of Schwarz and Stamminger still leak light.",
                     &[
                         Rule::RatioAtMost(UmbraLeak, "four depth layers (bitmask)", "three depth layers (bitmask)", 0.5),
                         Rule::RatioAtMost(Rmse, "four depth layers (bitmask)", "one depth layer (bitmask)", 0.25),
@@ -121,7 +123,7 @@ pub const PAPER: Paper = Paper {
         drawing("figure6", "The bit mask of light samples behind a plane"),
         Exhibit {
             id: "figure7",
-            shows: "128 light samples, and other ones in each frame, added up for a second (32 frames)",
+            shows: "128 light samples, and different ones in each frame, averaged over a second (32 frames)",
             rows: &[
                 error("no jittering", "builtin:columns", "sample_based").with(SAMPLES_128).at(512, 512),
                 error("turned by pixel", "builtin:columns", "sample_based")
@@ -135,7 +137,7 @@ pub const PAPER: Paper = Paper {
                 jittered("jittering, 32 frames", 32),
             ],
             claims: &[claim(
-                "Other light samples in each frame add up to a smooth shadow.",
+                "Different light samples in each frame average to a smooth shadow.",
                 &[
                     Rule::RatioAtMost(Noise, "jittering, 32 frames", "no jittering", 0.75),
                     Rule::RatioAtMost(Rmse, "jittering, 32 frames", "no jittering", 0.75),
@@ -145,7 +147,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "section4.3",
-            shows: "A subset of the view-samples and a reconstruction step, which the paper proposes and did not time",
+            shows: "A subset of the view-samples and a reconstruction step, which the paper proposes without times",
             rows: &[
                 error("every view-sample", "builtin:columns", "sample_based").with(SAMPLES_256).timed().at(512, 512),
                 error("a subset, reconstructed", "builtin:columns", "sample_based").with(SUBSET_256).timed().at(512, 512),
@@ -158,11 +160,11 @@ pub const PAPER: Paper = Paper {
                     &[Rule::AtMost(Rmse, "a subset, reconstructed", 0.03)],
                 )
                 .because_both(
-                    "the smaller the image the more of it lies at edges, where neighbours that differ by less than a quarter are \
-                     interpolated: of columns .0225 at the paper's 512² and .034 at 320 × 180.",
+                    "a smaller image has a larger fraction of pixels at edges, where neighbours that differ by less than a \
+                     quarter are interpolated: `columns` has .0225 at the paper's 512² and .034 at 320 × 180.",
                 ),
                 claim(
-                    "A subset restricts computations.",
+                    "A subset saves computations.",
                     &[Rule::RatioAtMost(Ms, "a subset: time", "every view-sample: time", 0.8)],
                 ),
             ],
@@ -177,12 +179,12 @@ pub const PAPER: Paper = Paper {
                 fps("sample-based, 256", "sponza.glb", "sample_based", 2.6).seen(ATRIUM).with(SAMPLES_256).at(512, 512),
                 ms("shadow maps, 256", "sponza.glb", "multi_view", "", Drawn)
                     .seen(ATRIUM)
-                    .dear()
+                    .slow()
                     .with(MAPS_256)
                     .at(512, 512),
             ],
             claims: &[claim(
-                "Sample-based visibility is about an order of magnitude faster than as many shadow maps.",
+                "Sample-based visibility is about an order of magnitude faster than the same number of shadow maps.",
                 &[Rule::RatioAtLeast(Ms, "shadow maps, 256", "sample-based, 256", 10.0)],
             )],
             note: "",
@@ -205,7 +207,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure11",
-            shows: "Time over the number of triangles, 128 light samples",
+            shows: "Time by the number of triangles, 128 light samples",
             rows: &[
                 ms("10 000 triangles", "builtin:knot?triangles=10000", "sample_based", "", Drawn)
                     .with(SAMPLES_128)
@@ -219,7 +221,7 @@ pub const PAPER: Paper = Paper {
                 ms("1 000 000 triangles", "builtin:knot?triangles=1000000", "sample_based", "", Drawn)
                     .with(SAMPLES_128)
                     .at(512, 512)
-                    .dear(),
+                    .slow(),
             ],
             claims: &[claim(
                 "Time is mostly linear in the number of triangles.",
@@ -232,7 +234,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "figure12",
-            shows: "Time over the radius of the light, 6 000 triangles, 256 light samples",
+            shows: "Time by the radius of the light, 6 000 triangles, 256 light samples",
             rows: &[
                 ms("half the radius", "builtin:knot?triangles=6000", "sample_based", "", Drawn)
                     .with(SAMPLES_256)
@@ -252,7 +254,7 @@ pub const PAPER: Paper = Paper {
                     .at(512, 512),
             ],
             claims: &[claim(
-                "Time is linear in the light's radius: half the radius costs half, twice it costs twice as much.",
+                "Time is linear in the light's radius: half the radius takes half the time, twice the radius twice the time.",
                 &[
                     Rule::RatioWithin(Ms, "half the radius", "the scene's radius", [0.4, 0.65]),
                     Rule::RatioWithin(Ms, "twice the radius", "the scene's radius", [1.55, 2.5]),
@@ -260,20 +262,20 @@ pub const PAPER: Paper = Paper {
                 ],
             )
             .because_both(
-                "a part of the time does not depend on the radius: lists are made, and regions of influence are at least a \
-                 triangle's own.",
+                "part of the time does not depend on the radius: that of building lists, and regions of influence are at least \
+                 as large as their triangles.",
             )
             .on_any_adapter()],
             note: "",
         },
         Exhibit {
             id: "figure13",
-            shows: "Time over the number of light samples, against as many shadow maps",
+            shows: "Time by the number of light samples, compared with the same number of shadow maps",
             rows: &[
                 ms("shadow maps, 128", "builtin:columns", "multi_view", "", Drawn).with(MAPS_128).at(512, 512),
                 ms("shadow maps, 256", "builtin:columns", "multi_view", "", Drawn).with(MAPS_256).at(512, 512),
-                ms("shadow maps, 512", "builtin:columns", "multi_view", "", Drawn).with(MAPS_512).at(512, 512).dear(),
-                ms("shadow maps, 1024", "builtin:columns", "multi_view", "", Drawn).with(MAPS_1024).at(512, 512).dear(),
+                ms("shadow maps, 512", "builtin:columns", "multi_view", "", Drawn).with(MAPS_512).at(512, 512).slow(),
+                ms("shadow maps, 1024", "builtin:columns", "multi_view", "", Drawn).with(MAPS_1024).at(512, 512).slow(),
                 ms("sample-based, 128", "builtin:columns", "sample_based", "", Drawn).with(SAMPLES_128).at(512, 512),
                 ms("sample-based, 256", "builtin:columns", "sample_based", "", Drawn).with(SAMPLES_256).at(512, 512),
                 ms("sample-based, 128, by the table", "builtin:columns", "sample_based", "", Drawn)
@@ -288,11 +290,11 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[
                 claim(
-                    "Eight times as many light samples, 128 to 1024, cost about twice as much.",
+                    "Eight times as many light samples, 128 to 1024, take about twice the time.",
                     &[Rule::RatioWithin(Ms, "sample-based, 1024", "sample-based, 128", [1.5, 2.7])],
                 ),
                 claim(
-                    "Sample-based visibility is about an order of magnitude faster than as many shadow maps.",
+                    "Sample-based visibility is about an order of magnitude faster than the same number of shadow maps.",
                     &[
                         Rule::RatioAtLeast(Ms, "shadow maps, 256", "sample-based, 256", 10.0),
                         Rule::RatioAtLeast(Ms, "shadow maps, 1024", "sample-based, 1024", 10.0),
@@ -316,22 +318,23 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[
                 claim(
-                    "It works robustly for a hairball: hard shadows are free of alias.",
+                    "It works robustly for a hairball: hard shadows have no aliasing.",
                     &[
                         Rule::AtMost(Rmse, "alias-free: errors", 0.02),
                         Rule::RatioAtMost(Rmse, "alias-free: errors", "shadow map: errors", 0.25),
                     ],
                 ),
                 claim("Soft shadows of a hairball are accurate.", &[Rule::AtMost(Rmse, "sample-based, 256", 0.02)]).because_both(
-                    "the bits are the ray tracer's for the same light points; what is left is sampling: a hair hides single ones, \
-                     of the technique's 256 and of the reference's (64 at the smallest sizes).",
+                    "the bits equal those of the ray tracer for the same light samples; the remaining error is sampling noise, \
+                     because a hair hides single samples, of the technique's 256 and of the reference's (64 at the smallest \
+                     sizes).",
                 ),
             ],
             note: "",
         },
         Exhibit {
             id: "figure15",
-            shows: "Large scenes: 90 000 triangles, the same zoomed, 70 000, and the ring in grass of 379 000",
+            shows: "Large scenes: 90 000 triangles, the same in a zoomed view, 70 000, and the ring in grass with 379 000",
             rows: &[
                 fps("tree, 85 000 (the paper's: 90 000)", "builtin:tree", "sample_based", 7.0)
                     .with(SAMPLES_256)
@@ -349,15 +352,15 @@ pub const PAPER: Paper = Paper {
                 ms("ring in grass: shadow maps, 256", "builtin:ring-in-grass", "multi_view", "", Drawn)
                     .with(MAPS_256)
                     .at(512, 512)
-                    .dear(),
+                    .slow(),
             ],
             claims: &[
                 claim(
-                    "The zoomed view costs more than the whole one (4.5 frames a second against 7).",
+                    "The zoomed view is slower than the whole one (4.5 and 7 frames per second).",
                     &[Rule::RatioWithin(Ms, "tree, zoomed", "tree, 85 000 (the paper's: 90 000)", [1.1, 2.2])],
                 ),
                 claim(
-                    "The ring costs most (0.65 frames a second).",
+                    "The ring is the slowest (0.65 frames per second).",
                     &[
                         Rule::RatioAtLeast(Ms, "ring in grass, 379 000", "tree, zoomed", 2.0),
                         Rule::RatioAtLeast(Ms, "ring in grass, 379 000", "a knot of 70 000 (the paper's: 70 000)", 2.0),
@@ -368,8 +371,7 @@ pub const PAPER: Paper = Paper {
         },
         Exhibit {
             id: "text",
-            shows: "A shadow map that has as little alias as alias-free shadows takes 8192² texels; the seconds \
-                    of other systems",
+            shows: "A shadow map with as little aliasing as alias-free shadows needs 8192² texels; times of other systems",
             rows: &[
                 ms("alias-free hard shadows", "builtin:columns", "alias_free", "", Drawn).at(512, 512),
                 ms("shadow map of 8192²", "builtin:columns", "hard", "", Drawn)
@@ -383,24 +385,24 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[
                 claim(
-                    "Alias-free shadows take three times as long as a map of 8192².",
+                    "Alias-free shadows take three times as long as a shadow map of 8192².",
                     &[
                         Rule::RatioWithin(Ms, "alias-free hard shadows", "shadow map of 8192²", [2.0, 4.5]),
                         Rule::RatioAtMost(Rmse, "alias-free: errors", "shadow map of 8192²: errors", 1.0),
                     ],
                 ),
                 not_here(
-                    "On Sponza it is 23 times as fast as Overbeck's ray-traced beams (9 s).",
-                    "that system is not in this repository; both on one machine would show it, and a graphics card's seconds of \
-                     2008 beside a processor's of today would not",
+                    "On Sponza, it is 23 times as fast as Overbeck's beam tracing (9 s).",
+                    "that system is not in this repository; a comparison needs both on one machine, not the times of a \
+                     graphics card of 2008 and a current CPU",
                 ),
                 not_here(
-                    "On the ring it is 49 times as fast as soft shadow volumes (75 s).",
-                    "that system is not in this repository; both on one machine would show it, and a processor's seconds of 2005 \
-                     beside a graphics card's of today would not",
+                    "On the ring, it is 49 times as fast as soft shadow volumes (75 s).",
+                    "that system is not in this repository; a comparison needs both on one machine, not the times of a CPU of \
+                     2005 and a current graphics card",
                 ),
             ],
-            note: "Overbeck's and Laine's systems, which are not here.",
+            note: "the systems of Overbeck and Laine, which are not implemented here.",
         },
     ],
 };

@@ -106,8 +106,7 @@ fn pictures_that_lie_otherwise_count_by_their_means() {
     assert_eq!(
         scene.warnings,
         [
-            "materials[0]: its transmission has other texture coordinates or another sampler than its base colour; the mean \
-          is taken"
+            "materials[0]: its transmission has different texture coordinates or a different sampler than its base colour; the mean is used"
         ]
     );
 }
@@ -208,9 +207,9 @@ fn fallbacks_are_taken_where_webp_cannot_be_had() {
     let cut = &picture(image::ImageFormat::WebP, &[WHITE])[..20];
     let scene = webp(cut, Some(&[[7, 8, 9, 10]])).load();
     assert_eq!(scene.images[scene.materials[0].base_color_image.unwrap()].rgba8, [[7, 8, 9, 10]]);
-    assert!(scene.warnings[0].ends_with("the texture's other image is taken"), "{:?}", scene.warnings);
+    assert!(scene.warnings[0].ends_with("the texture's other image is used"), "{:?}", scene.warnings);
     let scene = webp(cut, None).load();
-    assert!(scene.images.is_empty() && scene.warnings[0].ends_with("taken as white"), "{:?}", scene.warnings);
+    assert!(scene.images.is_empty() && scene.warnings[0].ends_with("white is used instead"), "{:?}", scene.warnings);
     let mut missing = webp(cut, None);
     missing.json["textures"][0]["extensions"] = json!({ "EXT_texture_webp": { "source": 9 } });
     let why = missing.load_at(0.0).unwrap_err();
@@ -238,7 +237,7 @@ fn hidden_nodes_and_what_hangs_from_them_are_not_there_but_cameras_are() {
         let scene = doc.load();
         let places: Vec<f32> = scene.instances.iter().map(|i| i.world_from_object.w_axis.x).collect();
         assert_eq!((places, scene.lights.len(), scene.cameras.len()), (vec![1.0, 6.0, 7.0], 0, 1));
-        assert_eq!(scene.warnings, ["nodes[6]: its `visible` is neither true nor false; it is taken as true"]);
+        assert_eq!(scene.warnings, ["nodes[6]: its `visible` is neither true nor false; true is used"]);
     }
 }
 
@@ -256,7 +255,10 @@ fn animation_pointers_are_said_to_be_unread() {
     doc.json["extensionsUsed"] = json!(["KHR_node_visibility", "KHR_animation_pointer"]);
     let scene = doc.load();
     assert_eq!(scene.instances.len(), 1);
-    assert_eq!(scene.warnings, ["KHR_animation_pointer is not supported; what it animates keeps its resting value"]);
+    assert_eq!(
+        scene.warnings,
+        ["KHR_animation_pointer is not supported; properties that it animates keep their values"]
+    );
     doc.json["extensionsRequired"] = json!(["KHR_animation_pointer"]);
     let why = doc.load_at(0.0).unwrap_err();
     assert!(why.contains("requires \"KHR_animation_pointer\", which is not supported"), "{why}");

@@ -30,7 +30,7 @@ impl PlannedDevice {
     }
 }
 
-#[allow(unsafe_code, reason = "the interface declares some of its functions unsafe; nothing here is")]
+#[allow(unsafe_code, reason = "the interface declares some functions unsafe, but no implementation here is")]
 impl DeviceInterface for PlannedDevice {
     fn features(&self) -> wgpu::Features {
         self.of.features()

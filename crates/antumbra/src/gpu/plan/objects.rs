@@ -34,7 +34,7 @@ impl BufferInterface for PlannedMemory {
         &self,
         _: Range<wgpu::BufferAddress>,
     ) -> Result<DispatchBufferMappedRange, wgpu::MapRangeError> {
-        panic!("a planned buffer holds nothing that could be mapped");
+        panic!("a planned buffer has no memory that could be mapped");
     }
     fn unmap(&self) {}
     fn destroy(&self) {}

@@ -120,7 +120,7 @@ mod tests {
 
     /// A displacement of a sixteenth of a texel is measured, times the safety factor.
     #[test]
-    fn what_is_drawn_elsewhere_is_noticed() {
+    fn rasterisation_offsets_are_measured() {
         let Some(gpu) = gpu() else { return };
         let own = read_storage::<f32>(gpu, gpu.snapped_texels())[0];
         let moved = read_storage::<f32>(gpu, &measure_moved(gpu, 0.0625))[0];

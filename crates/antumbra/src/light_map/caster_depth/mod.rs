@@ -83,8 +83,8 @@ pub(crate) fn check_map_size(gpu: &Gpu, technique: &'static str, size: u32, reme
     }
     Err(Error::Unsupported {
         technique,
-        needed: format!("light maps of {size}² texels"),
-        had: format!("at most {limit}²"),
+        needed: format!("shadow maps of {size} × {size} texels"),
+        had: format!("at most {limit} × {limit}"),
         remedy,
     })
 }
@@ -187,7 +187,7 @@ impl CasterDepth {
             };
             chunk[..size_of::<CasterView>()].copy_from_slice(bytemuck::bytes_of(&view));
         }
-        let (buffer, _) = self.views.as_ref().expect("made above where it was missing");
+        let (buffer, _) = self.views.as_ref().expect("created above if missing");
         stage.upload(buffer, 0, &bytes);
 
         self.cutouts = casters.iter().map(|caster| self.cutout_bind_group(stage, &caster.opacity)).collect();
@@ -262,7 +262,7 @@ impl CasterDepth {
                 bound.vertices(pass, 1, caster.instances);
                 if let Some(cutout) = cutout {
                     pass.set_bind_group(1, cutout, &[]);
-                    let no_uvs = || self.no_uvs.as_ref().expect("made by prepare for casters like this");
+                    let no_uvs = || self.no_uvs.as_ref().expect("`prepare` creates it for such casters");
                     bound.vertices(pass, 2, caster.opacity.texture().map_or_else(no_uvs, |texture| texture.uvs));
                 }
                 bound.indices(pass, caster.indices);

@@ -89,8 +89,8 @@ impl CasterTriangles {
         if count * TRIANGLE_BYTES > max_bytes {
             return Err(Error::Unsupported {
                 technique,
-                needed: format!("a buffer of {TRIANGLE_BYTES} bytes for each of {count} triangles"),
-                had: format!("at most {max_bytes} bytes"),
+                needed: format!("a buffer with {TRIANGLE_BYTES} bytes for each of {count} triangles"),
+                had: format!("at most {max_bytes} bytes per binding"),
                 remedy,
             });
         }

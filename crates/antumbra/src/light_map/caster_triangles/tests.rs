@@ -68,7 +68,7 @@ fn a_grid_is_one_surface_with_an_edge() {
 }
 
 #[test]
-fn a_surface_does_not_go_on_in_its_own_back() {
+fn back_to_back_triangles_are_no_neighbours() {
     let Some(gpu) = gpu() else { return };
     // Two triangles, and the same two seen from behind.
     let positions = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)].map(|(x, z)| Vec3::new(x, 0.0, z));

@@ -61,7 +61,7 @@ struct Maps {
     /// Lease of both textures.
     lease: Lease,
     /// Depths and gradients.
-    #[cfg_attr(not(test), expect(dead_code, reason = "held, so that lights that share them find them"))]
+    #[cfg_attr(not(test), expect(dead_code, reason = "kept alive for the lights that share them"))]
     textures: [Arc<wgpu::Texture>; 2],
     depth_array: wgpu::TextureView,
     depth_slices: Vec<wgpu::TextureView>,

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use super::hull::convex_hull;
 use super::window::PlaneWindow;
 use super::{LightView, WindowShape};
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 
 /// Tangent of the largest angle off its axis that one view holds if receivers lie all around it (70 degrees): the texels of
 /// the last 20 degrees would be missing everywhere else. (Under a lamp in Sponza, `multi_view` has rmse .194 with 80 degrees
@@ -82,7 +82,7 @@ impl ViewFit {
         margin_m: f32,
         depth_m: f32,
         max_angle_tangent: Option<f32>,
-        casters: &Between,
+        casters: &OccludingBounds,
         receivers: &[Vec3],
     ) -> Self {
         let in_light = |point: Vec3| {
@@ -147,7 +147,7 @@ impl ViewFit {
     ///
     /// If casters may be anywhere, the far plane is at the farthest receiver. Reversed float depth is finest there, however far in front
     /// of it casters begin, since floats are densest near 0.
-    pub(crate) fn orthographic(frame: LightFrame, margin: f32, casters: &Between, receivers: &[Vec3]) -> Self {
+    pub(crate) fn orthographic(frame: LightFrame, margin: f32, casters: &OccludingBounds, receivers: &[Vec3]) -> Self {
         let seen = Aabb::of(receivers.iter().copied());
         let is_by_receivers = casters.unknown.is_some() && !receivers.is_empty();
         let asked = if is_by_receivers { seen } else { casters.all().fold(seen, Aabb::union) };

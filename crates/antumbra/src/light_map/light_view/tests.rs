@@ -7,7 +7,7 @@ use super::{
     FitTo, FollowedLight, LightView, LightViewGpu, MIDDLE_TANGENT, ViewFit, Window, WindowShape, light_view_of_matrix,
 };
 use crate::contract::{DepthConvention, SeenPoint};
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 
 const MAP_SIZE: u32 = 512;
 
@@ -29,13 +29,13 @@ fn fit_of_depth(
     max_angle_tangent: Option<f32>,
     fit: &FitTo<'_>,
 ) -> LightView {
-    let casters = Between::of_known(fit.casters);
+    let casters = OccludingBounds::of_known(fit.casters);
     ViewFit::perspective(frame, FollowedLight::Whole, margin_m, depth_m, max_angle_tangent, &casters, fit.receivers)
         .view(fit.window)
 }
 
 fn fit_orthographic(frame: LightFrame, margin: f32, fit: &FitTo<'_>) -> LightView {
-    ViewFit::orthographic(frame, margin, &Between::of_known(fit.casters), fit.receivers).view(fit.window)
+    ViewFit::orthographic(frame, margin, &OccludingBounds::of_known(fit.casters), fit.receivers).view(fit.window)
 }
 
 /// The sides of a texel at `x` in a map of one texel, metres across the light's rays.
@@ -286,8 +286,16 @@ fn windows_are_judged_by_their_texels() {
         WindowShape::Warped { along: Vec2::from_angle(2.1), strength: 0.7 },
     ];
     for fit in [
-        ViewFit::perspective(light.frame(), FollowedLight::Whole, 0.25, 0.0, None, &Between::of_known(&casters), &[]),
-        ViewFit::orthographic(light.frame(), 0.0, &Between::of_known(&casters), &[]),
+        ViewFit::perspective(
+            light.frame(),
+            FollowedLight::Whole,
+            0.25,
+            0.0,
+            None,
+            &OccludingBounds::of_known(&casters),
+            &[],
+        ),
+        ViewFit::orthographic(light.frame(), 0.0, &OccludingBounds::of_known(&casters), &[]),
     ] {
         let in_plane = fit.in_plane(&seen);
         for view in windows.map(|window| fit.view(window)) {
@@ -378,7 +386,7 @@ fn a_road_to_the_horizon_is_warped_and_a_square_is_not() {
     };
     let window_of = |seen: &[SeenPoint], corners: &[Vec3]| {
         let bounds = [Aabb::of(corners.iter().copied())];
-        let fit = ViewFit::orthographic(light.frame(), 0.0, &Between::of_known(&bounds), corners);
+        let fit = ViewFit::orthographic(light.frame(), 0.0, &OccludingBounds::of_known(&bounds), corners);
         let window = LightView::best_window(&fit.in_plane(seen), |window| fit.view(window));
         let rolled = fit.view(LightView::best_roll(|window| fit.view(window)));
         (window, fit.view(window), rolled)

@@ -81,7 +81,7 @@ impl TexelLists {
             self.storage = None;
             self.storage = Some(Storage::new(stage, options));
         }
-        let storage = self.storage.as_mut().expect("made above where it was missing");
+        let storage = self.storage.as_mut().expect("created above if missing");
         storage.options = *options;
         storage.widen(stage);
         self.scan.prepare(stage, &storage.cursors, options.max_texels);

@@ -222,7 +222,7 @@ impl ListRaster {
                 render.set_bind_group(2, group, &[]);
                 let uvs = match caster.opacity.texture() {
                     Some(texture) => texture.uvs,
-                    _ => self.no_uvs.as_ref().expect("made by prepare for casters like this"),
+                    _ => self.no_uvs.as_ref().expect("`prepare` creates it for such casters"),
                 };
                 bound.vertices(render, 2, uvs);
             }

@@ -318,7 +318,7 @@ fn samples_on_a_shared_edge_are_one_sheet_s() {
 /// The plane of a side at a grazing angle to the light leaves the scene, and passes the light, within the texels at the
 /// side's edge.
 #[test]
-fn what_is_seen_from_the_side_stays_at_its_depths() {
+fn edge_on_surfaces_keep_their_depth_range() {
     let (_, light, _) = scenes().swap_remove(0);
     let at = |i: u32| 0.11 * i as f32 - 1.4;
     let posts: Vec<_> = (0..24)

@@ -78,13 +78,13 @@ pub(crate) struct Accumulation {
     means: Option<wgpu::Buffer>,
     /// Key of each pixel's position, and number of frames in its mean.
     seen: Option<wgpu::Buffer>,
-    content: Content<Seen>,
+    content: Content<FrameState>,
     generation: u32,
 }
 
 /// Frame state that the CPU compares from frame to frame.
 #[derive(Debug, PartialEq)]
-struct Seen {
+struct FrameState {
     light: Light,
     /// Camera; `None` if receivers are points.
     camera: Option<Camera>,
@@ -147,7 +147,7 @@ impl Accumulation {
     /// change, `set` the key of the caster set. Returns the number of frames since the CPU last saw a change, from 0.
     pub(crate) fn begin(&mut self, frame: &PreparedFrame<'_>, set: Option<CastersKey>, settings: u64) -> u32 {
         let receivers = &frame.receivers;
-        let now = Seen {
+        let now = FrameState {
             light: frame.light.for_shadows(),
             camera: receivers.camera().copied(),
             size_px: receivers.size_px,
@@ -179,8 +179,8 @@ impl Accumulation {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{needed} bytes to accumulate {pixels} pixels"),
-                had: format!("{limit} bytes a binding"),
-                remedy: "set `accumulate` to false, or render the mask in parts",
+                had: format!("at most {limit} bytes per binding"),
+                remedy: "set `accumulate` to false, or render the mask in several parts",
             });
         }
         write_uniform(

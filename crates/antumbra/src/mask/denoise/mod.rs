@@ -90,7 +90,7 @@ pub(crate) struct Denoiser {
     uniform: wgpu::Buffer,
     noisy: Option<NoisyMask>,
     /// History of the previous frame and of this one, in alternation.
-    kept: Option<[Kept; 2]>,
+    kept: Option<[FrameHistory; 2]>,
     before: Option<Camera>,
     /// Number of frames since the first.
     frames: u32,
@@ -119,7 +119,7 @@ struct NoisyMask {
 
 /// History of one frame.
 #[derive(Debug)]
-struct Kept {
+struct FrameHistory {
     size_px: UVec2,
     channels: u32,
     means_view: wgpu::TextureView,
@@ -196,7 +196,8 @@ impl Denoiser {
         if kept.is_none() {
             self.before = None;
         }
-        let kept = kept.unwrap_or_else(|| [Kept::new(stage, size, channels), Kept::new(stage, size, channels)]);
+        let kept = kept
+            .unwrap_or_else(|| [FrameHistory::new(stage, size, channels), FrameHistory::new(stage, size, channels)]);
         let [before, now] = if self.frames.is_multiple_of(2) { [&kept[0], &kept[1]] } else { [&kept[1], &kept[0]] };
         let max_frames = settings.max_frames as f32;
         let uniform = DenoiseFrame {
@@ -242,7 +243,7 @@ impl Denoiser {
 
     /// Size of the history, bytes.
     pub(crate) fn memory_bytes(&self) -> u64 {
-        let of = |kept: &Kept| u64::from(kept.size_px.element_product() * (8 * kept.channels + 4));
+        let of = |kept: &FrameHistory| u64::from(kept.size_px.element_product() * (8 * kept.channels + 4));
         self.kept.iter().flatten().map(of).sum()
     }
 }
@@ -261,7 +262,7 @@ impl PreparedDenoise {
     }
 }
 
-impl Kept {
+impl FrameHistory {
     fn new(gpu: &Gpu, size_px: UVec2, channels: u32) -> Self {
         let texture = |label, format, layers| {
             gpu.device.create_texture(&wgpu::TextureDescriptor {

@@ -32,7 +32,7 @@ fn most_from_truth(kind: TechniqueKind) -> f32 {
 const MAX_OF_ENDS: f32 = 0.007;
 
 #[test]
-fn known_pixels_stay_and_the_rest_come_near() {
+fn upsampling_keeps_known_pixels_and_interpolates_others() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ONE });
     let pixels = case.ground_pixels(test_ground);
@@ -62,7 +62,7 @@ fn known_pixels_stay_and_the_rest_come_near() {
 /// An image may be part of a larger texture with unrelated pixels beyond it: a pixel beyond the last known column takes the known
 /// pixel's value or is looked up.
 #[test]
-fn nothing_is_taken_from_beyond_the_picture() {
+fn upsampling_reads_no_pixel_outside_the_image() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, LightShape::Rectangle { size_m: Vec2::ONE });
     let casters: Vec<_> = case.meshes.iter().map(Mesh::caster).collect();

@@ -110,7 +110,7 @@ impl PrefixScan {
     }
 
     /// Sum of all items, a `u32` at offset 0, with usages `STORAGE` and `COPY_SRC`; `None` before [`Self::prepare`].
-    #[allow(dead_code, reason = "for scans whose last item does not hold the total")]
+    #[allow(dead_code, reason = "for scans whose last item is not the total")]
     pub(crate) fn total(&self) -> Option<&wgpu::Buffer> {
         self.levels.as_ref().and_then(|levels| levels.sums.last())
     }

@@ -13,7 +13,7 @@ fn cpu_reference_matches_the_definition() {
 }
 
 #[test]
-fn levels_end_in_one_total() {
+fn scan_levels_end_in_one_block() {
     assert_eq!(level_counts(1), [1]);
     assert_eq!(level_counts(2048), [1]);
     assert_eq!(level_counts(2049), [2, 1]);

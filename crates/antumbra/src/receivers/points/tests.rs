@@ -198,7 +198,7 @@ fn points_where_pixels_are_have_the_pixels_visibilities() {
 
 #[test]
 #[ignore = "long"]
-fn so_they_have_under_a_sun_and_a_lamp_in_parts() {
+fn points_have_the_pixels_visibilities_under_partitioned_lights() {
     hold_to_pixels(&lights()[1..]);
 }
 
@@ -524,8 +524,8 @@ fn bad_points_are_refused() {
         assert!(words.iter().all(|word| error.contains(word)) && !error.contains('\n'), "{error}");
     };
     let bad = |receivers, words: &[&str]| refuse(receivers, &visibilities, MaskChannels::One, words);
-    bad(PointReceivers { count: 0, ..good }, &["count", "1 at least"]);
-    bad(PointReceivers { count: 5, ..good }, &["positions", "byte 60 of a buffer of 48"]);
+    bad(PointReceivers { count: 0, ..good }, &["number of points", "at least 1"]);
+    bad(PointReceivers { count: 5, ..good }, &["positions", "48 bytes long", "at least 60"]);
     bad(PointReceivers { row_length: Some(0), ..good }, &["row_length"]);
     bad(PointReceivers { row_length: Some(100_000), ..good }, &["rows of 100000", "rows of 8192"]);
     bad(PointReceivers { positions: PointBuffer::packed(&unusable), ..good }, &["positions", "STORAGE"]);
@@ -534,17 +534,20 @@ fn bad_points_are_refused() {
         PointReceivers { normals: Some(PointBuffer { offset: 2, ..good.positions }), ..good },
         &["normals", "multiples of 4"],
     );
-    bad(PointReceivers { positions: PointBuffer { stride: 8, ..good.positions }, ..good }, &["positions", "12 apart"]);
-    bad(PointReceivers { positions: PointBuffer::packed(&visibilities), count: 1, ..good }, &["in another one"]);
-    bad(PointReceivers { widths: PointWidths::Same(-1.0), ..good }, &["width", "0 or more"]);
-    bad(PointReceivers { widths: PointWidths::Same(f32::NAN), ..good }, &["width", "0 or more"]);
+    bad(
+        PointReceivers { positions: PointBuffer { stride: 8, ..good.positions }, ..good },
+        &["positions", "stride of at least 12"],
+    );
+    bad(PointReceivers { positions: PointBuffer::packed(&visibilities), count: 1, ..good }, &["another buffer"]);
+    bad(PointReceivers { widths: PointWidths::Same(-1.0), ..good }, &["width", "at least 0"]);
+    bad(PointReceivers { widths: PointWidths::Same(f32::NAN), ..good }, &["width", "at least 0"]);
     bad(PointReceivers { widths: PointWidths::Each(PointBuffer::packed(&unusable)), ..good }, &["widths", "STORAGE"]);
     bad(PointReceivers { bounds: Aabb { min: Vec3::NAN, max: Vec3::ONE }, ..good }, &["box", "not a number"]);
     bad(PointReceivers { bounds: Aabb::EMPTY, ..good }, &["box", "empty"]);
     bad(PointReceivers { hull: &[Vec3::ZERO, Vec3::NAN], ..good }, &["`hull`", "point 1"]);
     bad(PointReceivers { seen: &[Vec3::INFINITY], ..good }, &["`seen`", "point 0"]);
     refuse(good, &unusable, MaskChannels::One, &["visibilities", "STORAGE"]);
-    refuse(good, &visibilities, MaskChannels::Three, &["visibilities", "byte 48 of a buffer of 16"]);
+    refuse(good, &visibilities, MaskChannels::Three, &["visibilities", "16 bytes long", "at least 48"]);
 
     let mut shadow = create(gpu, TechniqueKind::Pcss, &[]);
     shadow.set_denoise(Some(Denoise::default()));
@@ -557,7 +560,7 @@ fn bad_points_are_refused() {
         channels: MaskChannels::One,
     };
     let error = shadow.prepare_points(&frame).unwrap_err().to_string();
-    assert!(error.contains("`denoise`") && error.contains("no neighbours"), "{error}");
+    assert!(error.contains("`denoise`") && error.contains("no neighbouring pixels"), "{error}");
     shadow.set_denoise(None);
     shadow.prepare_points(&frame).expect("a good frame").record(&mut Recorder::new(
         &mut gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default()),

@@ -135,7 +135,7 @@ fn antumbra_image(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u3
         {
             self.made = Some(SplitImages::new(&self.gpu, receivers.size_px, normal_format));
         }
-        let made = self.made.as_ref().expect("made above where it was missing");
+        let made = self.made.as_ref().expect("created above if missing");
         let stage = Stage::new(&self.gpu, std::mem::take(&mut self.keep), None);
         let uniform = stage.uniform(
             "antumbra split receivers",
@@ -175,7 +175,7 @@ fn antumbra_image(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u3
     /// # Panics
     /// If nothing was recorded.
     pub fn images<'a>(&'a self, receivers: &Receivers<'a>) -> [Receivers<'a>; 2] {
-        let made = self.made.as_ref().expect("`record` comes before");
+        let made = self.made.as_ref().expect("`record` is called first");
         [0, 1].map(|picture: usize| Receivers {
             size_px: made.size_px,
             origin_px: UVec2::ZERO,
@@ -204,18 +204,26 @@ fn antumbra_image(depths: texture_2d_array<f32>, pixel: vec2u, depth: f32) -> u3
 fn check(receivers: &Receivers<'_>) -> Result<(), Error> {
     let bad = |what, had: String, needed: String| Err(Error::BadFrame { technique: NAME, what, had, needed });
     if receivers.size_px.min_element() == 0 {
-        return bad("the receivers' size", format!("{}", receivers.size_px), "at least 1 × 1 pixels".into());
+        return bad("the receivers' size", format!("{}", receivers.size_px), "at least 1 × 1 pixel".into());
     }
     let end_px = receivers.origin_px.saturating_add(receivers.size_px);
-    for (what, view) in [("the depth buffer", Some(receivers.depth)), ("the normals", receivers.normals)] {
+    for (what, view) in [("the depth buffer", Some(receivers.depth)), ("the normals' texture", receivers.normals)] {
         let Some(texture) = view.map(wgpu::TextureView::texture) else { continue };
         if texture.sample_count() != SAMPLES {
-            let had = format!("of {} samples a pixel", texture.sample_count());
-            return bad(what, had, format!("of {SAMPLES}; those of one need no splitting"));
+            let had = format!("a texture with {} samples per pixel", texture.sample_count());
+            return bad(
+                what,
+                had,
+                format!("a texture with {SAMPLES} samples; one with a single sample needs no splitting"),
+            );
         }
         let size_px = UVec2::new(texture.width(), texture.height());
         if end_px.cmpgt(size_px).any() {
-            return bad(what, format!("of {size_px} pixels"), format!("up to pixel {end_px} at least"));
+            return bad(
+                what,
+                format!("{size_px} pixels large"),
+                format!("at least {end_px}, to contain the receivers' rectangle"),
+            );
         }
     }
     Ok(())

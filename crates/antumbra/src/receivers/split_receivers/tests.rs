@@ -369,12 +369,13 @@ fn what_is_not_multisampled_is_refused() {
     let error = SplitReceivers::new(gpu).record(&mut recorder, &camera.receivers(&depth, None)).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "SplitReceivers: the depth buffer is of 1 samples a pixel, and must be of 4; those of one need no splitting"
+        "SplitReceivers: the depth buffer is a texture with 1 samples per pixel, and must be a texture with 4 samples; one \
+         with a single sample needs no splitting"
     );
     let [depth, _] = draw(gpu, &camera, &[(0.0, GROUND)], 4).map(|texture| view_of(&texture));
     let beyond = Receivers { origin_px: ORIGIN + 30, ..camera.receivers(&depth, None) };
     let error = SplitReceivers::new(gpu).record(&mut recorder, &beyond).unwrap_err().to_string();
-    assert!(error.contains("up to pixel"), "{error}");
+    assert!(error.contains("to contain the receivers' rectangle"), "{error}");
     // The GPU must finish before the test ends the process.
     gpu.device().poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
 }

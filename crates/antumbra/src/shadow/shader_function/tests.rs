@@ -218,14 +218,14 @@ fn what_has_no_function_says_so() {
         assert!(words.iter().all(|word| error.contains(word)) && !error.contains('\n'), "{error}");
     };
     let mut shadow = create(gpu, TechniqueKind::Pcss, &[]);
-    refuses(&mut shadow, "", &["a frame prepared"]);
+    refuses(&mut shadow, "", &["a prepared frame"]);
     draw(gpu, &mut shadow, &frame(light));
     shadow.shader_function(3, "").expect("it has one");
     for prefix in ["_a", "1", "a-b", "ä"] {
         refuses(&mut shadow, prefix, &["prefix", prefix, "letters"]);
     }
     draw(gpu, &mut shadow, &frame(in_parts));
-    refuses(&mut shadow, "", &["one map", "`fov_rad`", "`prepare_points`"]);
+    refuses(&mut shadow, "", &["a single shadow map", "`fov_rad`", "`prepare_points`"]);
     gpu.set_map_budget(0);
     let mut shared = create(gpu, TechniqueKind::Hard, &[]);
     draw(gpu, &mut shared, &frame(light));

@@ -2,18 +2,18 @@
 
 /// Resources that could be bound on trial, with the last frame that used each.
 #[derive(Debug)]
-pub(super) struct Good<R> {
+pub(super) struct BindableCache<R> {
     found: Vec<(R, u64)>,
     frame: u64,
 }
 
-impl<R> Default for Good<R> {
+impl<R> Default for BindableCache<R> {
     fn default() -> Self {
         Self { found: Vec::new(), frame: 0 }
     }
 }
 
-impl<R: PartialEq> Good<R> {
+impl<R: PartialEq> BindableCache<R> {
     /// Number of frames after which an unused resource is dropped, so that it can be freed.
     const RETAINED_FRAMES: u64 = 8;
 

@@ -17,17 +17,25 @@ impl Check<'_, Frame<'_>> {
         let Frame { receivers, mask, .. } = self.frame;
         let size_px = receivers.size_px;
         if size_px.min_element() == 0 {
-            return self.bad("the receivers' size", format!("{size_px}"), "at least 1 × 1 pixels");
+            return self.bad("the receivers' size", format!("{size_px}"), "at least 1 × 1 pixel");
         }
         if mask.size_px() != size_px {
-            return self.bad("the mask's size", format!("{}", mask.size_px()), format!("the receivers' {size_px}"));
+            return self.bad(
+                "the mask's size",
+                format!("{}", mask.size_px()),
+                format!("the size of the receivers, {size_px}"),
+            );
         }
         let depth = receivers.depth.texture();
         let end_px = receivers.origin_px.saturating_add(size_px);
         if end_px.cmpgt(size_of(depth)).any() {
             return self.bad(
-                "the receivers' part of the depth buffer",
-                format!("up to pixel {end_px} of {} × {}", depth.width(), depth.height()),
+                "the receivers' rectangle",
+                format!(
+                    "outside of the depth buffer: it ends at pixel {end_px} of {} × {}",
+                    depth.width(),
+                    depth.height()
+                ),
                 "within the depth buffer",
             );
         }
@@ -38,7 +46,11 @@ impl Check<'_, Frame<'_>> {
         let Receivers { view_from_world, clip_from_view, depth_convention, .. } = self.frame.receivers;
         if !view_from_world.is_finite() || !is_rigid(&view_from_world) {
             let had = if view_from_world.is_finite() { "not rigid" } else { "not finite" };
-            return self.bad("the camera's pose", had, "a rotation and a translation: scale the scene instead");
+            return self.bad(
+                "the camera's pose",
+                had,
+                "a rotation and a translation; to scale, scale the scene instead",
+            );
         }
         let world_from_view = view_from_world.as_dmat4().inverse().as_mat4();
         if !(clip_from_view.is_finite()
@@ -52,8 +64,8 @@ impl Check<'_, Frame<'_>> {
         if runs != depth_convention && near != far && (near - far).is_finite() {
             return self.bad(
                 "the depth convention",
-                format!("{depth_convention:?}, and the projection's is not"),
-                format!("{runs:?}, as the projection is"),
+                format!("{depth_convention:?}, but that of the projection is not"),
+                format!("{runs:?}, as in the projection"),
             );
         }
         Ok(())
@@ -64,7 +76,11 @@ impl Check<'_, Frame<'_>> {
         let Receivers { bounds, hull, seen, shadow_distance, .. } = self.frame.receivers;
         // An empty box is valid: there are no receivers.
         if let Some(problem) = bounds.filter(|bounds| *bounds != Aabb::EMPTY).and_then(|bounds| bounds.problem()) {
-            return self.bad("the receivers' box", problem, "a box with its least corner first, or `None`");
+            return self.bad(
+                "the receivers' bounding box",
+                problem,
+                "a box whose first corner is the minimum, or `None`",
+            );
         }
         self.finite("the receivers' `hull`", hull)?;
         self.finite("the receivers' `seen`", seen)?;
@@ -88,7 +104,7 @@ impl Check<'_, Frame<'_>> {
                 return self.bad(
                     WHAT,
                     "Depth16Unorm",
-                    "Depth32Float or R32Float: surfaces would shade themselves by the steps of 16 bits",
+                    "Depth32Float or R32Float: with 16 bits, surfaces would shadow themselves",
                 );
             }
             other => return self.bad(WHAT, format!("{other:?}"), "Depth32Float or R32Float"),
@@ -96,11 +112,11 @@ impl Check<'_, Frame<'_>> {
         if texture.sample_count() != 1 {
             return self.bad(
                 WHAT,
-                format!("of {} samples a pixel", texture.sample_count()),
-                "of one: SplitReceivers makes that of four",
+                format!("multisampled with {} samples per pixel", texture.sample_count()),
+                "one sample per pixel: `SplitReceivers` converts four",
             );
         }
-        self.bindable(validator, WHAT, depth, ViewKind::Float, "a 2D view of one layer and of the depth aspect alone")
+        self.bindable(validator, WHAT, depth, ViewKind::Float, "a 2D view of one layer and only the depth aspect")
     }
 
     pub(super) fn normals(&self, validator: &mut Validator) -> Result<(), Error> {
@@ -109,13 +125,17 @@ impl Check<'_, Frame<'_>> {
         let texture = normals.texture();
         self.as_large_as_depth(WHAT, texture)?;
         if texture.sample_count() != 1 {
-            return self.bad(WHAT, format!("of {} samples a pixel", texture.sample_count()), "of one");
+            return self.bad(
+                WHAT,
+                format!("multisampled with {} samples per pixel", texture.sample_count()),
+                "one sample per pixel",
+            );
         }
         if !holds_directions(texture.format()) {
             return self.bad(
                 WHAT,
                 format!("{:?}", texture.format()),
-                "signed, of three components and more: Rgba16Float, say",
+                "a signed format with at least three components, such as Rgba16Float",
             );
         }
         self.bindable(validator, WHAT, normals, ViewKind::Float, "a 2D view of one layer")
@@ -126,7 +146,7 @@ impl Check<'_, Frame<'_>> {
         let Frame { receivers, mask, .. } = self.frame;
         let read = [Some(receivers.depth), receivers.normals];
         if read.into_iter().flatten().any(|view| view.texture() == mask.texture()) {
-            return self.bad(WHAT, "in the texture of the depth buffer or the normals", "in one of its own");
+            return self.bad(WHAT, "in the same texture as the depth buffer or the normals", "in a separate texture");
         }
         self.bindable(validator, WHAT, mask.layers_view(), ViewKind::FloatArray, "a texture of the light's device")
     }
@@ -135,11 +155,11 @@ impl Check<'_, Frame<'_>> {
         const WHAT: &str = "the motion vectors' texture";
         if !(1..=Denoise::MAX_FRAMES).contains(&denoise.max_frames) {
             let needed = format!("1 to {}", Denoise::MAX_FRAMES);
-            return self.bad("the denoiser's frames", denoise.max_frames.to_string(), needed);
+            return self.bad("the denoiser's `max_frames`", denoise.max_frames.to_string(), needed);
         }
         let Some(motion) = &denoise.motion else { return Ok(()) };
         self.as_large_as_depth(WHAT, motion.texture())?;
-        self.bindable(validator, WHAT, motion, ViewKind::Float, "a 2D view of one layer, of floats")
+        self.bindable(validator, WHAT, motion, ViewKind::Float, "a 2D view of one layer with a float format")
     }
 
     /// Refuses a texture of another size than the depth buffer's.
@@ -148,7 +168,7 @@ impl Check<'_, Frame<'_>> {
         if size == needed {
             return Ok(());
         }
-        self.bad(what, format!("of {size}"), format!("of the depth buffer's {needed}"))
+        self.bad(what, format!("{size} texels large"), format!("as large as the depth buffer, {needed}"))
     }
 }
 

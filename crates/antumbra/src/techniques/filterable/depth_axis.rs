@@ -13,7 +13,7 @@ use glam::{Vec2, Vec3};
 
 use crate::contract::param_choice;
 use crate::light_map::light_view::{LightView, LightViewGpu};
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 
 param_choice! {
     /// Direction in which a filterable map measures depth.
@@ -67,7 +67,7 @@ impl DepthRange {
 
     /// Returns the range of receivers, and of casters in front of them, along the world axis nearest to the light's. `None` if
     /// a ray of the view runs at too large an angle to the axis.
-    pub(crate) fn along_world(view: &LightView, casters: &Between, receivers: &[Vec3]) -> Option<Self> {
+    pub(crate) fn along_world(view: &LightView, casters: &OccludingBounds, receivers: &[Vec3]) -> Option<Self> {
         let frame = &view.frame;
         let nearest = frame.axis.abs().max_position();
         let axis_in_world = Vec3::AXES[nearest] * frame.axis[nearest].signum();
@@ -102,7 +102,7 @@ impl DepthRange {
     }
 
     /// Returns the range of receivers and casters by distance to the light's centre. `None` for a sun, which has no centre.
-    pub(crate) fn by_distance(view: &LightView, casters: &Between, receivers: &[Vec3]) -> Option<Self> {
+    pub(crate) fn by_distance(view: &LightView, casters: &OccludingBounds, receivers: &[Vec3]) -> Option<Self> {
         if !view.perspective {
             return None;
         }
@@ -161,7 +161,7 @@ mod tests {
         let light = Light::new(LightShape::Sphere { radius_m: 0.1 }, Vec3::new(0.0, 5.0, 0.0), Vec3::ZERO);
         let floor = Aabb { min: Vec3::new(-4.0, -0.1, -3.0), max: Vec3::new(4.0, 0.0, 3.0) };
         let view = fit_light_view(&light, &[floor], &[]);
-        let casters = Between::of_known(&[floor]);
+        let casters = OccludingBounds::of_known(&[floor]);
         let range = DepthRange::by_distance(&view, &casters, &[]).expect("a light with a centre");
         assert!(range.is_distance && (range.near_m - 5.0).abs() < 0.01, "{range:?}");
         let corner_m = Vec3::new(4.0, 5.1, 3.0).length();

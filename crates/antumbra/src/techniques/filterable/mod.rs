@@ -195,9 +195,9 @@ impl<P: GpuStruct> Filterable<P> {
                     return Err(Error::BadFrame {
                         technique: self.technique,
                         what: "the depth map's matrix",
-                        had: "infinitely deep".into(),
-                        needed: "of finite depth, or the receivers' `bounds` or `hull` given: filtered depths are fractions \
-                                 of the range"
+                        had: "one of infinite depth".into(),
+                        needed: "one of finite depth, unless the receivers have `bounds` or a `hull`, because filtered depths \
+                             are fractions of the range"
                             .into(),
                     });
                 }

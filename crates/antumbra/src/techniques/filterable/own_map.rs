@@ -10,7 +10,7 @@ use crate::gpu::{Gpu, GpuStruct, Stage};
 use crate::light_map::caster_depth::{CasterDepth, check_map_size};
 use crate::light_map::central_view::fit_light_view;
 use crate::light_map::map_texels::map_texels;
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 use crate::light_map::stable_fit::{corners_to_hold, in_whole_texels};
 use crate::receivers::inputs::PreparedInputs;
 
@@ -36,7 +36,7 @@ impl<P: GpuStruct> Filterable<P> {
         let sample_count = settings.msaa.count();
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let receivers = corners_to_hold(stage, &frame.receivers);
-        let between = Between::new(frame.light, &bounds, &receivers);
+        let between = OccludingBounds::new(frame.light, &bounds, &receivers);
         let mut view = fit_light_view(frame.light, &bounds, &receivers);
         let bytes_of = |size: u32| bytes_of(size, sample_count);
         let size = map_texels(stage, frame, settings.map_size, bytes_of, &view, &bounds);
@@ -45,7 +45,7 @@ impl<P: GpuStruct> Filterable<P> {
             self.own_map =
                 Some(OwnMap { view: depth_texture(stage, technique, size, sample_count)?, size, sample_count });
         }
-        let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("made above where it was missing");
+        let depth = self.own_map.as_ref().map(|map| map.view.clone()).expect("created above if missing");
         // Kernels of receivers at the window's edge reach beyond it.
         let reach = (settings.kernel().radius() + 1).min(size / 4);
         view.window.half_size *= size as f32 / (size - 2 * reach) as f32;
@@ -77,7 +77,7 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
     let is_core = matches!(sample_count, 1 | 4);
     let unsupported = || Error::Unsupported {
         technique,
-        needed: format!("a light map with {sample_count} samples a texel"),
+        needed: format!("a shadow map with {sample_count} samples per texel"),
         had: "1 and 4".into(),
         remedy: "set `msaa` to 1 or 4",
     };
@@ -99,6 +99,6 @@ fn depth_texture(gpu: &Gpu, technique: &'static str, size: u32, sample_count: u3
     if gpu.validation_error(|| made = Some(gpu.device.create_texture(&descriptor))).is_some() {
         return Err(unsupported());
     }
-    let texture = made.expect("made on trial");
+    let texture = made.expect("the trial texture was created");
     Ok(gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default()))
 }

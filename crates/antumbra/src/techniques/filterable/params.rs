@@ -118,34 +118,34 @@ macro_rules! filterable_params {
         $crate::contract::params! {
             $(#[$outer])*
             pub struct $name {
-                shared map_size, more "Sharper edges and a narrower blur; memory and time grow with the square.";
+                shared map_size, more "Sharper edges and a narrower blur; memory and time grow with the square of the size.";
                 /// Number of samples per texel of the shadow map, averaged after encoding.
                 msaa: $crate::techniques::filterable::Multisampling =
                     $crate::techniques::filterable::Multisampling::One,
-                    more "Smoother edges where the kernel is narrow; 2 and 8 need native features.";
+                    more "Smoother edges if the kernel is narrow; 2 and 8 need native features.";
                 /// Kernel of the blur.
                 filter: $crate::techniques::filterable::FilterKernel =
                     $crate::techniques::filterable::FilterKernel::Gaussian,
-                    more "gaussian has no corners; box ends where its width says.";
+                    more "gaussian shows no corners of the kernel; box ends exactly at its width.";
                 /// Width of the kernel; a Gaussian has the standard deviation of the box of this width.
                 kernel_size: f32 = 7.0, in 1.0..=127.0, unit "texels", scale Log,
-                    more "Blurs every shadow edge more, whatever the light's size; blur time grows in proportion.";
+                    more "Blurs all shadow edges more, regardless of the light's size; the time of the blur grows in proportion.";
                 /// Mip chain of the map, with trilinear lookups.
                 mips: bool = true,
-                    more "Distant receivers are filtered over their pixel's footprint, for three eighths more memory.";
+                    more "true filters distant receivers over their pixel's footprint and takes three eighths more memory.";
                 /// Maximum number of probes along a pixel's footprint; needs `mips`.
                 anisotropy: u32 = 8, in 1..=16,
-                    more "Sharper shadows on surfaces seen at a grazing angle; 1 is trilinear alone.";
+                    more "Sharper shadows on surfaces seen at a grazing angle; 1 is plain trilinear filtering.";
                 $($own)*
                 /// Direction in which depth is measured.
                 depth_axis: $crate::techniques::filterable::DepthAxis = $crate::techniques::filterable::DepthAxis::World,
-                    more "world gives floors under a slanted light one depth each, and less light bleeds; light suits \
-                          scenes that lie along no axis; distance is that of Lauritzen and McCool 2008, along each ray, and \
-                          floors are curved by it.";
+                    more "world gives each floor a constant depth under a slanted light, which reduces light bleeding; light \
+                         suits scenes that are not aligned with an axis; distance is measured along each ray, as by Lauritzen \
+                         and McCool 2008, and curves the depth of floors.";
                 /// Source of visibility.
                 resolve: $crate::techniques::filterable::ResolveBy =
                     $crate::techniques::filterable::ResolveBy::Basis,
-                    more "exact compares every texel under the kernel: the truth that the technique approximates.";
+                    more "exact compares every texel under the kernel: slow, the reference that the technique approximates.";
                 shared bias_scale;
             }
             // The blur has the same width in the world at every quality.

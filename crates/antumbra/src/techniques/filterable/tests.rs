@@ -152,7 +152,7 @@ fn says_which_sample_counts(error: &Error, samples: &str) {
     println!("skipped: {error}");
     let text = error.to_string();
     assert!(matches!(error, Error::Unsupported { .. }) && matches!(samples, "2" | "8"), "{text}");
-    assert!(text.contains(&format!("{samples} samples a texel")) && !text.contains('\n'), "{text}");
+    assert!(text.contains(&format!("{samples} samples per texel")) && !text.contains('\n'), "{text}");
 }
 
 /// A basis with its CPU reference, which maps t of a sample to the stored channels.

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use crate::contract::SeenPoint;
 use crate::gpu::{Cached, Gpu, Stage, bindings, create_uniform, samples, texels, upload_storage, write_uniform};
 use crate::light_map::light_view::{FollowedLight, LightView, ViewFit};
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 
 mod ball;
 pub(crate) mod gpu_types;
@@ -85,7 +85,7 @@ pub(crate) fn views_from(
     seen: &[SeenPoint],
 ) -> Vec<LightView> {
     let Some(first) = points.first() else { return Vec::new() };
-    let casters = &Between::new(light, casters, receivers);
+    let casters = &OccludingBounds::new(light, casters, receivers);
     let fit = |point| fit_from(light, point, casters, receivers);
     let of_first = fit(first).for_many_windows();
     let window = LightView::best_window(&of_first.in_plane(seen), |window| of_first.view(window));
@@ -103,7 +103,7 @@ pub(crate) fn shifted_apart(views: Vec<LightView>, view_size: u32) -> Vec<LightV
 }
 
 /// Fit of a view from one light point, with the light's own axes; each direction of a sun has its own axes.
-fn fit_from(light: &Light, point: &LightPoint, casters: &Between, receivers: &[Vec3]) -> ViewFit {
+fn fit_from(light: &Light, point: &LightPoint, casters: &OccludingBounds, receivers: &[Vec3]) -> ViewFit {
     let frame = light.frame();
     if light.is_distant() {
         let axis = (-point.xyz).normalize_or(frame.axis);

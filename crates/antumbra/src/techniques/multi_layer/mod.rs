@@ -314,9 +314,9 @@ impl Technique for MultiLayer {
         let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
                 technique,
-                what: "the casters",
-                had: "a depth map".into(),
-                needed: "meshes: lists hold every fragment, a depth map the first".into(),
+                what: "the kind of casters",
+                had: "`Casters::DepthMap`".into(),
+                needed: "meshes, because lists contain every fragment, a depth map only the first".into(),
             });
         };
         let plan = FramePlan::new(stage, frame, meshes, params);
@@ -438,8 +438,8 @@ impl MultiLayer {
         if lists > largest {
             return Err(Error::Unsupported {
                 technique: Self::NAME,
-                needed: format!("{lists} lists for a base of {map_size}² texels"),
-                had: format!("room for {largest} in a binding of {binding} bytes"),
+                needed: format!("{lists} lists for a base map of {map_size} × {map_size} texels"),
+                had: format!("at most {largest} in a binding of {binding} bytes"),
                 remedy: "set a smaller `map_size`",
             });
         }

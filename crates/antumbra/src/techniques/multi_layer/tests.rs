@@ -105,7 +105,7 @@ fn levels_end_with_what_receivers_look_up() {
 }
 
 #[test]
-fn what_levels_leave_out_is_not_missed() {
+fn pruning_levels_changes_no_mask() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     for parts in ["1", "4"] {

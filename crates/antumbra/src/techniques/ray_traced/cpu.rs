@@ -78,7 +78,7 @@ impl Tree {
                 return tree;
             }
         }
-        unreachable!("the last size is taken whatever comes of it")
+        unreachable!("the largest size is always accepted")
     }
 
     /// Adds the nodes over the positions `first..end`.

@@ -227,9 +227,12 @@ impl RayTraced {
         if pass_rays == 0 {
             return Err(Error::Unsupported {
                 technique: Self::NAME,
-                needed: format!("{} bytes for what passes of a ray a pixel, with so many textures", 4 * pixels),
-                had: "fewer bytes a binding".into(),
-                remedy: "use a smaller mask or fewer textures, or ask for a larger max_storage_buffer_binding_size",
+                needed: format!(
+                    "{} bytes for the transmittance of one ray per pixel, besides so many textures",
+                    4 * pixels
+                ),
+                had: "too little left in a binding".into(),
+                remedy: "use a smaller mask or fewer textures, or request a larger max_storage_buffer_binding_size",
             });
         }
         let keeps_sums = weighs_irradiance && points.len() > pass_rays as usize;

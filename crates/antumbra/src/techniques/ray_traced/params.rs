@@ -10,18 +10,18 @@ params! {
             more "Smoother penumbrae; time grows in proportion.";
         /// Distribution of the rays' ends over the light.
         sample_set: SampleSet = SampleSet::Sobol,
-            more "sobol is the most even for powers of two, r2 and stratified for other numbers.";
-        shared weights, more "irradiance: the mask is the part of an area light's own irradiance that arrives; with more rays than a \
-                              pass has, 4 bytes a pixel.";
+            more "sobol is the most uniform for powers of two, r2 and stratified for other numbers.";
+        shared weights, more "With irradiance, the mask is the visible fraction of an area light's irradiance; if the rays \
+             need several passes, it takes 4 bytes per pixel.";
         /// Random offset of the samples at each pixel, except for lights of points and emission textures.
         rotate: bool = true,
-            more "true shows noise, false shows bands.";
+            more "true shows noise, false shows banding.";
         /// Seed of the samples.
         seed: u32 = 1, in 0..=65535,
-            more "Another set of the same quality.";
+            more "Selects another sample set of the same quality.";
         /// Scale of the ray offset on casters that are not closed.
         bias_scale: f32 = 1.0, in 0.0..=8.0,
-            more "Above 1 detaches contact shadows by thousandths of a pixel, below 1 risks acne on open meshes.";
+            more "Values above 1 detach contact shadows by thousandths of a pixel; values below 1 risk acne on open meshes.";
     }
     Fast { samples: 16, }
     High { samples: 256, }

@@ -27,7 +27,7 @@ impl ViewSamples {
             listed: "receivers",
             order: match windows.count {
                 // After the total of all windows' lists.
-                Some(_) if windows.are_chosen => ListOrder::Told { word: side * side + 1 },
+                Some(_) if windows.are_chosen => ListOrder::Chosen { word: side * side + 1 },
                 Some(_) => ListOrder::Rows,
                 None => ListOrder::Halvings,
             },

@@ -10,7 +10,7 @@ use super::groups::{DrawArguments, Evaluated, FrameGroups, RegionHulls, Window};
 use super::light_points::{
     LocalPoint, MAX_SINGLED_OUT, MAX_WORDS, WORD, cells_across, max_cells, packed_cells, packed_words,
 };
-use super::pipelines::{Evaluator, Way};
+use super::pipelines::{Evaluator, WorkCondition};
 use super::plan::FramePlan;
 use super::raster::{Draw, Hulls, Raster, RasterTargets};
 use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES};
@@ -43,7 +43,7 @@ pub(super) enum Evaluation {
 /// Passes over the groups of receivers.
 #[derive(Debug)]
 pub(super) struct OverGroups {
-    pub(super) way: Way,
+    pub(super) condition: WorkCondition,
     pub(super) pipeline: wgpu::ComputePipeline,
     pub(super) group: wgpu::BindGroup,
     /// Number of passes after which every group is done in any scene; passes without work find an empty queue.
@@ -93,17 +93,17 @@ impl Evaluations<'_> {
         let batch = &plan.batches[index];
         let step = self.settings(index, light);
         let evaluator = Evaluator::of(batch.surfaces, self.options);
-        let walked = |way| {
+        let walked = |condition| {
             let turns = u64::from(batch.triangles()) * u64::from(step.iterations_per_triangle)
                 + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * step.word_count);
             let passes = turns.div_ceil(u64::from(step.max_iterations)).max(1) as u32;
-            self.over_groups(way, &step, light, &self.evaluators[&evaluator], passes)
+            self.over_groups(condition, &step, light, &self.evaluators[&evaluator], passes)
         };
         let drawn = raster.zip(self.raster_targets).zip(plan.windows);
         let Some(((raster, targets), windows)) = drawn.filter(|_| plan.is_drawn(batch)) else {
-            return Evaluation::Groups(walked(Way::Either));
+            return Evaluation::Groups(walked(WorkCondition::Either));
         };
-        let without_triangles = |pipeline| self.over_groups(Way::Drawn, &step, light, pipeline, 1);
+        let without_triangles = |pipeline| self.over_groups(WorkCondition::Drawn, &step, light, pipeline, 1);
         let BufferSet { state, counts, list, positions, penumbrae, hulls, triangles, totals, work, bits, .. } = buffers;
         let window_group = |window| {
             let window = Window {
@@ -137,7 +137,7 @@ impl Evaluations<'_> {
             Hulls { pipeline: pipeline.clone(), windows, triangles: batch.triangles() }
         };
         Evaluation::Raster {
-            walked: plan.chooses().then(|| walked(Way::Walked)),
+            walked: plan.chooses().then(|| walked(WorkCondition::Walked)),
             before: (index == 0).then(|| without_triangles(&raster.before)),
             after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(&raster.after)),
             draw: Box::new(Draw {
@@ -185,7 +185,7 @@ impl Evaluations<'_> {
 
     fn over_groups(
         &self,
-        way: Way,
+        condition: WorkCondition,
         settings: &SampleSettings,
         light: &PointBatch<'_>,
         pipeline: &wgpu::ComputePipeline,
@@ -210,7 +210,7 @@ impl Evaluations<'_> {
             light_cells,
             snapped_texels,
         };
-        OverGroups { way, pipeline: pipeline.clone(), group: evaluated.group(stage, &layouts.evaluate), passes }
+        OverGroups { condition, pipeline: pipeline.clone(), group: evaluated.group(stage, &layouts.evaluate), passes }
     }
 }
 

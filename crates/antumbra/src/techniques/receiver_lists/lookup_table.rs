@@ -35,7 +35,7 @@ impl Table {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("a table of {size} × {size} × {} planes", u64::from(size) * u64::from(blocks)),
-                had: format!("at most {limit} a side, for {} light points", MAX_WORDS * WORD),
+                had: format!("at most {limit} per side, for {} light points", MAX_WORDS * WORD),
                 remedy: "set a smaller `lookup_size`, fewer `samples`, or `evaluation` to exact",
             });
         }

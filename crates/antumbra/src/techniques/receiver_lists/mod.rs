@@ -108,8 +108,8 @@ pub(crate) use light_points::{LocalPoint, local_points};
 use lookup_table::Table;
 use pipelines::{Evaluator, Pipelines};
 use plan::FramePlan;
-pub(crate) use raster::Drawn;
 use raster::Raster;
+pub(crate) use raster::RasterOptions;
 pub(crate) use region::Region;
 use settings::{CELL_COUNT, SUBSET_ALL, SUBSET_KNOWN, SUBSET_MISSING};
 pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
@@ -138,7 +138,7 @@ pub(crate) struct Options {
     /// Method by which triangles find receivers.
     pub(crate) traversal: Traversal,
     /// Options of drawn triangles.
-    pub(crate) drawn: Drawn,
+    pub(crate) drawn: RasterOptions,
     /// Switches of section 4.3.
     pub(crate) switches: u32,
     /// Width of the lookup table; 0 tests each light point.

@@ -12,13 +12,13 @@ use super::settings::{DRAWN, EITHER, WALKED};
 /// Condition under which a pass has work, if the device chooses between drawn and walked triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub(super) enum Way {
+pub(super) enum WorkCondition {
     Either = EITHER,
     Drawn = DRAWN,
     Walked = WALKED,
 }
 
-impl Way {
+impl WorkCondition {
     /// All values, in the order of their numbers.
     pub(super) const ALL: [Self; 3] = [Self::Either, Self::Drawn, Self::Walked];
 }
@@ -34,8 +34,8 @@ pub(super) struct Pipelines {
     /// Pipelines of the device's choice; created when a frame first needs them.
     pub(super) choice: Option<Choice>,
     pub(super) arguments: wgpu::ComputePipeline,
-    /// Pipelines by [`Way`].
-    begin: [wgpu::ComputePipeline; Way::ALL.len()],
+    /// Pipelines by [`WorkCondition`].
+    begin: [wgpu::ComputePipeline; WorkCondition::ALL.len()],
     pub(super) advance: wgpu::ComputePipeline,
     pub(super) edge_faces: wgpu::ComputePipeline,
     pub(super) triangle_count: wgpu::ComputePipeline,
@@ -114,8 +114,8 @@ impl Pipelines {
             storing_scatter: None,
             choice: None,
             arguments: pipeline("view-sample arguments", shaders::VIEW_SAMPLES_ARGUMENTS, &arguments),
-            begin: Way::ALL.map(|way| {
-                let constants = [("WAY", f64::from(way as u32))];
+            begin: WorkCondition::ALL.map(|condition| {
+                let constants = [("WAY", f64::from(condition as u32))];
                 compute_entry(gpu, "view-sample begin", shaders::VIEW_SAMPLES_BEGIN, None, &constants, &passes)
             }),
             advance: pipeline("view-sample advance", shaders::VIEW_SAMPLES_ADVANCE, &passes),
@@ -129,8 +129,8 @@ impl Pipelines {
     }
 
     /// Returns the pipeline that prepares the first pass.
-    pub(super) fn begin(&self, way: Way) -> &wgpu::ComputePipeline {
-        &self.begin[way as usize]
+    pub(super) fn begin(&self, condition: WorkCondition) -> &wgpu::ComputePipeline {
+        &self.begin[condition as usize]
     }
 
     /// Creates the pipelines that choose between drawn and walked triangles.

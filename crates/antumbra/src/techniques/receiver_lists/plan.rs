@@ -11,7 +11,7 @@ use super::settings::{CELL_COUNT, CHOOSES, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_P
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};
 use crate::contract::{Error, MeshCaster, PreparedFrame};
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 
 /// Largest size of the bits of all pixels, bytes; more light points are taken in turn.
 const BITS_BUDGET_BYTES: u64 = 120 << 20;
@@ -72,8 +72,8 @@ impl FramePlan {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{listed_bytes} bytes for a list of {pixels} receivers"),
-                had: format!("{binding_limit} bytes a binding"),
-                remedy: "render the mask in parts",
+                had: format!("at most {binding_limit} bytes per binding"),
+                remedy: "render the mask in several parts",
             });
         }
 
@@ -92,7 +92,7 @@ impl FramePlan {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{} bytes for the bits of every pixel", pixels * u64::from(pixel_words) * 4),
-                had: format!("{binding_limit} bytes a binding"),
+                had: format!("at most {binding_limit} bytes per binding"),
                 remedy: "use fewer light points or a smaller mask, or set `keep_bits` to false",
             });
         }
@@ -187,7 +187,7 @@ impl FramePlan {
         let light = frame.light;
         let whole = world_box(light, &options.points, options.rotations > 0);
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
-        let between = Between::new(light, &bounds, &frame.receivers.corners());
+        let between = OccludingBounds::new(light, &bounds, &frame.receivers.corners());
         let casters_box = between.all().fold(Aabb::EMPTY, Aabb::union);
         let casters_box = if casters_box.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { casters_box };
         let base = SampleSettings {

@@ -18,7 +18,7 @@ use super::region::Region;
 
 /// Options of drawn triangles that the paper uses and the default leaves out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct Drawn {
+pub(crate) struct RasterOptions {
     pub(crate) region: Region,
     /// Whether planes are those of the triangle and the light, for a light of one point; otherwise of the triangle and each receiver.
     pub(crate) light_planes: bool,
@@ -38,7 +38,7 @@ pub(super) struct Raster {
     pub(super) before: wgpu::ComputePipeline,
     pub(super) after: wgpu::ComputePipeline,
     /// Pipelines, created when a frame first needs them.
-    pipelines: HashMap<(Evaluator, Drawn), wgpu::RenderPipeline>,
+    pipelines: HashMap<(Evaluator, RasterOptions), wgpu::RenderPipeline>,
     silhouettes: Option<wgpu::RenderPipeline>,
     stencil: Option<wgpu::RenderPipeline>,
     hulls: Option<(wgpu::BindGroupLayout, wgpu::ComputePipeline)>,
@@ -140,7 +140,7 @@ impl Raster {
     }
 
     /// Prepares targets for windows of a given width, texels.
-    pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32, drawn: Drawn) -> RasterTargets {
+    pub(super) fn prepare(&mut self, stage: &Stage<'_>, window_side: u32, drawn: RasterOptions) -> RasterTargets {
         let size = UVec2::splat(window_side);
         let made = self.no_depth.take().filter(|no_depth| no_depth.size() == size);
         let no_depth = self.no_depth.insert(made.unwrap_or_else(|| NoDepth::new(stage, size, 1))).view().clone();
@@ -161,7 +161,7 @@ impl Raster {
         inputs: &FrameInputs,
         layouts: &Layouts,
         evaluator: Evaluator,
-        drawn: Drawn,
+        drawn: RasterOptions,
     ) -> wgpu::RenderPipeline {
         let layout = &self.layout;
         let make = || pipeline(gpu, &[&inputs.layout, layout, &layouts.surface], evaluator, drawn);
@@ -278,7 +278,7 @@ fn pipeline(
     gpu: &Gpu,
     layouts: &[&wgpu::BindGroupLayout; 3],
     evaluator: Evaluator,
-    drawn: Drawn,
+    drawn: RasterOptions,
 ) -> wgpu::RenderPipeline {
     let is_early = drawn.stencil && gpu.has(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
     let wgsl = match (drawn.light_planes, is_early) {

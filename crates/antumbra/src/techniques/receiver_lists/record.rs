@@ -127,7 +127,7 @@ impl ViewSamples {
     ) {
         recorder.compute("visibility", Span::Only, |pass| {
             for i in 0..over.passes {
-                pass.set_pipeline(if i == 0 { self.pipelines.begin(over.way) } else { &self.pipelines.advance });
+                pass.set_pipeline(if i == 0 { self.pipelines.begin(over.condition) } else { &self.pipelines.advance });
                 pass.set_bind_group(0, &frame.passes, &[]);
                 pass.dispatch_workgroups(1, 1, 1);
                 pass.set_pipeline(&over.pipeline);

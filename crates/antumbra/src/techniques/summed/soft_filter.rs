@@ -58,7 +58,7 @@ pub(crate) struct SoftFilter {
     pub(crate) test_shader: Option<&'static str>,
     resolve: Resolve,
     passes: Option<Passes>,
-    made: Option<Made>,
+    made: Option<SizedTextures>,
 }
 
 /// Map, tables and resolve of one frame.
@@ -83,7 +83,7 @@ struct Passes {
 
 /// Textures for one map size.
 #[derive(Debug)]
-struct Made {
+struct SizedTextures {
     size: UVec2,
     /// Tile planes, for the largest number of tiles that the map can have.
     tiles: Option<(Arc<wgpu::Texture>, wgpu::TextureView)>,
@@ -245,7 +245,7 @@ impl SoftFilter {
             table_4: table(4),
         };
         let table_group = bound.group(stage, &passes.table_layout);
-        self.made = Some(Made { size, tiles, basis });
+        self.made = Some(SizedTextures { size, tiles, basis });
         table_group
     }
 

@@ -176,7 +176,7 @@ const MAX_READS: f32 = 270.0;
 /// Reads do not grow under round lights either, where every pixel is penumbra. An ellipse's kernel reads no more than the
 /// enclosing rectangle's. Covers one technique of exponentials and one of variances; the others use the same shader.
 #[test]
-fn nor_does_it_under_a_disk_or_a_sphere() {
+fn reads_do_not_grow_under_round_lights() {
     let Some(gpu) = gpu() else { return };
     let staged = all_penumbra(gpu);
     reads_do_not_grow(gpu, &staged, &EssmParams { map_size: KERNELS_FROM_30, ..EssmParams::default() });
@@ -185,7 +185,7 @@ fn nor_does_it_under_a_disk_or_a_sphere() {
 
 #[test]
 #[ignore = "long"]
-fn nor_does_it_by_the_rest_of_the_family() {
+fn reads_do_not_grow_for_the_rest_of_the_family() {
     let Some(gpu) = gpu() else { return };
     let staged = all_penumbra(gpu);
     let map_size = KERNELS_FROM_30;

@@ -5,6 +5,6 @@ filterable_params! {
     pub struct ConvolutionParams {
         /// Number of terms M of the Fourier series, two bytes per texel each.
         terms: u32 = 16, in 2..=64,
-            more "Contacts leak less far; memory, blur and lookup all grow in proportion.";
+            more "Light leaks less far at contacts; memory and the times of blur and lookup grow in proportion.";
     }
 }

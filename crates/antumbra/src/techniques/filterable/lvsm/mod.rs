@@ -190,8 +190,8 @@ impl Lvsm {
         if params.msaa != Multisampling::One {
             return Err(Error::Unsupported {
                 technique: Self::NAME,
-                needed: format!("layers of {} samples a texel as targets", params.msaa.count()),
-                had: "1".into(),
+                needed: format!("render targets with {} samples per texel for layers", params.msaa.count()),
+                had: "targets with 1 sample only".into(),
                 remedy: "set `msaa` to 1, or `layers_by` to `depth`",
             });
         }

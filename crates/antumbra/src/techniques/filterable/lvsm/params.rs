@@ -90,75 +90,75 @@ filterable_params! {
     pub struct LvsmParams {
         /// Number of depth layers.
         layers: u32 = 4, in 1..=16,
-            more "Less light bleeding; memory and the blur's time grow in proportion, the lookup's does not.";
+            more "Less light bleeding; memory and the time of the blur grow in proportion, the time of the lookup does not.";
         /// Placement of the layers.
         placement: LayerPlacement = LayerPlacement::Lloyd,
-            more "lloyd follows the scene; uniform spreads precision evenly; manual clears one receiver for certain.";
+            more "lloyd adapts to the scene; uniform distributes precision evenly; manual reliably removes bleeding on one receiver.";
         /// Depths at which manual layers meet, along `depth_axis` from the light's centre (for a sun, from the middle of the
         /// scene).
         split_depths: ParamList = ParamList::EMPTY, unit "m",
-            more "One less than `layers`, ascending; each takes away bleeding onto what lies just behind it.";
+            more "One value fewer than `layers`, ascending; each split removes bleeding onto surfaces just behind it.";
         /// Overlap of neighbouring layers, relative to the depth that a plane at 45° spans under the kernel.
         overlap: f32 = 1.0, in 0.0..=8.0,
-            more "Steep receivers cross from layer to layer without a seam, and layers can lie less close.";
+            more "No seams between layers on steep receivers, but layers can be less close to each other.";
         /// Whether two layers are blended where they overlap.
         blend: bool = true,
-            more "false reads one layer always, and may show where layers meet in bleeding regions.";
+            more "false always reads one layer, and may show seams between layers where light bleeds.";
         /// Blend of two overlapping layers.
         transition: LvsmTransition = LvsmTransition::Lesser,
-            more "mixed is the paper's, and lets in what the worse of two bounds bleeds.";
+            more "mixed, the paper's, lets in the light that the worse of the two bounds bleeds.";
         /// Bound on visibility in a layer.
         bound: LvsmBound = LvsmBound::Bounded,
-            more "chebyshev is the paper's: layers let in a little light where occluders fill them.";
+            more "chebyshev, the paper's, lets in a little light where occluders fill a layer.";
         /// Least variance assumed for depths.
         least_variance: LvsmLeastVariance = LvsmLeastVariance::Receiver,
-            more "global is the paper's: receivers steeper than 45° shade themselves, and those that face the light bleed more.";
+            more "global, the paper's, darkens receivers steeper than 45° and bleeds more light onto receivers that face the light.";
         /// Number of splits that Lloyd's relaxation moves in each frame, in turns.
         splits_per_frame: u32 = 15, in 1..=15,
-            more "Follows moving scenes more quickly.";
+            more "Splits follow moving scenes more quickly.";
         /// Source of the histogram for Lloyd's relaxation.
         relax_over: RelaxOver = RelaxOver::View,
-            more "view spends layers where the camera sees light bleed; map does not depend on the camera; splits of \
-                  map_as_published cut the occluders that they should lie behind.";
+            more "view places layers where the camera sees light bleeding; map does not depend on the camera; map_as_published \
+                 places splits on the occluders instead of behind them.";
         /// Whether texels without a caster count as occluders at the far end, unless `relax_over` is view.
         relax_background: bool = false,
-            more "true spends layers on the edges of what stands before nothing.";
+            more "true spends layers on the edges of occluders in front of empty background.";
         /// Standard deviation of depth over neighbouring texels below which they ask for no split, unless `relax_over` is view.
-        relax_from: f32 = 0.0, in 0.0..=0.5, unit "parts of the range",
-            more "Slopes and small steps of depth no longer draw splits to themselves.";
+        relax_from: f32 = 0.0, in 0.0..=0.5, unit "fractions of the range",
+            more "Slopes and small steps in depth no longer attract splits.";
         /// Standard deviation beyond which their weight no longer grows, unless `relax_over` is view.
-        relax_up_to: f32 = 0.5, in 0.001..=0.5, unit "parts of the range",
-            more "The deepest steps draw splits the more.";
+        relax_up_to: f32 = 0.5, in 0.001..=0.5, unit "fractions of the range",
+            more "The largest steps in depth attract splits more strongly.";
         /// Rule by which Lloyd's relaxation merges and splits layers.
         teleport: LvsmTeleport = LvsmTeleport::Inertia,
-            more "weight is the paper's, and stays in worse places.";
+            more "weight, the paper's, converges to worse splits.";
         /// Storage format of the moments.
         storage: MomentStorage = MomentStorage::Unorm16,
-            more "unorm16 suffices, since a layer covers little depth; float32 takes twice the memory.";
+            more "unorm16 suffices because a layer covers a small depth range; float32 takes twice the memory.";
         /// Time at which the layers are written. With a host's depth map they are always written after it.
         layers_by: LvsmLayersBy = LvsmLayersBy::Depth,
-            more "targets is the paper's: eight layers in a pass over the casters, which relaxed layers draw once more; needs an \
-                  `msaa` of 1.";
+            more "targets, the paper's, writes up to eight layers in one pass over the casters, and needs one more pass if \
+                 layers are relaxed; requires an `msaa` of 1.";
         /// Content of the mask.
         show: LvsmShow = LvsmShow::Visibility,
-            more "layers colours each receiver by its layer, to see where the splits lie.";
+            more "layers colours each receiver by its layer, which shows the splits.";
     } => Paper {
-        anisotropy: 16, ours "8 probes have the same error at half the reads.";
-        depth_axis: DepthAxis::Distance, ours "Depth is measured along the world's axis nearest to the light's.";
+        anisotropy: 16, ours "8 probes have the same error with half the reads.";
+        depth_axis: DepthAxis::Distance, ours "Depth is measured along the world axis closest to the light's axis.";
         splits_per_frame: 2, ours "All splits move in every frame.";
-        relax_over: RelaxOver::MapAsPublished, ours "Splits are placed where receivers in view see light bleed.";
+        relax_over: RelaxOver::MapAsPublished, ours "Splits are placed where light bleeds onto receivers in view.";
         teleport: LvsmTeleport::Weight, ours "Clusters merge and split by inertia.";
-        layers_by: LvsmLayersBy::Targets, ours "Layers are encoded from the light map's depths.";
-        transition: LvsmTransition::Mixed, ours "Where layers overlap the lesser of both bounds counts at the split.";
+        layers_by: LvsmLayersBy::Targets, ours "Layers are encoded from the depths of the shadow map.";
+        transition: LvsmTransition::Mixed, ours "Where layers overlap, the smaller of both bounds is used at the split.";
         least_variance: LvsmLeastVariance::Global, ours "The least variance follows from each receiver's slope.";
-        bound: LvsmBound::Chebyshev, ours "A layer's bound knows that its depths end where the layer does.";
+        bound: LvsmBound::Chebyshev, ours "The bound in a layer takes into account that its depths end where the layer ends.";
     } kept {
-        "Each layer's two moments are a word of their own, where the paper has two layers to a texel: the same memory.",
-        "Relaxed layers are written in a second pass over the casters, after one of depth alone, since their splits are this frame's; \
-         the paper's are some frames old.",
-        "The overlap follows from the kernel, since the paper names no width.",
-        "σ²min is that of a plane at 45° over a texel, since the paper names none, plus the storage's own step.",
-        "A histogram of 4096 bins takes the place of a mip pyramid of weighted samples: the same means.",
-        "Splits glide to where they belong, a quarter of the way a frame; the first frame has converged.",
+        "The two moments of each layer are one word; the paper stores two layers in a texel, which takes the same memory.",
+        "Relaxed layers are written in a second pass over the casters, after a depth-only pass, because their splits belong to \
+         the current frame; the paper's are some frames old.",
+        "The overlap is derived from the kernel; the paper states no width.",
+        "σ²min is that of a plane at 45° over a texel plus the quantisation of the storage; the paper states none.",
+        "A histogram of 4096 bins replaces a mip pyramid of weighted samples: the means are the same.",
+        "Splits move a quarter of the way to their target in each frame; in the first frame they start converged.",
     }
 }

@@ -177,7 +177,7 @@ fn targets_say_that_they_have_one_sample_a_texel() {
 /// Background that counts as an occluder adds splits at the far end, behind boards in front of nothing. Clamping the weights
 /// and leaving out small steps both move the splits.
 #[test]
-fn what_asks_for_splits_is_switched() {
+fn relaxation_weights_follow_their_parameters() {
     let Some(gpu) = gpu() else { return };
     let case = boards(gpu, 3.0);
     let found = |change: LvsmParams| frame(gpu, &mut Lvsm::new(gpu).expect("no features needed"), &case, &change);

@@ -26,9 +26,9 @@ filterable_params! {
     pub struct MomentParams {
         /// Depth distributions that are considered.
         problem: MomentProblem = MomentProblem::Hamburger,
-            more "hausdorff knows that no depth lies outside of the light's range, for some arithmetic more.";
+            more "hausdorff uses the fact that no depth is outside the light's range, and takes more arithmetic.";
         /// Storage format of the moments.
         storage: FourMomentStorage = FourMomentStorage::Unorm16,
-            more "float32 needs less bias against rounding, and so bleeds less, for twice the memory.";
+            more "float32 needs less bias against rounding, so less light bleeds, and takes twice the memory.";
     }
 }

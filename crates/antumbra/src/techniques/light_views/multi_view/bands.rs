@@ -52,7 +52,7 @@ impl Bands {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("a buffer of {} bytes, {bytes_each} for each pixel of {ROWS} rows", row_bytes * 8),
-                had: format!("at most {max_bytes}"),
+                had: format!("at most {max_bytes} bytes per binding"),
                 remedy: "set `compare` to gather",
             });
         }

@@ -244,9 +244,9 @@ impl Technique for MultiView {
         let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
                 technique,
-                what: "the casters",
-                had: "a depth map".into(),
-                needed: "meshes: every light point has a view of its own".into(),
+                what: "the kind of casters",
+                had: "`Casters::DepthMap`".into(),
+                needed: "meshes, because each light point has its own view".into(),
             });
         };
         check_map_size(stage, technique, params.view_size, "set a smaller `view_size`")?;

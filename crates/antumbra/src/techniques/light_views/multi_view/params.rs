@@ -33,7 +33,7 @@ params! {
     pub struct MultiViewParams {
         /// Texels along a side of each view.
         view_size: u32 = 1024, in 16..=8192, unit "texels", scale Log,
-            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+            more "Sharper contacts and finer occluders; memory and fill cost grow with the square of the size.";
         /// Number of light samples, and of views. A light of points has one for each point.
         samples: u32 = 64, in 1..=1024, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
@@ -42,13 +42,13 @@ params! {
             more "stratified, r2 and sobol converge equally fast; poisson is as published and converges more slowly.";
         /// Placement of each view's texels.
         window: MultiViewWindow = MultiViewWindow::Warped,
-            more "warped resolves what is near the camera and averages what one view's texels miss; plain has texels of \
-                  one size.";
+            more "warped has finer texels near the camera and averages over what the texels of one view miss; plain has texels \
+                 of one size.";
         /// Comparison of texels with a receiver.
         compare: MultiViewCompare = MultiViewCompare::Triangles,
-            more "triangles finds edges where they are, for 32 bytes a pixel and 48 and more a triangle; sharp finds them \
-                  between the views, for 24 bytes a pixel; gather keeps nothing; hardware is the papers' form and \
-                  detaches grazing contacts.";
+            more "triangles finds exact edges and takes 32 bytes per pixel and at least 48 per triangle; sharp estimates edges \
+                 from the texels of all views and takes 24 bytes per pixel; gather takes no memory; hardware, the papers' \
+                 form, detaches contacts at grazing angles.";
         shared seed;
         shared bias_scale;
     }

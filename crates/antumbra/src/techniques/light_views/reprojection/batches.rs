@@ -126,9 +126,9 @@ impl Engine {
         let PreparedCasters::Draws(meshes) = &frame.casters else {
             return Err(Error::BadFrame {
                 technique,
-                what: "the casters",
-                had: "a depth map".into(),
-                needed: "meshes: the central map is fitted to the light's points".into(),
+                what: "the kind of casters",
+                had: "`Casters::DepthMap`".into(),
+                needed: "meshes, because the central map is fitted to the light's points".into(),
             });
         };
         let largest = settings.central_size.max(settings.view_size);
@@ -205,7 +205,7 @@ impl Engine {
             return Err(Error::Unsupported {
                 technique: self.technique,
                 needed: format!("{bytes} bytes for one light point's maps"),
-                had: format!("{binding_limit} bytes a binding"),
+                had: format!("at most {binding_limit} bytes per binding"),
                 remedy: "set a smaller `view_size`",
             });
         }

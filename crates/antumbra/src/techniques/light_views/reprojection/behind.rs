@@ -13,7 +13,7 @@ use glam::{DVec4, Vec3};
 use crate::contract::MeshCaster;
 use crate::light_map::light_spread::LightSpread;
 use crate::light_map::light_view::{FollowedLight, LightView, MIDDLE_TANGENT, ViewFit};
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 
 /// Tangent at which the light's edge is seen, just within the middle face of a cube. From nearer, casters in front of the light's rim would
 /// be seen at a grazing angle; from farther, in coarser texels.
@@ -21,7 +21,7 @@ const LIGHT_TANGENT: f32 = 1.0;
 
 /// Position behind a light, and distance to the light.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Behind {
+pub(super) struct CenterBehindLight {
     /// Axes of the light, at the position.
     pub(super) frame: LightFrame,
     /// Distance from the position to the light's back, metres.
@@ -30,7 +30,7 @@ pub(super) struct Behind {
     gap_m: f32,
 }
 
-impl Behind {
+impl CenterBehindLight {
     /// Position behind a light; `None` if the view `from_middle` holds the casters near the light.
     pub(super) fn of(light: &Light, from_middle: &LightView) -> Option<Self> {
         if from_middle.complete_from_m == 0.0 {
@@ -58,7 +58,7 @@ impl Behind {
             center + sign(1) * extent.x * right + sign(2) * extent.y * up + depth * axis
         };
         let ends: Vec<Vec3> = receivers.iter().copied().chain((0..8).map(corner)).collect();
-        let between = Between::new(light, casters, receivers);
+        let between = OccludingBounds::new(light, casters, receivers);
         let fit = ViewFit::perspective(
             self.frame,
             FollowedLight::Center,

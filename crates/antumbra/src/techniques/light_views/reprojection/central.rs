@@ -4,12 +4,12 @@
 use antumbra_light::{Aabb, Light, LightFrame, LightPoint};
 use glam::{DMat4, DVec4, Mat4, Vec3};
 
-use super::behind::Behind;
+use super::behind::CenterBehindLight;
 use super::gpu_types::{SplatBatch, ViewGroup};
 use super::settings::{ReprojectionProjection, Settings};
 use crate::light_map::central_view::{central_fit, central_reach};
 use crate::light_map::light_view::{FollowedLight, LightView, LightViewGpu, Window};
-use crate::light_map::occluding_bounds::Between;
+use crate::light_map::occluding_bounds::OccludingBounds;
 use crate::techniques::light_views::{Batch, views_from};
 
 /// Maximum tangent of a plane view: a wider one is cut or wasteful, and a cube takes its place.
@@ -44,7 +44,7 @@ pub(super) struct Views {
     /// Texels along a side of a target.
     pub(super) view_size: u32,
     /// Position of the central views, if they are from behind the light.
-    pub(super) behind: Option<Behind>,
+    pub(super) behind: Option<CenterBehindLight>,
 }
 
 /// Matrices from the central images to the targets'.
@@ -75,7 +75,7 @@ impl Views {
     ) -> Self {
         let from_middle = central_plane(light, casters, receivers);
         let (central_size, view_size) = (settings.central_size, settings.view_size);
-        let behind = settings.may_be_from_behind().then(|| Behind::of(light, &from_middle)).flatten();
+        let behind = settings.may_be_from_behind().then(|| CenterBehindLight::of(light, &from_middle)).flatten();
         let from_behind = behind.and_then(|behind| behind.plane(light, casters, receivers));
         if from_behind.is_some() || !needs_cube(light, &from_middle, settings.projection) {
             let targets = views_from(light, points, casters, receivers, &[]);
@@ -86,7 +86,7 @@ impl Views {
         let (central_size, view_size) = ((central_size / 2).max(1), (view_size / 2).max(1));
         // Casters farther than all receivers cast no shadow on them.
         let of_receivers = Aabb::of(receivers.iter().copied());
-        let of_casters = || Between::new(light, casters, receivers).all().fold(Aabb::EMPTY, Aabb::union);
+        let of_casters = || OccludingBounds::new(light, casters, receivers).all().fold(Aabb::EMPTY, Aabb::union);
         let all = if of_receivers.is_empty() { of_casters() } else { of_receivers };
         let looks_back = light.is_omnidirectional() && is_behind(&from_middle.frame, receivers, all);
         let behind = behind.filter(|_| !light.is_omnidirectional());

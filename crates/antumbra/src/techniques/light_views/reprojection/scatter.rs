@@ -213,7 +213,7 @@ impl Scatter {
         let of_rasterised = [of_points.as_slice(), &[constant("IS_SURFEL", key.is_surfel)]].concat();
         match key.scattering {
             Scattering::Compute if key.is_surfel => {
-                let list = self.list.as_ref().expect("made before its program");
+                let list = self.list.as_ref().expect("created before its program");
                 let layouts = [None, Some(list.listed_layout()), Some(&self.group_layout)];
                 Program::Surfels(compute_program(gpu, shaders::REPROJECTION_SPLAT_SURFELS, &layouts, &of_all))
             }
@@ -326,7 +326,7 @@ impl Scatter {
             match program {
                 Program::Points(_) | Program::Surfels(_) => {}
                 Program::Screen(pipeline) => {
-                    let no_depth = self.no_depth.as_ref().expect("prepare makes it for this form");
+                    let no_depth = self.no_depth.as_ref().expect("`prepare` creates it for this path");
                     recorder.render_pass(REPROJECT, span, &[], no_depth.view(), None, |pass| {
                         pass.set_pipeline(pipeline);
                         pass.set_bind_group(1, prepared.central.as_ref(), &[]);

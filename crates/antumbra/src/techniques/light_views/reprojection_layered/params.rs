@@ -30,7 +30,7 @@ params! {
     pub struct ReprojectionLayeredParams {
         /// Texels along a side of each view, twice those of a cube's face.
         view_size: u32 = 1024, in 16..=4096, unit "texels", scale Log,
-            more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+            more "Sharper contacts and finer occluders; memory and fill cost grow with the square of the size.";
         /// Number of light samples, and of views. A light of points has one for each point.
         samples: u32 = 64, in 1..=1024, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
@@ -39,27 +39,27 @@ params! {
             more "stratified, r2 and sobol converge equally fast; poisson is as published and converges more slowly.";
         /// Side of the central map, as a multiple of a view's.
         central_scale: u32 = 2, in 1..=4,
-            more "More exact silhouettes; time grows with the square.";
+            more "More exact silhouettes; time grows with the square of the scale.";
         /// Fragments that are reprojected.
         source: ReprojectionSource = ReprojectionSource::Layers,
-            more "all skips no layer.";
+            more "all misses no surface, however many layers there are.";
         /// Number of nearest layers of the central view, if the source is layers.
         layers: u32 = 4, in 1..=8,
-            more "Fewer hidden surfaces are missing; each layer is a geometry pass.";
+            more "Fewer hidden surfaces are missed; each layer takes a geometry pass.";
         /// Texels in which a fragment is stored.
         splat: ReprojectionSplat = ReprojectionSplat::Surfel,
             more "surfel stores exact depths without gaps; near_centre needs a central_scale of 4; point widens \
                   occluders.";
         /// Steepest surface that a surfel follows, depth per width.
         steepest: f32 = 1000.0, in 0.0..=1000.0, scale Log,
-            more "Fewer gaps on steep sides; grazing surfaces lie where they are and do not darken themselves.";
+            more "Fewer gaps on steep sides; surfaces at grazing angles keep their position and do not shadow themselves.";
         /// Comparison of the integer maps with receivers.
         filter: ReprojectionFilter = ReprojectionFilter::Manual,
-            more "manual and copy compare each texel with the receiver's plane; draw compares one depth, as the paper \
-                  does, and detaches grazing contacts.";
+            more "manual and copy compare each texel with the receiver's plane; draw compares one depth, as in the paper, and \
+                 detaches contacts at grazing angles.";
         /// Shape of the central map.
         projection: ReprojectionProjection = ReprojectionProjection::Auto,
-            more "cube sees all around a light inside a room, at five or six times the memory.";
+            more "cube covers all directions around a light inside a room, and takes five to six times the memory.";
         /// Moves all light samples together in every frame.
         jitter: bool = false,
             more "The mean over frames converges; a single frame is no better.";

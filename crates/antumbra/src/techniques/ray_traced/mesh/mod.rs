@@ -116,15 +116,15 @@ pub(super) struct Meshes {
     programs: Programs,
     kept: HashMap<MeshKey, KeptMesh>,
     frame: u64,
-    nodes: Room,
-    triangles: Room,
+    nodes: VectorPool,
+    triangles: VectorPool,
     made: Option<Work>,
     fitted: Option<Work>,
 }
 
 /// Buffer of vectors, and which of them are allocated.
 #[derive(Debug)]
-struct Room {
+struct VectorPool {
     label: &'static str,
     buffer: Option<wgpu::Buffer>,
     ranges: RangeAllocator<u64>,
@@ -138,7 +138,7 @@ struct Work {
     sources: Vec<(wgpu::BindGroup, u32)>,
 }
 
-impl Room {
+impl VectorPool {
     fn new(label: &'static str) -> Self {
         Self { label, buffer: None, ranges: RangeAllocator::new(0..0) }
     }
@@ -160,12 +160,12 @@ impl Room {
 }
 
 /// Mesh that a frame uses, and one of its casters.
-struct Asked<'a, 'c> {
+struct UsedMesh<'a, 'c> {
     key: MeshKey,
     caster: &'a MeshCaster<'c>,
 }
 
-impl Asked<'_, '_> {
+impl UsedMesh<'_, '_> {
     fn triangle_count(&self) -> u32 {
         self.caster.index_count / 3
     }
@@ -195,8 +195,8 @@ impl Meshes {
             },
             kept: HashMap::new(),
             frame: 0,
-            nodes: Room::new("antumbra mesh nodes"),
-            triangles: Room::new("antumbra mesh triangles"),
+            nodes: VectorPool::new("antumbra mesh nodes"),
+            triangles: VectorPool::new("antumbra mesh triangles"),
             made: None,
             fitted: None,
         }
@@ -213,14 +213,14 @@ impl Meshes {
     ) -> Result<Vec<MeshPlace>, Error> {
         self.frame += 1;
         let keys: Vec<MeshKey> = casters.iter().map(|caster| MeshKey::of(caster)).collect();
-        let mut asked: Vec<Asked<'_, '_>> = Vec::new();
+        let mut used: Vec<UsedMesh<'_, '_>> = Vec::new();
         let mut is_asked = HashSet::new();
         for (key, caster) in keys.iter().zip(casters) {
             if is_asked.insert(key) {
-                asked.push(Asked { key: key.clone(), caster });
+                used.push(UsedMesh { key: key.clone(), caster });
             }
         }
-        for mesh in &asked {
+        for mesh in &used {
             if let Some(kept) = self.kept.get_mut(&mesh.key) {
                 // A different size means a different mesh, whatever its version.
                 let is_it = kept.triangle_count == mesh.triangle_count();
@@ -228,31 +228,31 @@ impl Meshes {
             }
         }
         let frame = self.frame;
-        let is_here = |kept: &HashMap<MeshKey, KeptMesh>, mesh: &Asked<'_, '_>| {
+        let is_here = |kept: &HashMap<MeshKey, KeptMesh>, mesh: &UsedMesh<'_, '_>| {
             kept.get(&mesh.key).is_some_and(|kept| kept.frame == frame)
         };
-        let mut to_make: Vec<&Asked<'_, '_>> = asked.iter().filter(|mesh| !is_here(&self.kept, mesh)).collect();
-        if !(self.nodes.buffer.is_some() && to_make.iter().all(|mesh| self.take(mesh))) {
-            self.renew(stage, technique, &asked)?;
-            to_make = asked.iter().collect();
+        let mut to_build: Vec<&UsedMesh<'_, '_>> = used.iter().filter(|mesh| !is_here(&self.kept, mesh)).collect();
+        if !(self.nodes.buffer.is_some() && to_build.iter().all(|mesh| self.take(mesh))) {
+            self.renew(stage, technique, &used)?;
+            to_build = used.iter().collect();
         }
-        let made: HashSet<&MeshKey> = to_make.iter().map(|mesh| &mesh.key).collect();
-        let mut to_fit: Vec<&Asked<'_, '_>> = Vec::new();
-        for mesh in &asked {
+        let made: HashSet<&MeshKey> = to_build.iter().map(|mesh| &mesh.key).collect();
+        let mut to_fit: Vec<&UsedMesh<'_, '_>> = Vec::new();
+        for mesh in &used {
             let vertices = mesh.caster.version.map(|version| version.vertices);
-            let kept = self.kept.get_mut(&mesh.key).expect("made room for above");
+            let kept = self.kept.get_mut(&mesh.key).expect("inserted above");
             if !made.contains(&mesh.key) && (vertices.is_none() || kept.vertices != vertices) {
                 to_fit.push(mesh);
             }
             kept.vertices = vertices;
         }
-        self.made = self.work(stage, trees, true, &to_make);
+        self.made = self.work(stage, trees, true, &to_build);
         self.fitted = self.work(stage, trees, false, &to_fit);
         Ok(keys.iter().map(|key| self.kept[key].place()).collect())
     }
 
     /// Allocates space for a mesh, replacing meshes that the frame does not use if necessary. Returns whether there is space.
-    fn take(&mut self, mesh: &Asked<'_, '_>) -> bool {
+    fn take(&mut self, mesh: &UsedMesh<'_, '_>) -> bool {
         if let Some(old) = self.kept.remove(&mesh.key) {
             self.give_back(&old);
         }
@@ -270,7 +270,7 @@ impl Meshes {
         true
     }
 
-    fn try_take(&mut self, mesh: &Asked<'_, '_>) -> Option<[Range<u64>; 2]> {
+    fn try_take(&mut self, mesh: &UsedMesh<'_, '_>) -> Option<[Range<u64>; 2]> {
         let [nodes, triangles] = mesh.vectors();
         let nodes = self.nodes.ranges.allocate_range(nodes).ok()?;
         match self.triangles.ranges.allocate_range(triangles) {
@@ -288,34 +288,34 @@ impl Meshes {
     }
 
     /// Allocates space for all meshes of a frame if it is too small: exactly at first, with half as much again later.
-    fn renew(&mut self, stage: &Stage<'_>, technique: &'static str, asked: &[Asked<'_, '_>]) -> Result<(), Error> {
-        if let Some(mesh) = asked.iter().find(|mesh| mesh.triangle_count() > FIRST_MASK) {
+    fn renew(&mut self, stage: &Stage<'_>, technique: &'static str, used: &[UsedMesh<'_, '_>]) -> Result<(), Error> {
+        if let Some(mesh) = used.iter().find(|mesh| mesh.triangle_count() > FIRST_MASK) {
             return Err(Error::Unsupported {
                 technique,
-                needed: format!("a tree over a mesh of {} triangles", mesh.triangle_count()),
-                had: format!("trees over at most {FIRST_MASK}"),
-                remedy: "cut the mesh into several",
+                needed: format!("a tree over a mesh with {} triangles", mesh.triangle_count()),
+                had: format!("a limit of {FIRST_MASK} per tree"),
+                remedy: "split the mesh",
             });
         }
         let is_first = self.nodes.buffer.is_none();
         let max_bytes = stage.device.limits().max_storage_buffer_binding_size;
         let needed =
-            asked.iter().map(Asked::vectors).fold([0; 2], |[a, b], [nodes, triangles]| [a + nodes, b + triangles]);
+            used.iter().map(UsedMesh::vectors).fold([0; 2], |[a, b], [nodes, triangles]| [a + nodes, b + triangles]);
         for (room, needed) in [&mut self.nodes, &mut self.triangles].into_iter().zip(needed) {
             if needed * VECTOR_BYTES > max_bytes {
-                let count: u64 = asked.iter().map(|mesh| u64::from(mesh.triangle_count())).sum();
+                let count: u64 = used.iter().map(|mesh| u64::from(mesh.triangle_count())).sum();
                 return Err(Error::Unsupported {
                     technique,
                     needed: format!("{} bytes for the trees of {count} triangles", needed * VECTOR_BYTES),
-                    had: format!("at most {max_bytes} bytes a binding"),
-                    remedy: "cast with fewer or coarser meshes, or ask for a larger max_storage_buffer_binding_size",
+                    had: format!("at most {max_bytes} bytes per binding"),
+                    remedy: "use fewer or coarser meshes, or request a larger max_storage_buffer_binding_size",
                 });
             }
             let with_more = if is_first { needed } else { needed + needed / 2 };
             room.renew(stage, with_more.min(max_bytes / VECTOR_BYTES).max(u64::from(FRAME_VECTORS)));
         }
         self.kept.clear();
-        for mesh in asked {
+        for mesh in used {
             let is_taken = self.take(mesh);
             debug_assert!(is_taken, "there is room for all");
         }
@@ -327,14 +327,14 @@ impl Meshes {
         stage: &Stage<'_>,
         trees: &TreePrograms,
         makes: bool,
-        meshes: &[&Asked<'_, '_>],
+        meshes: &[&UsedMesh<'_, '_>],
     ) -> Option<Work> {
         let before = if makes { self.made.take() } else { self.fitted.take() };
         if meshes.is_empty() {
             return None;
         }
         let mut forest = before.map_or_else(|| Forest::new(stage), |work| work.forest);
-        let segment = |mesh: &&Asked<'_, '_>| {
+        let segment = |mesh: &&UsedMesh<'_, '_>| {
             let place = self.kept[&mesh.key].place();
             Segment {
                 item_count: mesh.triangle_count(),

@@ -72,8 +72,8 @@ impl Top {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("{needed} bytes for {count} instances"),
-                had: format!("at most {max_bytes} bytes a binding"),
-                remedy: "cast with fewer instances, or ask for a larger max_storage_buffer_binding_size",
+                had: format!("at most {max_bytes} bytes per binding"),
+                remedy: "use fewer instances, or request a larger max_storage_buffer_binding_size",
             });
         }
         let count = count as u32;

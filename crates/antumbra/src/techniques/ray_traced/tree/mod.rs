@@ -154,14 +154,14 @@ struct Prepared {
     boxes: wgpu::BindGroup,
     /// Bind group and number of boxes of each level of the pyramid.
     levels: Vec<(wgpu::BindGroup, u32)>,
-    made: Option<Made>,
+    made: Option<BuildGroups>,
     shape: wgpu::Buffer,
     segments: wgpu::Buffer,
 }
 
 /// Bind groups for building trees.
 #[derive(Debug)]
-struct Made {
+struct BuildGroups {
     digits: Vec<wgpu::BindGroup>,
     links: wgpu::BindGroup,
 }
@@ -242,7 +242,10 @@ impl Forest {
                 starts: here(&scratch.starts),
                 nodes,
             };
-            Made { digits: (0..CODE_DIGITS).map(digit).collect(), links: links.group(stage, &programs.links_layout) }
+            BuildGroups {
+                digits: (0..CODE_DIGITS).map(digit).collect(),
+                links: links.group(stage, &programs.links_layout),
+            }
         });
         if makes {
             self.count_scan.prepare(stage, here(&scratch.counts), DIGITS * block_count);
@@ -290,8 +293,8 @@ impl Forest {
         recorder.clear_buffer(here(&self.scratch.starts));
     }
 
-    fn made(&self) -> &Made {
-        self.prepared().made.as_ref().expect("prepared to be made")
+    fn made(&self) -> &BuildGroups {
+        self.prepared().made.as_ref().expect("`prepare` scheduled the build")
     }
 
     /// Sorts items by their boxes within each segment; the result is the order.

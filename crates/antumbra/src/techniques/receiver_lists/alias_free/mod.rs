@@ -23,7 +23,8 @@ use glam::Vec3;
 use crate::contract::{DrawnLists, Error, PreparedFrame};
 use crate::gpu::{Gpu, Recorder, Stage};
 use crate::techniques::receiver_lists::{
-    CULL_FACING, CUT_BY_PLANE, Drawn, LocalPoint, Options, PreparedSamples, Region, STOP_WHEN_OCCLUDED, ViewSamples,
+    CULL_FACING, CUT_BY_PLANE, LocalPoint, Options, PreparedSamples, RasterOptions, Region, STOP_WHEN_OCCLUDED,
+    ViewSamples,
 };
 use crate::techniques::{Coverage, Technique};
 
@@ -60,7 +61,7 @@ impl Technique for AliasFree {
             points: vec![LocalPoint::white(Vec3::ZERO)],
             map_size: params.map_size,
             traversal: params.traversal,
-            drawn: Drawn {
+            drawn: RasterOptions {
                 region: match params.region {
                     RegionHull::Boxes => Region::Boxes,
                     RegionHull::SixVertices => Region::SixVertices,

@@ -27,29 +27,29 @@ params! {
         shared map_size of lists;
         /// Method by which triangles find the receivers that they may shadow.
         traversal: Traversal = Traversal::Chosen,
-            more "raster is the paper's way: up to four times as fast where receivers are spread over one window, and without \
-                  bound where many share a texel. chosen takes it where few do. The shadow is the same, bit for bit.";
+            more "raster, the paper's, is up to four times as fast if receivers are spread evenly over one window, but \
+                 arbitrarily slow if many share a texel. chosen uses raster where few share one. All give identical shadows.";
         /// Region of the light's map over which a triangle is drawn, where triangles are drawn.
         region: RegionHull = RegionHull::SixVertices,
-            more "six_vertices is the paper's, smaller, and a texel wider at sharp corners; the shadow is the same, bit for bit.";
+            more "six_vertices, the paper's, has fewer corners, but is a texel wider at sharp ones; the shadows are identical.";
         /// Planes that receivers are tested against, where triangles are drawn.
         planes: TestedPlanes = TestedPlanes::Receiver,
-            more "triangle is the paper's: less to do for each receiver; edges move by the rounding of positions.";
+            more "triangle, the paper's, takes less work per receiver, but edges move by the rounding error of positions.";
         /// Stores receivers' positions in the lists, where triangles are drawn; otherwise they come from the depth buffer.
         stored_positions: bool = false,
-            more "Saves each test a read of the depth buffer, for 32 bytes per pixel; changes nothing else.";
+            more "true saves a depth buffer read per test and takes 32 bytes per pixel; the shadow is the same.";
         /// Early depth test that discards fragments over empty lists, on devices that have one.
         stencil: bool = true,
-            more "Saves fragments that would end at once, for a pass over each window; changes nothing else.";
+            more "true skips fragments over empty lists and takes a pass over each window; the shadow is the same.";
         shared bias_scale of rays;
     }
     => Paper {
-        traversal: Traversal::Raster, ours "Where many receivers share a texel, groups of 64 walk the triangles before them.";
-        planes: TestedPlanes::Triangle, ours "Planes through each receiver that a triangle meets.";
-        stored_positions: true, ours "Lists hold pixels, whose positions come from the depth buffer.";
+        traversal: Traversal::Raster, ours "Where many receivers share a texel, groups of 64 test the triangles in front of them.";
+        planes: TestedPlanes::Triangle, ours "Planes through the triangle and the receiver, computed per receiver.";
+        stored_positions: true, ours "Lists contain pixels, whose positions are read from the depth buffer.";
     } kept {
-        "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
-        "The paper's stencil is a depth test, and its geometry shader the vertex stage, at each of a region's vertices.",
-        "Open meshes start segments at the ray offset from their surface; the paper's casters are closed.",
+        "Bits are cleared by atomics, because WebGPU has no bitwise blending.",
+        "A depth test replaces the paper's stencil, and the vertex stage its geometry shader, for each vertex of a region.",
+        "On open meshes, segments start at the ray offset from the surface; the paper's casters are closed.",
     }
 }

@@ -43,8 +43,8 @@ use crate::contract::{DrawnLists, Error, PreparedFrame};
 use crate::gpu::{Cached, Gpu, Recorder, Stage};
 use crate::mask::accumulation::{Accumulation, PreparedAccumulation};
 use crate::techniques::receiver_lists::{
-    CULL_FACING, CUT_BY_PLANE, Drawn, Options, PENUMBRA_ONLY, PreparedSamples, Region, STOP_WHEN_OCCLUDED, ViewSamples,
-    local_points,
+    CULL_FACING, CUT_BY_PLANE, Options, PENUMBRA_ONLY, PreparedSamples, RasterOptions, Region, STOP_WHEN_OCCLUDED,
+    ViewSamples, local_points,
 };
 use crate::techniques::{Coverage, Technique};
 
@@ -150,7 +150,7 @@ impl Technique for SampleBased {
             points,
             map_size: params.map_size,
             traversal: params.traversal,
-            drawn: Drawn {
+            drawn: RasterOptions {
                 region: match params.region {
                     RegionOfInfluence::Boxes => Region::Boxes,
                     RegionOfInfluence::Hexagons => Region::Hexagons,

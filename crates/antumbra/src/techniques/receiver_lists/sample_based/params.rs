@@ -28,57 +28,58 @@ params! {
     pub struct SampleBasedParams {
         /// Number of light samples. A light of points has one for each point.
         samples: u32 = 256, in 1..=1024, scale Log,
-            more "Smoother penumbrae; eight times as many cost about twice as much.";
+            more "Smoother penumbrae; eight times as many samples take about twice the time.";
         /// Distribution of the light samples.
         sample_set: SampleSet = SampleSet::Relaxed,
-            more "relaxed and stratified have the least error; r2 and sobol a tenth more; poisson converges more slowly.";
+            more "relaxed and stratified have the least error, r2 and sobol a tenth more; poisson converges more slowly.";
         shared seed;
         /// Method that finds the light samples behind a plane.
         evaluation: SampleEvaluation = SampleEvaluation::Exact,
-            more "exact gives the ray tracer's bits; lookup is the paper's, and off by the table's cells.";
+            more "exact gives the same bits as the ray tracer; lookup, the paper's, has an error of up to a cell of the table.";
         /// Cells along each axis of the lookup table.
         lookup_size: u32 = 128, in 16..=256, unit "cells", scale Log,
-            more "Finer planes; memory grows with the cube, 32 MiB at 128 for each 128 light points.";
+            more "Finer planes; memory grows with the cube of the size: 32 MiB at 128 for each 128 light points.";
         shared map_size of lists;
         /// Method by which triangles find the receivers that they may shadow.
         traversal: Traversal = Traversal::Groups,
-            more "raster is the paper's way; the shadow is the same, bit for bit.";
+            more "raster is the paper's; the shadows are identical.";
         /// Region of the light's map over which a triangle is drawn, where triangles are drawn.
         region: RegionOfInfluence = RegionOfInfluence::Boxes,
-            more "hexagons is the paper's: an ellipsoid about the light, a pass over the triangles; the shadow is the same, bit for bit.";
+            more "hexagons, the paper's, encloses the light in an ellipsoid and takes a pass over the triangles; the shadows \
+                 are identical.";
         /// Stores receivers' positions in the lists, where triangles are drawn; otherwise they come from the depth buffer.
         stored_positions: bool = false,
-            more "Saves each test a read of the depth buffer, for 32 bytes per pixel; changes nothing else.";
+            more "true saves a depth buffer read per test and takes 32 bytes per pixel; the shadow is the same.";
         /// Early depth test that discards fragments over empty lists, on devices that have one.
         stencil: bool = false,
-            more "Saves fragments that would end at once, for a pass over each window; changes nothing else.";
+            more "true skips fragments over empty lists and takes a pass over each window; the shadow is the same.";
         /// Stops when every light sample of every receiver of a group is hidden.
         stop_when_occluded: bool = true,
-            more "Saves time in the umbra, changes nothing else.";
+            more "true saves time in the umbra; the shadow is the same.";
         /// Tests a single light sample where no silhouette lies between the receivers and the light.
         penumbra_only: bool = false,
-            more "Saves tests in wide umbrae and costs a silhouette test everywhere; changes nothing else.";
+            more "true saves tests in wide umbrae and takes a silhouette test everywhere; the shadow is the same.";
         /// Skips triangles whose plane has receivers and light on one side; drawn ones are clipped by their plane.
         cut_by_plane: bool = true,
-            more "Saves time near large triangles, changes nothing else.";
+            more "true saves time near large triangles; the shadow is the same.";
         /// Skips triangles of closed meshes that face all of the light.
         cull_facing: bool = true,
-            more "Saves up to half of the triangles, changes nothing else.";
-        shared weights, more "irradiance is equation 1: the mask is the part of an area light's own irradiance that arrives, channel by channel; \
-                  costs a pass, and 4 bytes a pixel for each 32 samples.";
+            more "true saves up to half of the triangles; the shadow is the same.";
+        shared weights, more "With irradiance, equation 1, the mask is the visible fraction of an area light's irradiance in \
+             each channel; it takes a pass, and 4 bytes per pixel for each 32 samples.";
         shared sub;
         /// Random rotation of the light samples at each pixel, where the light's shape allows.
         rotate: bool = false,
-            more "Shows noise instead of bands with few samples.";
+            more "With few samples, true shows noise instead of banding.";
         /// Different light samples in each frame, averaged over the frames since something last moved.
         accumulate: bool = false,
-            more "Noise and bands fade while nothing moves; costs a pass over pixels and casters, and 12 bytes a pixel.";
+            more "With true, noise and banding fade while nothing moves; takes a pass over pixels and casters, and 12 bytes per pixel.";
         /// Keeps every pixel's bits for the host to read.
         keep_bits: bool = false,
-            more "Costs a bit of memory for each pixel and light point.";
+            more "true takes one bit of memory per pixel and light point.";
         /// Counts tests, for the host to read.
         count_tests: bool = false,
-            more "Costs a little time.";
+            more "true takes a little time.";
         shared bias_scale of rays;
     }
     Fast { samples: 32, }
@@ -86,17 +87,17 @@ params! {
     Best { samples: 1024, }
     => Paper {
         evaluation: SampleEvaluation::Lookup, ours "Each light point is tested against each plane.";
-        traversal: Traversal::Raster, ours "Groups of 64 receivers walk the triangles before them.";
-        region: RegionOfInfluence::Hexagons, ours "The hull of three boxes, twelve corners.";
-        stored_positions: true, ours "Lists hold pixels, whose positions come from the depth buffer.";
-        stencil: true, ours "Fragments over empty lists end where they begin.";
-        penumbra_only: true, ours "All light points are tested everywhere: looking for silhouettes takes longer than it saves.";
-        stop_when_occluded: false, ours "A group of which all is hidden stops.";
+        traversal: Traversal::Raster, ours "Groups of 64 receivers test the triangles in front of them.";
+        region: RegionOfInfluence::Hexagons, ours "The convex hull of three boxes, with twelve corners.";
+        stored_positions: true, ours "Lists contain pixels, whose positions are read from the depth buffer.";
+        stencil: true, ours "Fragments over empty lists are not discarded early; they return at once.";
+        penumbra_only: true, ours "All light points are tested everywhere: finding silhouettes takes longer than it saves.";
+        stop_when_occluded: false, ours "A group of receivers stops once all its light samples are hidden.";
     } kept {
-        "Bits are cleared by atomics: fragments of WebGPU have no bitwise blending.",
-        "The paper's stencil is a depth test; what silhouettes' regions leave out of it is a word for each texel.",
-        "A silhouette's region is that of its triangles, where the paper has the edge's own.",
-        "A triangle's plane cuts its region off where fragments begin, where the paper cuts the polygon.",
-        "Lists take distance from the light into account by the groups alone.",
+        "Bits are cleared by atomics, because WebGPU has no bitwise blending.",
+        "A depth test replaces the paper's stencil, and a word per texel records which texels the regions of silhouettes exclude.",
+        "The region of a silhouette edge is that of its triangles; the paper computes one for the edge.",
+        "A region is clipped by its triangle's plane per fragment; the paper clips the polygon.",
+        "Only groups use the receivers' distance from the light; lists do not.",
     }
 }

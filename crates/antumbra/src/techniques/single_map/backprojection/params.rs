@@ -25,26 +25,27 @@ param_choice! {
 params! {
     /// Parameters of [`Backprojection`](super::Backprojection).
     pub struct BackprojectionParams {
-        shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        shared map_size, more "Sharper contacts and finer occluders; memory and fill cost grow with the square of the size.";
         /// Occluders that are projected onto the light.
         occluders: BackprojectionOccluders = BackprojectionOccluders::Outlines,
-            more "outlines counts no area twice within one surface; patches adds up what each texel hides, which darkens.";
+            more "outlines counts each area of a surface once; patches adds the areas of all texels, which is too dark where they overlap.";
         /// Neighbours at another depth that an outline includes, or to which a patch is extended.
         gaps: BackprojectionGaps = BackprojectionGaps::All,
-            more "surfaces lets light pass between two occluders, where the map hides what stands there, and counts twice what both hide.";
+            more "surfaces leaks light between two occluders where the map does not show what is there, and counts areas that \
+                 both hide twice.";
         /// Maximum number of squares along the part of the map through which a receiver sees the light, and along each inner ring of
         /// smaller squares. A square of several texels shows one of them.
         squares: u32 = 16, in 4..=64, scale Log,
-            more "Finer occluders in wide penumbrae and less noise; time grows with the square.";
+            more "Finer occluders in wide penumbrae and less noise; time grows with the square of the number.";
         /// Number of points of an ellipsoid, an emission texture, a list of points, or a light seen edge-on; other lights are areas.
         samples: u32 = 64, in 1..=256, scale Log,
             more "Smoother penumbrae of such lights; time grows in proportion.";
         /// Distribution of the points over such a light.
         sample_set: SampleSet = SampleSet::Sobol,
-            more "sobol is the most even for powers of two, r2 and stratified for other numbers.";
+            more "sobol is the most uniform for powers of two, r2 and stratified for other numbers.";
         /// Random choice per pixel of the texel that a square of several shows, and random offset of the points.
         rotate: bool = true,
-            more "true shows noise, false shows bands.";
+            more "true shows noise, false shows banding.";
         shared seed;
         shared bias_scale;
     }
@@ -52,13 +53,14 @@ params! {
     High { map_size: MapSize::Texels(2048), squares: 32, samples: 128, }
     Best { map_size: MapSize::Texels(4096), squares: 64, samples: 256, }
     => Paper {
-        occluders: BackprojectionOccluders::Patches, ours "The outlines of the 2007 paper: areas within one surface are counted once.";
-        squares: 64, ours "Few squares stand for many texels.";
-        rotate: false, ours "Each pixel chooses anew which texel a square shows: noise in place of bands.";
+        occluders: BackprojectionOccluders::Patches, ours "The outlines of the 2007 paper: each area of a surface is counted once.";
+        squares: 64, ours "Few squares represent many texels.";
+        rotate: false, ours "Each pixel chooses at random which texel a square represents: noise instead of banding.";
     } kept {
-        "Rings of squares, smaller towards the receiver, which show one texel each; the papers have coarser levels of the map, of one size for each receiver.",
-        "A disk's, a sphere's and a sun's area is exact, too; the papers have rectangles.",
-        "Points of an emission texture rather than sums over it from a table.",
-        "What lies below the receiver's horizon is hidden.",
+        "Rings of squares that are smaller towards the receiver and represent one texel each; the papers use one coarser level \
+         of the map per receiver.",
+        "The area of a disk, a sphere and a sun is exact too; the papers have rectangles only.",
+        "An emission texture is sampled at points; the papers take sums from a table.",
+        "The part of the light below the receiver's horizon is hidden.",
     }
 }

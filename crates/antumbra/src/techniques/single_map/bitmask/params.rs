@@ -17,27 +17,28 @@ param_choice! {
 params! {
     /// Parameters of [`Bitmask`](super::Bitmask).
     pub struct BitmaskParams {
-        shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        shared map_size, more "Sharper contacts and finer occluders; memory and fill cost grow with the square of the size.";
         /// Number of light points, one bit each.
         samples: u32 = 64, in 1..=256, scale Log,
-            more "Smoother penumbrae; time grows more slowly than the number.";
+            more "Smoother penumbrae; time grows less than in proportion.";
         /// Number of patches along the light: squares of the map are split until each hides less of the light, or is a texel.
         /// A square of several texels shows one of them.
         patches: u32 = 16, in 4..=64, scale Log,
-            more "Finer occluders in wide penumbrae and less noise; time grows with the square.";
+            more "Finer occluders in wide penumbrae and less noise; time grows with the square of the number.";
         /// Gaps that are filled between patches at different depths.
         gaps: BitmaskGaps = BitmaskGaps::Surfaces,
-            more "open lets light through tilted occluders, which tear into strips; all also closes openings between two occluders.";
+            more "open leaks light through tilted occluders, which fall apart into strips; all also closes real gaps between \
+                 two occluders.";
         /// Distribution of the points over the light.
         sample_set: SampleSet = SampleSet::Sobol,
-            more "sobol is the most even for powers of two, r2 and stratified for other numbers.";
+            more "sobol is the most uniform for powers of two, r2 and stratified for other numbers.";
         /// Number of peeled layers of casters that hide points; one with a host's map.
         layers: u32 = 3, in 1..=4,
-            more "Less light leaks below stacked occluders; each layer is one more pass over the casters and one more map.";
+            more "Less light leaks below stacked occluders; each layer takes one more pass over the casters and one more map.";
         /// Random offset of a rectangle's points per pixel, random rotation of other shapes' points, and random choice of the
         /// texel that a patch of several shows.
         rotate: bool = true,
-            more "true shows noise, false shows bands.";
+            more "true shows noise, false shows banding.";
         shared seed;
         shared bias_scale;
     }
@@ -45,14 +46,14 @@ params! {
     High { map_size: MapSize::Texels(2048), samples: 128, patches: 32, layers: 4, }
     Best { map_size: MapSize::Texels(4096), samples: 256, patches: 64, layers: 4, }
     => Paper {
-        gaps: BitmaskGaps::All, ours "The gap between two surfaces stays open, as it is in space.";
-        patches: 64, ours "Squares of up to a sixteenth of the light's width stand for their texels.";
-        rotate: false, ours "The points are moved at each pixel: noise in place of bands.";
+        gaps: BitmaskGaps::All, ours "Gaps between two surfaces stay open.";
+        patches: 64, ours "Squares of up to a sixteenth of the light's width represent their texels.";
+        rotate: false, ours "The points are offset at each pixel: noise instead of banding.";
     } kept {
-        "A square of several texels, narrower than 1/64 of the light, shows one of them; the paper projects every texel.",
-        "Squares of a quadtree by a min/max pyramid; the paper has a multi-scale map.",
-        "A table leaves few points, which are tested one by one; the paper takes a rectangle's bits from tables.",
-        "Micro-patches alone: the paper has micro-quads between texels' centres, too.",
+        "A square of several texels that is narrower than 1/64 of the light is represented by one of them; the paper projects every texel.",
+        "Squares are nodes of a quadtree over a min/max pyramid; the paper has a multi-scale map.",
+        "A table narrows the points down to a few, which are tested one by one; the paper takes the bits of a rectangle from tables.",
+        "Only micro-patches are implemented; the paper also has micro-quads between texel centres.",
         "Points below the receiver's horizon are hidden.",
     }
 }

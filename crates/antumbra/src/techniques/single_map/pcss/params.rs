@@ -25,31 +25,31 @@ param_choice! {
 params! {
     /// Parameters of [`Pcss`](super::Pcss).
     pub struct PcssParams {
-        shared map_size, more "Sharper contacts and finer occluders; memory and fill grow with the square.";
+        shared map_size, more "Sharper contacts and finer occluders; memory and fill cost grow with the square of the size.";
         /// Number of samples of the filter.
         samples: u32 = 64, in 1..=4096, scale Log,
             more "Smoother penumbrae; time grows in proportion.";
         /// Number of samples of the blocker search.
         search_samples: u32 = 64, in 1..=4096, scale Log,
-            more "Fewer thin occluders missed; time grows in proportion.";
+            more "Fewer thin occluders are missed; time grows in proportion.";
         /// Distribution of the samples over the light.
         sample_set: SampleSet = SampleSet::R2,
-            more "stratified, r2 and sobol converge equally fast; poisson looks more even and converges more slowly.";
+            more "stratified, r2 and sobol converge equally fast; poisson looks more uniform, but converges more slowly.";
         /// Depth that each texel is compared with.
         compare: PcssCompare = PcssCompare::Plane,
-            more "flat is as published: tilted receivers shadow themselves, unless `bias_scale` is larger and contacts detach.";
+            more "With flat, as published, tilted receivers shadow themselves unless `bias_scale` is larger, which detaches contacts.";
         /// Second search at the scale of the nearest blocker, where it is much nearer than the mean; only with `plane`.
         attach_contacts: bool = true,
-            more "false takes one layer and one mean depth of all blockers, as published, and leaks at contacts.";
+            more "false, as published, uses one layer and one mean depth of all blockers, and leaks light at contacts.";
         /// Number of peeled layers of casters to search; needs `attach_contacts`, and one with a host's map.
         layers: u32 = 3, in 1..=4,
-            more "Less light leaks below stacked occluders; each layer is one more pass over the casters and one more map.";
+            more "Less light leaks below stacked occluders; each layer takes one more pass over the casters and one more map.";
         /// Blockers that share a mean depth; needs `attach_contacts`.
         means: PcssMeans = PcssMeans::Layers,
-            more "ranges gives a near and a far occluder separate widths, and reads every layer for each.";
+            more "ranges computes separate widths for near and far occluders, and reads every layer for each.";
         /// Random offset of a rectangle's samples per pixel, random rotation of other shapes' samples.
         rotate: bool = true,
-            more "true shows noise, false shows bands.";
+            more "true shows noise, false shows banding.";
         shared seed;
         shared sub;
         shared bias_scale;

@@ -21,9 +21,10 @@ table_params! {
     pub struct CssmParams: "cssm" of Convolution, subdivisions = 1, search_scales = 3, second_look = false;
         => Paper {
             table: TableSums::Float, ours "32-bit integers, whose differences are exact.";
-            edge_goes_on: false, ours "What the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.";
+            edge_goes_on: false, ours "Casters at the map's edge are extended beyond it, for blockers closer to the light than \
+                 the map covers.";
         } kept {
-            "Blockers are searched at several scales, and count where they hide a point of the light; the paper has one window.",
-            "Summed-area tables of four terms, and no mip-maps.",
+            "Blockers are searched at several scales, and count if they hide a point of the light; the paper has one window.",
+            "Filtering uses summed-area tables of four terms, and no mip maps.",
         }
 }

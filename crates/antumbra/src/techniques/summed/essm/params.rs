@@ -87,66 +87,67 @@ param_choice! {
 params! {
     /// Parameters of [`Essm`](super::Essm).
     pub struct EssmParams {
-        shared map_size, more "Sharper contacts and finer occluders; memory and the table's time grow with the square.";
+        shared map_size, more "Sharper contacts and finer occluders; memory and the time of the table grow with the square of the size.";
         /// Window of the light map, unless the host renders it.
         window: EssmWindow = EssmWindow::Seen,
-            more "seen spends texels where the camera looks, be that near or far; square keeps them still when it moves.";
+            more "seen has finer texels where the camera looks, near or far; square does not depend on the camera, so shadows \
+                 are steady when it moves.";
         /// Number of parts along each side of a kernel.
         subdivisions: u32 = 5, in 1..=16,
-            more "Fewer wrong answers where a part holds near and far occluders; time grows with the square.";
+            more "Fewer errors where a part contains near and far occluders; time grows with the square of the number.";
         /// Number of scales at which blockers are searched.
         search_scales: u32 = 4, in 1..=16,
-            more "Steadier penumbra widths among occluders of many depths; time grows in proportion.";
+            more "More stable penumbra widths among occluders at many depths; time grows in proportion.";
         /// Search blockers once more if their mean lies much nearer to the receiver than the nearest caster, and evaluate
         /// blockers at their own depth if that hides another part of the light than the mean.
         second_look: bool = true,
-            more "Truer penumbrae under occluders of many depths; there search and kernel take up to twice the time.";
+            more "More accurate penumbrae under occluders at many depths; there, search and kernel take up to twice the time.";
         /// Blocker search; `search_scales` and `second_look` apply only to scales.
         search: EssmSearch = EssmSearch::Scales,
-            more "window is the paper's; behind lattices what it holds that hides no part of the light widens penumbrae.";
+            more "window, the paper's, also counts blockers that hide no part of the light, which widens penumbrae behind lattices.";
         /// Quantity that is averaged over blockers. Under a sun both are the same.
         blocker_mean: EssmBlockerMean = EssmBlockerMean::Width,
-            more "depth is the paper's: penumbrae are narrower where blockers of several depths meet under a near light.";
+            more "depth, the paper's, makes penumbrae too narrow where blockers at several depths meet under a near light.";
         /// Whether the light's part below the receiver's own plane counts as hidden.
         horizon: bool = true,
-            more "false is the paper's: receivers that the light grazes are as bright as those that face it.";
+            more "false, the paper's, gives receivers at grazing angles the visibility of receivers that face the light.";
         shared edge_goes_on;
         /// Cuts of a kernel's rows.
         cuts: EssmCuts = EssmCuts::Columns,
-            more "squares is the paper's: as many times more parts as there are rows in a kernel's height for each part.";
+            more "squares, the paper's, divides every row into `subdivisions` × `subdivisions` parts, which takes many times the lookups.";
         /// Storage of the exponentials' sums.
         table: EssmTable = EssmTable::Tiles,
-            more "tiles holds at any depth; tile_grid is the paper's and darkens lit ground in deep scenes; float is noisy.";
+            more "tiles works for any depth range; tile_grid, the paper's, darkens lit ground in deep scenes; float is noisy.";
         /// Algorithm that computes the tables.
         scan: EssmScan = EssmScan::Blocks,
-            more "doubling is the paper's, kept to be measured against: slower, and twice the memory and more.";
+            more "doubling, the paper's, is slower and takes more than twice the memory; it is provided for comparison.";
         /// Exponent: per texel width for tiles, over the depth range for the others. 0 is automatic: 0.1 and 80.
         exponent: f32 = 0.0, in 0.0..=88.0,
-            more "Darker contacts; above what the bits hold, more parts are read from the map, or turn dark.";
+            more "Darker contacts; beyond the precision of the bits, more parts are read from the map or become dark.";
         /// Number of bits of each value of tile_grid.
         precision_bits: u32 = 20, in 8..=24, unit "bits",
-            more "Finer values; smaller tiles, and more of them under each kernel.";
+            more "Finer values, but smaller tiles and therefore more of them under each kernel.";
         /// Source of the depth range of tile_grid and float.
         range: EssmRange = EssmRange::Map,
-            more "map is narrower, and needs a pyramid of the map, which the search needs in any case.";
+            more "map is narrower and needs a pyramid of the map, which the search also needs.";
         /// Excess over 1 of a part's exponential visibility from which it counts as non-planar.
         epsilon: f32 = 0.05, in 0.0..=10.0,
-            more "Fewer parts are read from the map; what lies beyond the receiver hides more of what blocks.";
+            more "Fewer parts are read from the map, but surfaces behind the receiver cancel more of the blockers.";
         /// Largest width of parts that are read from the map, if that takes fewer reads than the table.
         direct_texels: f32 = 3.0, in 0.0..=64.0, unit "texels",
-            more "Truer contacts; 2 × 2 comparisons miss what is finer than a quarter of this.";
+            more "More accurate contacts, but 2 × 2 comparisons miss occluders finer than a quarter of this.";
         /// Shape of the filter kernel.
         kernel: EssmKernel = EssmKernel::Light,
-            more "ellipse is the paper's; isotropic leaves fine shadows far away to alias.";
+            more "ellipse is the paper's; with isotropic, fine shadows in the distance alias.";
         /// Whether the pixel's footprint ends where a neighbouring pixel shows another surface.
         footprint_ends: bool = true,
-            more "false is the paper's: at edges of the picture's surfaces shadows are a little softer.";
+            more "false, the paper's, makes shadows slightly softer at the edges of surfaces in the image.";
         /// Height of an ellipse's rows, for `cuts = squares` only: with columns, ellipses of any size have as many rows.
         row_height: f32 = 5.0, in 1.0..=64.0, unit "texels", scale Log,
-            more "Fewer lookups, coarser outline.";
+            more "Fewer lookups, but a coarser outline.";
         /// Number of refinements of the ends of an ellipse's rows: the paper's Level0, Level1, Level2.
         level: u32 = 0, in 0..=3,
-            more "A smoother outline; lookups at each row's ends double.";
+            more "A smoother outline; the lookups at the ends of each row double.";
         shared sub;
         shared bias_scale;
     }
@@ -154,27 +155,30 @@ params! {
     High { map_size: MapSize::Texels(2048), subdivisions: 7, search_scales: 5, }
     Best { map_size: MapSize::Texels(4096), subdivisions: 9, search_scales: 8, }
     => Paper {
-        window: EssmWindow::Square, ours "The map's window is warped to what the camera sees.";
+        window: EssmWindow::Square, ours "The window of the map is warped towards the camera's view.";
         subdivisions: 3, ours "5 × 5 parts.";
-        table: EssmTable::TileGrid, ours "Every tile has a plane of its own, before which its exponentials are taken.";
-        scan: EssmScan::Doubling, ours "Tables take one pass over the map.";
-        exponent: CONSISTENT_EXPONENT, ours "0.1 a texel's width; the printed 80 does not go with the printed 20 bits (see below).";
-        kernel: EssmKernel::Ellipse, ours "A rectangle's kernel is a parallelogram.";
-        search: EssmSearch::Window, ours "Blockers are searched at four scales, and count where they hide a point of the light.";
-        blocker_mean: EssmBlockerMean::Depth, ours "The mean is of g = 1 / z − 1 / z_receiver, which a penumbra's width is proportional to.";
-        horizon: false, ours "The light's part below the receiver's plane is hidden.";
-        edge_goes_on: false, ours "What the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.";
-        footprint_ends: false, ours "The pixel's footprint is narrower where a neighbour shows another surface.";
-        cuts: EssmCuts::Squares, ours "A row has n columns, where the paper's rectangles have n × n parts, and an ellipse n rows, where the paper's become more.";
-        direct_texels: 0.0, ours "Kernels of parts up to 3 texels wide are read from the map.";
+        table: EssmTable::TileGrid, ours "Every tile has its own plane, relative to which its exponentials are computed.";
+        scan: EssmScan::Doubling, ours "Tables are computed in one pass over the map.";
+        exponent: CONSISTENT_EXPONENT, ours "0.1 per texel width; the published 80 contradicts the published 20 bits (see below).";
+        kernel: EssmKernel::Ellipse, ours "The kernel of a rectangle is a parallelogram.";
+        search: EssmSearch::Window, ours "Blockers are searched at four scales, and count if they hide a point of the light.";
+        blocker_mean: EssmBlockerMean::Depth, ours "The mean is that of g = 1 / z − 1 / z_receiver, to which the penumbra's \
+             width is proportional.";
+        horizon: false, ours "The part of the light below the receiver's plane is hidden.";
+        edge_goes_on: false, ours "Casters at the map's edge are extended beyond it, for blockers closer to the light than the map covers.";
+        footprint_ends: false, ours "The pixel's footprint ends where a neighbouring pixel shows another surface.";
+        cuts: EssmCuts::Squares, ours "A row has n columns and an ellipse n rows; in the paper, each rectangle has n × n \
+             parts, and larger ellipses have more rows.";
+        direct_texels: 0.0, ours "Parts of kernels that are at most 3 texels wide are read from the map.";
     } kept {
-        "Parts are compared with the receiver's plane at their own middle, and divided by what the plane itself gives there; the \
+        "Parts are compared with the receiver's plane at their centre, and divided by the value of the plane itself there; the \
          paper compares with one depth.",
-        "The search window is that at the nearest caster's depth, found in a pyramid; the paper intersects with the map's plane.",
-        "The bias is derived; the paper names none.",
-        "R, what a float's exponent holds, here 80, and μ = 20 contradict one another: e^{c(z − 1)} is less than half of 2^−μ, and is stored as nothing, for \
-         z < 1 − (μ + 1) ln 2 / c, at c = 80 more than four fifths of the range, where all that is lit turns dark. exponent = μ ln 2 \
-         is the largest c that leaves the nearest depth one step.",
+        "The search window is computed at the depth of the nearest caster, found in a pyramid; the paper intersects with the \
+         plane of the map.",
+        "The bias is derived; the paper states none.",
+        "R, the range of a float's exponent (here 80), and μ = 20 contradict each other: e^{c(z − 1)} is less than half of \
+         2^−μ, and rounds to 0, for z < 1 − (μ + 1) ln 2 / c. At c = 80 that is more than four fifths of the range, in which \
+         lit receivers become dark. exponent = μ ln 2 is the largest c with which the nearest depth is at least one step.",
     }
 }
 

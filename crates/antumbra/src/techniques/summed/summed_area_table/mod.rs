@@ -158,7 +158,7 @@ pub(crate) struct SummedAreaTable {
     uniform: wgpu::Buffer,
     /// Index of the table among those that one pass reads together.
     part: u8,
-    made: Option<Made>,
+    made: Option<SizedResources>,
 }
 
 /// Pipelines in the order of the passes.
@@ -179,7 +179,7 @@ struct ChooseSteps {
 
 /// Objects for one size of table.
 #[derive(Debug)]
-struct Made {
+struct SizedResources {
     size: UVec2,
     side: u32,
     memory: Memory,
@@ -187,7 +187,7 @@ struct Made {
     /// Bind group of all passes but the steps of doubling.
     bind_group: wgpu::BindGroup,
     steps: Vec<wgpu::BindGroup>,
-    late: Option<Late>,
+    late: Option<ConditionalSteps>,
 }
 
 /// Allocations for one size of table, shared by all lights.
@@ -206,7 +206,7 @@ struct Memory {
 
 /// Steps at the end of `steps` that the GPU runs only if the tile that it has chosen is large enough.
 #[derive(Debug)]
-struct Late {
+struct ConditionalSteps {
     /// Index of the first late step.
     first: usize,
     group: wgpu::BindGroup,
@@ -301,11 +301,11 @@ impl SummedAreaTable {
         }
         let late = match (late, &self.pipelines, &memory.late_dispatch) {
             (Some(first), Pipelines::Doubling { choose: Some(choose), .. }, Some(late_dispatch)) => {
-                Some(Late { first, group: LateSteps { late_dispatch }.group(stage, &choose.late_layout) })
+                Some(ConditionalSteps { first, group: LateSteps { late_dispatch }.group(stage, &choose.late_layout) })
             }
             _ => None,
         };
-        self.made = Some(Made { size, side, memory, view, bind_group, steps, late });
+        self.made = Some(SizedResources { size, side, memory, view, bind_group, steps, late });
     }
 
     fn allocate(&self, gpu: &Gpu, size: UVec2) -> Memory {

@@ -21,10 +21,11 @@ table_params! {
     pub struct VssmParams: "vssm" of Variance, subdivisions = 5, search_scales = 3, second_look = true;
         => Paper {
             table: TableSums::Float, ours "32-bit integers, whose differences are exact.";
-            edge_goes_on: false, ours "What the map shows at its edge goes on beyond it, for blockers nearer to the light than the map holds.";
-            second_look: false, ours "Blockers are searched once more about their mean.";
+            edge_goes_on: false, ours "Casters at the map's edge are extended beyond it, for blockers closer to the light than \
+                 the map covers.";
+            second_look: false, ours "Blockers are searched a second time around their mean.";
         } kept {
-            "Blockers are searched at several scales, and count where they hide a point of the light; the paper has one window.",
-            "A kernel has 5 × 5 parts; the paper cuts it until parts are planar.",
+            "Blockers are searched at several scales, and count if they hide a point of the light; the paper has one window.",
+            "A kernel has 5 × 5 parts; the paper subdivides it until parts are planar.",
         }
 }
