@@ -12,7 +12,8 @@ use super::params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
     MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams, MultiLayerShow,
 };
-use super::{FilterDesign, LookupDesign, STEP_STRIDE};
+use super::STEP_STRIDE;
+use super::designs::{FilterDesign, LookupDesign};
 use crate::contract::{MaskChannels, MeshCaster, PreparedFrame};
 use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};
