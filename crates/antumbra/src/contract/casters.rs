@@ -5,7 +5,7 @@ use std::ops::Range;
 use antumbra_light::Aabb;
 use glam::{Mat4, UVec2, Vec3};
 
-use super::{DepthConvention, MaskChannels};
+use super::{DepthConvention, Error, MaskChannels};
 
 /// Casters of a frame, as techniques receive them.
 #[derive(Clone, Copy, Debug)]
@@ -16,7 +16,20 @@ pub enum PreparedCasters<'a> {
     HostDepthMap(DepthMapCaster<'a>),
 }
 
-impl PreparedCasters<'_> {
+impl<'a> PreparedCasters<'a> {
+    /// Returns the meshes, or an error that says why `technique` cannot use a depth map.
+    pub(crate) fn meshes(&self, technique: &'static str, why: &str) -> Result<&'a [MeshCaster<'a>], Error> {
+        match *self {
+            Self::Draws(meshes) => Ok(meshes),
+            Self::HostDepthMap(_) => Err(Error::BadFrame {
+                technique,
+                what: "the casters",
+                had: "a depth map".into(),
+                needed: format!("meshes: {why}"),
+            }),
+        }
+    }
+
     /// Number of mask channels that these casters need: three if any tints, otherwise one.
     pub fn mask_channels(&self) -> MaskChannels {
         match self {

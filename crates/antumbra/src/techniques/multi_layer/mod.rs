@@ -250,15 +250,7 @@ impl Technique for MultiLayer {
         frame: &PreparedFrame<'_>,
         params: &MultiLayerParams,
     ) -> Result<PreparedMultiLayer, Error> {
-        let technique = Self::NAME;
-        let PreparedCasters::Draws(meshes) = &frame.casters else {
-            return Err(Error::BadFrame {
-                technique,
-                what: "the casters",
-                had: "a depth map".into(),
-                needed: "meshes: lists hold every fragment, a depth map the first".into(),
-            });
-        };
+        let meshes = frame.casters.meshes(Self::NAME, "lists hold every fragment, a depth map the first")?;
         let plan = FramePlan::new(stage, frame, meshes, params);
         self.room.update(stage, plan.square_size, &plan.levels)?;
         let capacity = self.room.capacity;
