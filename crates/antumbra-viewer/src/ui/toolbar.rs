@@ -38,39 +38,7 @@ pub fn show(
             }
         }
         ui.separator();
-        for show in Show::ALL {
-            ui.selectable_value(&mut state.show, show, show.name()).on_hover_text(match show {
-                Show::Shaded => "The picture",
-                Show::Visibility => "The chosen light's visibility: white is lit, black is umbra",
-                Show::Error => "Visibility less ray-traced truth: red too bright, blue too dark",
-                Show::Truth => "The visibility that rays find, ever finer while nothing moves",
-                Show::LightMap => "The depth maps that are drawn from the chosen light: what is near to it is bright",
-                Show::Lists => "How long the lists are that are kept for the chosen light's texels: yellow is longest",
-            });
-        }
-        let of_lists = "Of the lists: 1 is the finest, and each later one is merged from one before";
-        let of_map = "Of the map: 1 is the map itself, and the later ones what was made of it, the finest first";
-        one_of(
-            ui,
-            "level",
-            choices.levels,
-            &mut state.level,
-            if state.show == Show::Lists { of_lists } else { of_map },
-        );
-        one_of(
-            ui,
-            "layer",
-            choices.layers,
-            &mut state.layer,
-            "Of casters: 1 is the nearest to the light, the others lie behind",
-        );
-        one_of(
-            ui,
-            "map",
-            choices.points,
-            &mut state.layer,
-            "Of the maps that the light's points have, as many as there are at a time",
-        );
+        what(ui, state, choices);
         ui.separator();
         ui.toggle_value(&mut state.is_split, "Compare")
             .on_hover_text("Two techniques with a divider that can be dragged");
@@ -91,6 +59,30 @@ pub fn show(
         }
     });
     actions
+}
+
+/// Shows the selectors of what the picture shows, and of which map, level and layer.
+fn what(ui: &mut egui::Ui, state: &mut State, choices: MapChoices) {
+    for show in Show::ALL {
+        ui.selectable_value(&mut state.show, show, show.name()).on_hover_text(match show {
+            Show::Shaded => "The picture",
+            Show::Visibility => "The chosen light's visibility: white is lit, black is umbra",
+            Show::Error => "Visibility less ray-traced truth: red too bright, blue too dark",
+            Show::Truth => "The visibility that rays find, ever finer while nothing moves",
+            Show::LightMap => "The depth maps that are drawn from the chosen light: what is near to it is bright",
+            Show::Lists => "How long the lists are that are kept for the chosen light's texels: yellow is longest",
+        });
+    }
+    let of_levels = if state.show == Show::Lists {
+        "Of the lists: 1 is the finest, and each later one is merged from one before"
+    } else {
+        "Of the map: 1 is the map itself, and the later ones what was made of it, the finest first"
+    };
+    let of_layers = "Of casters: 1 is the nearest to the light, the others lie behind";
+    let of_points = "Of the maps that the light's points have, as many as there are at a time";
+    one_of(ui, "level", choices.levels, &mut state.level, of_levels);
+    one_of(ui, "layer", choices.layers, &mut state.layer, of_layers);
+    one_of(ui, "map", choices.points, &mut state.layer, of_points);
 }
 
 /// Shows a selector for one of `count` items, numbered from 1; nothing if there is no choice.
