@@ -331,18 +331,10 @@ impl<'a> MovingScene<'a> {
         }
         let rest = trajectory.at(last);
         let images = self.look(&rest)?;
-        let mut masks = vec![before];
-        for i in 0..STILL_AFTER {
-            in_time(STILL_BEFORE + last + i, technique)?;
-            let (now, lacked) = self.draw(technique, &rest, &images, &mask)?;
-            // The first frame after the stop reports the overflow of the last moving frame.
-            lacking_room += u32::from(lacked && i == 0);
-            masks.push(now);
-            let newest = &masks[masks.len().saturating_sub(SAME_MASKS)..];
-            if newest.len() == SAME_MASKS && newest.iter().all(|mask| *mask == newest[0]) {
-                break;
-            }
-        }
+        let in_time = |i: u32, technique: &AnyShadow| in_time(STILL_BEFORE + last + i, technique);
+        let (masks, lacked) = self.settle(technique, (&rest, &images), &mask, before, in_time)?;
+        // The first frame after the stop reports the overflow of the last moving frame.
+        lacking_room += u32::from(lacked);
         let true_rest = &truth.frames[last as usize];
         let after_stop = distances_to_settled(&masks, true_rest, &truth.touched);
         Ok(MotionFigures {
@@ -354,6 +346,30 @@ impl<'a> MovingScene<'a> {
             lacking_room,
             strip: strip.finish(masks.last().expect("the mask that stopped is there"), &sums, &true_rest.judged),
         })
+    }
+
+    /// Draws frames at rest until masks are equal. Returns `last`, the last moving frame's mask, followed by theirs; and whether the
+    /// first of them reports an overflow. `in_time` fails once the end of the run has passed.
+    fn settle(
+        &self,
+        technique: &mut AnyShadow,
+        (rest, images): (&Pose, &ReceiverImages),
+        mask: &Mask,
+        last: Visibility,
+        in_time: impl Fn(u32, &AnyShadow) -> Result<(), LabError>,
+    ) -> Result<(Vec<Visibility>, bool), LabError> {
+        let (mut masks, mut lacked_room) = (vec![last], false);
+        for i in 0..STILL_AFTER {
+            in_time(i, technique)?;
+            let (now, lacked) = self.draw(technique, rest, images, mask)?;
+            lacked_room |= lacked && i == 0;
+            masks.push(now);
+            let newest = &masks[masks.len().saturating_sub(SAME_MASKS)..];
+            if newest.len() == SAME_MASKS && newest.iter().all(|mask| *mask == newest[0]) {
+                break;
+            }
+        }
+        Ok((masks, lacked_room))
     }
 
     /// Draws a frame. Returns its mask, and whether the previous frame's lists overflowed.
