@@ -245,6 +245,13 @@ impl App {
         self.history.note(&self.state, ctx.input(|input| input.time));
     }
 
+    /// Error of a side's current mask against the truth so far; `None` while either is missing.
+    fn rmse(&self, side: usize) -> Option<f64> {
+        let (version, mask) = self.masks[side].as_ref()?;
+        (*version == self.renderer.version()).then_some(())?;
+        self.truth.estimate()?.rmse(mask)
+    }
+
     /// Handles input and draws one frame.
     fn show(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
@@ -268,17 +275,10 @@ impl App {
             let can = self.history.can_undo_and_redo(&self.state);
             actions.extend(ui::top(ui, &mut self.state, &mut self.panels, choices, can));
         });
-        let rmse = |side: usize, estimate: Option<&crate::truth::Estimate>| {
-            let (version, mask) = self.masks[side].as_ref()?;
-            (*version == self.renderer.version()).then_some(())?;
-            estimate?.rmse(mask)
-        };
-        let estimate = self.truth.estimate();
-        let (truth_points, rmses) = (estimate.map(|estimate| estimate.points), [0, 1].map(|side| rmse(side, estimate)));
-        let sides = [0, 1].map(|side| self.renderer.sides[side].readings(rmses[side]));
+        let rmses = [0, 1].map(|side| self.rmse(side));
         let readings = Readings {
-            sides,
-            truth_points,
+            sides: [0, 1].map(|side| self.renderer.sides[side].readings(rmses[side])),
+            truth_points: self.truth.estimate().map(|estimate| estimate.points),
             scene_memory_bytes: self.renderer.scene_memory_bytes(),
             size_px: self.size_px,
             adapter: &self.adapter,

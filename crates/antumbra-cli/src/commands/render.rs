@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use antumbra::{AnyShadow, Error};
+use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
 use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_picture};
 use antumbra_lab::output_files::check_json_path;
@@ -71,22 +72,27 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
         write_visibilities(path, &setup.lights, &visibilities_of(drawn), chosen, bars)?;
     }
     if let Some(path) = &args.timings {
-        let timings = json!({
-            "antumbra": env!("CARGO_PKG_VERSION"),
-            "commit": COMMIT,
-            "adapter": lab.adapter.name,
-            "driver": lab.adapter.driver_and_version(),
-            "backend": lab.adapter.backend.to_string(),
-            "software": lab.adapter.is_software(),
-            "scene": args.scene,
-            "size": args.view.size.to_array(),
-            "technique": choice.name(),
-            "parameters": parameters_of(&technique),
-            "lights": timed_lights(&view, &setup.lights, &shading)?,
-        });
+        let mut timings = device_facts(&lab);
+        timings["scene"] = json!(args.scene);
+        timings["size"] = json!(args.view.size.to_array());
+        timings["technique"] = json!(choice.name());
+        timings["parameters"] = json!(parameters_of(&technique));
+        timings["lights"] = json!(timed_lights(&view, &setup.lights, &shading)?);
         write_json(path, &timings)?;
     }
     Ok(())
+}
+
+/// Returns the program's version, and the device with its driver.
+fn device_facts(lab: &LabDevice) -> Value {
+    json!({
+        "antumbra": env!("CARGO_PKG_VERSION"),
+        "commit": COMMIT,
+        "adapter": lab.adapter.name,
+        "driver": lab.adapter.driver_and_version(),
+        "backend": lab.adapter.backend.to_string(),
+        "software": lab.adapter.is_software(),
+    })
 }
 
 /// Notes the sizes of maps that are chosen for each light.
