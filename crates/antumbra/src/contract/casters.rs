@@ -5,7 +5,7 @@ use std::ops::Range;
 use antumbra_light::Aabb;
 use glam::{Mat4, UVec2, Vec3};
 
-use super::{DepthConvention, Error, MaskChannels};
+use super::{DepthConvention, MaskChannels};
 
 /// Casters of a frame, as techniques receive them.
 #[derive(Clone, Copy, Debug)]
@@ -16,25 +16,28 @@ pub enum PreparedCasters<'a> {
     HostDepthMap(DepthMapCaster<'a>),
 }
 
-impl<'a> PreparedCasters<'a> {
-    /// Returns the meshes, or an error that says why `technique` cannot use a depth map.
-    pub(crate) fn meshes(&self, technique: &'static str, why: &str) -> Result<&'a [MeshCaster<'a>], Error> {
-        match *self {
-            Self::Draws(meshes) => Ok(meshes),
-            Self::HostDepthMap(_) => Err(Error::BadFrame {
-                technique,
-                what: "the casters",
-                had: "a depth map".into(),
-                needed: format!("meshes: {why}"),
-            }),
-        }
-    }
-
+impl PreparedCasters<'_> {
     /// Number of mask channels that these casters need: three if any tints, otherwise one.
     pub fn mask_channels(&self) -> MaskChannels {
         match self {
             Self::Draws(meshes) if meshes.iter().any(|mesh| mesh.opacity.tints()) => MaskChannels::Three,
             Self::Draws(_) | Self::HostDepthMap(_) => MaskChannels::One,
+        }
+    }
+}
+
+#[cfg(any(feature = "light_views", feature = "multi_layer", feature = "ray_traced", feature = "receiver_lists"))]
+impl<'a> PreparedCasters<'a> {
+    /// Returns the meshes, or an error that says why `technique` cannot use a depth map.
+    pub(crate) fn meshes(&self, technique: &'static str, why: &str) -> Result<&'a [MeshCaster<'a>], super::Error> {
+        match *self {
+            Self::Draws(meshes) => Ok(meshes),
+            Self::HostDepthMap(_) => Err(super::Error::BadFrame {
+                technique,
+                what: "the casters",
+                had: "a depth map".into(),
+                needed: format!("meshes: {why}"),
+            }),
         }
     }
 }
