@@ -106,7 +106,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .with_bounds(Aabb::of(positions.iter().copied()))
         .with_closed(true); // shadows
     let casters = [mesh]; // shadows
-    let visibilities = buffer("visibilities", 4 * points.len(), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC); // shadows
+    let visibilities =
+        buffer("visibilities", 4 * points.len(), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC); // shadows
     let bounds = Aabb { min: least, max: most }; // shadows
     let receivers = PointReceivers {
         row_length: Some(SIZE.x), // points in rows; `None` for those in no order

@@ -137,7 +137,10 @@ impl ScenePass {
     ) -> Self {
         let pipeline = pipeline(device, module, visibility.is_some());
         let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: globals.as_entire_binding() }];
-        entries.extend(visibility.map(|mask| wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(mask) }));
+        entries.extend(
+            visibility
+                .map(|mask| wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(mask) }),
+        );
         let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("host"),
             layout: &pipeline.get_bind_group_layout(0),
@@ -261,8 +264,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::new(&device, &queue);
     let view_from_world = look_at_mat4(Vec3::new(3.4, 2.6, 4.6), Vec3::new(0.0, 0.4, -0.4), Vec3::Y);
     let clip_from_view = perspective_infinite_reverse(0.7, SIZE.x as f32 / SIZE.y as f32, 0.1);
-    let depth =
-        target(&device, "depth", wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::TEXTURE_BINDING);
+    let depth = target(&device, "depth", wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::TEXTURE_BINDING);
     let color = target(&device, "color", wgpu::TextureFormat::Rgba8UnormSrgb, wgpu::TextureUsages::COPY_SRC);
     let depth_view = depth.create_view(&wgpu::TextureViewDescriptor::default());
     let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());

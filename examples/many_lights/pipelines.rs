@@ -110,11 +110,7 @@ fn render_pipeline(
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(!with_color),
-            depth_compare: Some(if with_color {
-                wgpu::CompareFunction::Equal
-            } else {
-                wgpu::CompareFunction::Less
-            }),
+            depth_compare: Some(if with_color { wgpu::CompareFunction::Equal } else { wgpu::CompareFunction::Less }),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),

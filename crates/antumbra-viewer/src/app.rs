@@ -245,11 +245,12 @@ impl App {
         self.history.note(&self.state, ctx.input(|input| input.time));
     }
 
-    /// Error of a side's current mask against the truth so far; `None` while either is missing.
-    fn rmse(&self, side: usize) -> Option<f64> {
-        let (version, mask) = self.masks[side].as_ref()?;
-        (*version == self.renderer.version()).then_some(())?;
-        self.truth.estimate()?.rmse(mask)
+    /// Line of the status bar, and whether it reports a failure.
+    fn status(&self) -> (String, bool) {
+        match self.loader.pending() {
+            Some(spec) => (format!("loading {spec}"), false),
+            None => self.message.clone(),
+        }
     }
 
     /// Handles input and draws one frame.
@@ -275,19 +276,23 @@ impl App {
             let can = self.history.can_undo_and_redo(&self.state);
             actions.extend(ui::top(ui, &mut self.state, &mut self.panels, choices, can));
         });
-        let rmses = [0, 1].map(|side| self.rmse(side));
+        let rmse = |side: usize, estimate: Option<&crate::truth::Estimate>| {
+            let (version, mask) = self.masks[side].as_ref()?;
+            (*version == self.renderer.version()).then_some(())?;
+            estimate?.rmse(mask)
+        };
+        let estimate = self.truth.estimate();
+        let (truth_points, rmses) = (estimate.map(|estimate| estimate.points), [0, 1].map(|side| rmse(side, estimate)));
+        let sides = [0, 1].map(|side| self.renderer.sides[side].readings(rmses[side]));
         let readings = Readings {
-            sides: [0, 1].map(|side| self.renderer.sides[side].readings(rmses[side])),
-            truth_points: self.truth.estimate().map(|estimate| estimate.points),
+            sides,
+            truth_points,
             scene_memory_bytes: self.renderer.scene_memory_bytes(),
             size_px: self.size_px,
             adapter: &self.adapter,
             features: self.render_state.device.features(),
         };
-        let (message, is_bad) = match self.loader.pending() {
-            Some(spec) => (format!("loading {spec}"), false),
-            None => self.message.clone(),
-        };
+        let (message, is_bad) = self.status();
         egui::Panel::bottom("status").resizable(false).show(ui, |ui| {
             ui::status_bar(ui, &self.state, &readings, &message, is_bad);
         });

@@ -17,6 +17,7 @@ use antumbra::contract::COHERENT_WGSL;
 use antumbra::{Gpu, Mask, MaskChannels, programs};
 use antumbra_light::Light;
 use glam::{Mat4, UVec2, Vec3};
+use wgpu::util::DeviceExt;
 
 use crate::gpu_scene::GpuScene;
 use crate::picture::{Visibility, VisibilityValues};

@@ -6,9 +6,9 @@
 //! The street runs along z. A place on a row of houses is given by its side (−1 left, +1 right), its z, its height and
 //! its distance from the facades towards the street's middle.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::TAU;
 
-use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use super::Arguments;
 use super::noise::Random;

@@ -92,10 +92,8 @@ fn targets(source: &Source, primitive: &Primitive, count: usize, place: &str) ->
             Some(index) => vec3s(source, index.value(), count, &place),
             None => Ok(Vec::new()),
         };
-        targets.push(MorphTarget {
-            positions: displacements(target.positions)?,
-            normals: displacements(target.normals)?,
-        });
+        targets
+            .push(MorphTarget { positions: displacements(target.positions)?, normals: displacements(target.normals)? });
     }
     Ok(targets)
 }

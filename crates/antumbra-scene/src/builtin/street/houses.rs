@@ -1,13 +1,13 @@
 //! Houses of the street.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 use glam::{Affine3A, Mat3, Quat, Vec2, Vec3};
 
-use super::{FIRST_Z_M, HALF_WIDTH_M, HOUSE_M, Parts, on};
+use super::{FIRST_Z_M, HOUSE_M, Parts, on};
 use crate::builtin::noise::Random;
 use crate::builtin::shapes::MeshBuilder;
-use crate::builtin::stage::shade;
+use crate::builtin::stage::{palette, shade};
 
 /// A house with its shop, windows, roof and signs.
 pub(super) fn add_house(parts: &mut Parts, random: &mut Random, side: f32, house: usize) {

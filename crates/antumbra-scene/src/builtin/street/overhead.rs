@@ -4,9 +4,8 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
-use super::{FIRST_Z_M, HALF_WIDTH_M, HOUSE_M, HOUSES, Parts, on};
+use super::{FIRST_Z_M, HOUSE_M, HOUSES, Parts, on};
 use crate::builtin::noise::Random;
-use crate::builtin::shapes::MeshBuilder;
 use crate::builtin::stage::shade;
 
 /// Wires, strings of lanterns and washing across the street.

@@ -117,8 +117,8 @@ use crate::contract::{
     PreparedFrame,
 };
 use crate::gpu::{
-    Bindings, Cached, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline_without_zeroing,
-    create_uniform, upload_growable, write_uniform,
+    Bindings, Cached, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline_without_zeroing, create_uniform,
+    upload_growable, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
 use crate::light_map::texel_lists::{PreparedLists, TexelLists};
@@ -139,7 +139,7 @@ mod plan;
 #[cfg(test)]
 mod tests;
 
-use designs::{FilterDesign, LookupDesign};
+use designs::FilterDesign;
 use fragment_room::FragmentRoom;
 use gpu_types::{FilterStep, MultiLayerLadder, MultiLayerUniform};
 use levels::Level;
@@ -365,7 +365,6 @@ impl MultiLayer {
         };
         self.filter.get_or_make(design, make).clone()
     }
-
 }
 
 /// Returns the lists of a map and of its levels, for hosts to inspect.

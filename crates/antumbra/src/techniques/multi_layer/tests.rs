@@ -242,7 +242,7 @@ fn every_level_equals_its_cpu_reference() {
             };
             let mut technique = MultiLayer::new(gpu).expect("default limits");
             technique.room.capacity = 1 << 20;
-            technique.map_size = 96;
+            technique.room.map_size = 96;
             let prepared = record(gpu, &mut technique, &light, &meshes, &params);
             let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.fragments);
             let entries: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.lists);

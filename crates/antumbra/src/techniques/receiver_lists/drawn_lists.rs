@@ -18,11 +18,7 @@ pub(super) struct ListWindows {
 
 impl ListWindows {
     pub(super) fn of(plan: &FramePlan) -> Self {
-        Self {
-            count: plan.windows.map(|windows| windows.count),
-            side: plan.window_side,
-            are_chosen: plan.chooses(),
-        }
+        Self { count: plan.windows.map(|windows| windows.count), side: plan.window_side, are_chosen: plan.chooses() }
     }
 }
 

@@ -209,13 +209,7 @@ impl Evaluations<'_> {
         }
     }
 
-    fn over_groups(
-        &self,
-        way: Way,
-        step: &Step<'_>,
-        pipeline: &wgpu::ComputePipeline,
-        passes: u32,
-    ) -> OverGroups {
+    fn over_groups(&self, way: Way, step: &Step<'_>, pipeline: &wgpu::ComputePipeline, passes: u32) -> OverGroups {
         let FrameGroups { stage, layouts, buffers } = self.groups;
         let BufferSet { list, triangles, boxes, totals, work, bits, .. } = buffers;
         let settings = &settings_uniform(stage, &step.settings);

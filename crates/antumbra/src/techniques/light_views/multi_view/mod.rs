@@ -89,8 +89,8 @@ use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::techniques::Technique;
 use crate::techniques::light_views::gpu_types::ALL_CHANNELS;
 use crate::techniques::light_views::{
-    Batch, Comparison, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size,
-    light_points, shifted_apart, views_from,
+    Batch, Comparison, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart,
+    views_from,
 };
 
 mod accumulation;

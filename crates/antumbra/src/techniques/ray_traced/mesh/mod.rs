@@ -137,13 +137,8 @@ impl Meshes {
         let mut segments: Vec<Segment> = meshes.iter().map(segment).collect();
         forest.prepare(stage, trees, Level::Triangles, makes, &mut segments, self.nodes());
         let (shape, table) = forest.shape();
-        let kept = Kept {
-            shape,
-            segments: table,
-            items: forest.items(),
-            order: forest.order(),
-            triangles: self.triangles(),
-        };
+        let kept =
+            Kept { shape, segments: table, items: forest.items(), order: forest.order(), triangles: self.triangles() };
         let kept = kept.group(stage, &self.programs.kept_layout);
         let mut sources = Vec::new();
         let mut first_item = 0;

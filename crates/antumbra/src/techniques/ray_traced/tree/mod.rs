@@ -114,7 +114,8 @@ impl Forest {
         let segments = stage.storage("antumbra tree segments", segments);
         let groups = ForestGroups { stage, programs, scratch: &self.scratch, shape, segments: &segments, nodes };
         let shape = groups.step_shape(0);
-        let levels = (1..).zip(&level_counts).map(|(level, count)| (groups.boxes(&groups.step_shape(level)), *count)).collect();
+        let levels =
+            (1..).zip(&level_counts).map(|(level, count)| (groups.boxes(&groups.step_shape(level)), *count)).collect();
         let made = makes.then(|| Made {
             digits: (0..CODE_DIGITS).map(|step| groups.digit(step)).collect(),
             links: groups.links(&shape),

@@ -159,12 +159,7 @@ impl Made {
     }
 
     /// Dispatches the steps of doubling, after the choice of a tile if there is one.
-    fn double(
-        &self,
-        pass: &mut wgpu::ComputePass<'_>,
-        choose: Option<&ChooseSteps>,
-        step: &wgpu::ComputePipeline,
-    ) {
+    fn double(&self, pass: &mut wgpu::ComputePass<'_>, choose: Option<&ChooseSteps>, step: &wgpu::ComputePipeline) {
         if let Some(ChooseSteps { choose, late: count_late, .. }) = choose {
             self.choose_tile(pass, choose);
             if let Some(late) = &self.late {
