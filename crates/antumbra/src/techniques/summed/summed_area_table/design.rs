@@ -44,8 +44,8 @@ pub(crate) enum Tiling {
     Whole,
     /// Tiles with a power-of-two side, from 16 to [`MAX_TILE`](super::MAX_TILE) texels.
     Tiles,
-    /// Tiles with the largest power-of-two side, from 16 to [`MAX_TILE`](super::MAX_TILE), in which every sum stays below 2³²; found on the GPU
-    /// from integer values (Shen et al. 2013, section 6.1). With values below 2²⁴ a tile of 16 always fits.
+    /// Tiles with the largest power-of-two side, from 16 to [`MAX_TILE`](super::MAX_TILE), in which every sum stays below 2³²;
+    /// found on the GPU from integer values (Shen et al. 2013, section 6.1). With values below 2²⁴ a tile of 16 always fits.
     Chosen,
 }
 
