@@ -26,6 +26,50 @@ fn add_box(min: Vec3, max: Vec3, positions: &mut Vec<Vec3>, indices: &mut Vec<u3
     }
 }
 
+/// Returns positions and indices of a table of five boxes.
+fn table() -> (Vec<Vec3>, Vec<u32>) {
+    let (mut positions, mut indices) = (Vec::new(), Vec::new());
+    let mut add = |min, max| add_box(Vec3::from(min), Vec3::from(max), &mut positions, &mut indices);
+    add([-1.0, 0.9, -0.7], [1.0, 1.0, 0.7]);
+    for (x, z) in [(-0.95, -0.65), (0.85, -0.65), (-0.95, 0.55), (0.85, 0.55)] {
+        add([x, 0.0, z], [x + 0.1, 0.9, z + 0.1]);
+    }
+    (positions, indices)
+}
+
+/// Returns a point for each pixel of the image, row by row from the top, in an upright plane.
+fn grid(least: Vec3, most: Vec3) -> Vec<Vec3> {
+    let point = |i: u32| {
+        let share = (UVec2::new(i % SIZE.x, i / SIZE.x).as_vec2() + 0.5) / SIZE.as_vec2();
+        least + (most - least) * Vec2::new(share.x, 1.0 - share.y).extend(0.0)
+    };
+    (0..SIZE.element_product()).map(point).collect()
+}
+
+/// Submits the commands, reads the visibilities back, and writes them as an image.
+fn save(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    mut encoder: wgpu::CommandEncoder,
+    visibilities: &wgpu::Buffer,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let readback = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: visibilities.size(),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    encoder.copy_buffer_to_buffer(visibilities, 0, &readback, 0, visibilities.size());
+    queue.submit([encoder.finish()]);
+    readback.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapping for reading"));
+    device.poll(wgpu::PollType::wait_indefinitely())?;
+    let seen: Vec<f32> = bytemuck::pod_collect_to_vec(&readback.get_mapped_range(..)?);
+    let gray: Vec<u8> = seen.iter().map(|v| (255.0 * v.powf(1.0 / 2.2)).round() as u8).collect();
+    image::save_buffer("anywhere.png", &gray, SIZE.x, SIZE.y, image::ColorType::L8)?;
+    println!("wrote anywhere.png");
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The host's device, with the optional features of the library that the adapter supports.
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -35,19 +79,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..wgpu::DeviceDescriptor::default()
     }))?;
 
-    // The host's scene, a table of five boxes, and its points.
-    let (mut positions, mut indices) = (Vec::new(), Vec::new());
-    let mut add = |min, max| add_box(Vec3::from(min), Vec3::from(max), &mut positions, &mut indices);
-    add([-1.0, 0.9, -0.7], [1.0, 1.0, 0.7]);
-    for (x, z) in [(-0.95, -0.65), (0.85, -0.65), (-0.95, 0.55), (0.85, 0.55)] {
-        add([x, 0.0, z], [x + 0.1, 0.9, z + 0.1]);
-    }
+    // The host's scene and its points.
+    let (positions, indices) = table();
     let (least, most) = (Vec3::new(-2.0, 0.0, 0.1), Vec3::new(2.0, 2.0, 0.1));
-    let point = |i: u32| {
-        let share = (UVec2::new(i % SIZE.x, i / SIZE.x).as_vec2() + 0.5) / SIZE.as_vec2();
-        least + (most - least) * Vec2::new(share.x, 1.0 - share.y).extend(0.0)
-    };
-    let points: Vec<Vec3> = (0..SIZE.element_product()).map(point).collect();
+    let points = grid(least, most);
     let buffer = |label, size: usize, usage| {
         let size = size as u64;
         device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
@@ -71,8 +106,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .with_bounds(Aabb::of(positions.iter().copied()))
         .with_closed(true); // shadows
     let casters = [mesh]; // shadows
-    let bytes = 4 * points.len();
-    let visibilities = buffer("visibilities", bytes, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC); // shadows
+    let visibilities =
+        buffer("visibilities", 4 * points.len(), wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC); // shadows
     let bounds = Aabb { min: least, max: most }; // shadows
     let receivers = PointReceivers {
         row_length: Some(SIZE.x), // points in rows; `None` for those in no order
@@ -91,15 +126,5 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     work.record(&mut Recorder::new(&mut encoder, None)); // shadows
 
-    // Reads the visibilities back and writes them as an image.
-    let readback = buffer("readback", bytes, wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-    encoder.copy_buffer_to_buffer(&visibilities, 0, &readback, 0, bytes as u64);
-    queue.submit([encoder.finish()]);
-    readback.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapping for reading"));
-    device.poll(wgpu::PollType::wait_indefinitely())?;
-    let seen: Vec<f32> = bytemuck::pod_collect_to_vec(&readback.get_mapped_range(..)?);
-    let gray: Vec<u8> = seen.iter().map(|v| (255.0 * v.powf(1.0 / 2.2)).round() as u8).collect();
-    image::save_buffer("anywhere.png", &gray, SIZE.x, SIZE.y, image::ColorType::L8)?;
-    println!("wrote anywhere.png");
-    Ok(())
+    save(&device, &queue, encoder, &visibilities)
 }

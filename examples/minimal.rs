@@ -1,7 +1,8 @@
 //! An independent small wgpu renderer gains soft shadows.
 //!
-//! Everything down to `main` is an ordinary renderer: its own meshes, camera, depth buffer and shader. The lines that
-//! add shadows are marked with `// shadows`. The only crate of this project is `antumbra`. It writes `minimal.png`:
+//! Everything down to `main` is an ordinary renderer: its own meshes, shader, pipelines and passes. `main` reads from top to
+//! bottom; the lines that add shadows are marked with `// shadows`. The only crate of this project is `antumbra`. It writes
+//! `minimal.png`:
 //!
 //! ```text
 //! cargo run --example minimal
@@ -52,143 +53,124 @@ fn add_box(min: Vec3, max: Vec3, positions: &mut Vec<Vec3>, indices: &mut Vec<u3
     }
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // The host's device, with the optional features of the library that the adapter supports.
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-        required_features: adapter.features() & Gpu::WANTED_FEATURES, // shadows
-        ..wgpu::DeviceDescriptor::default()
-    }))?;
+/// The host's scene on the GPU.
+struct Scene {
+    positions: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    index_count: u32,
+    instances: wgpu::Buffer,
+    bounds: Aabb,
+}
 
-    // The host's scene: a ground, a table of five boxes, a wall.
-    let (mut positions, mut indices) = (Vec::new(), Vec::new());
-    let mut add = |min, max| add_box(Vec3::from(min), Vec3::from(max), &mut positions, &mut indices);
-    add([-8.0, -0.2, -8.0], [8.0, 0.0, 8.0]);
-    add([-1.0, 0.9, -0.7], [1.0, 1.0, 0.7]);
-    for (x, z) in [(-0.95, -0.65), (0.85, -0.65), (-0.95, 0.55), (0.85, 0.55)] {
-        add([x, 0.0, z], [x + 0.1, 0.9, z + 0.1]);
+impl Scene {
+    /// Uploads a ground, a table of five boxes, and a wall.
+    fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        let (mut positions, mut indices) = (Vec::new(), Vec::new());
+        let mut add = |min, max| add_box(Vec3::from(min), Vec3::from(max), &mut positions, &mut indices);
+        add([-8.0, -0.2, -8.0], [8.0, 0.0, 8.0]);
+        add([-1.0, 0.9, -0.7], [1.0, 1.0, 0.7]);
+        for (x, z) in [(-0.95, -0.65), (0.85, -0.65), (-0.95, 0.55), (0.85, 0.55)] {
+            add([x, 0.0, z], [x + 0.1, 0.9, z + 0.1]);
+        }
+        add([-2.6, 0.0, -2.2], [2.6, 2.0, -2.0]);
+        let buffer = |label, bytes: &[u8], usage| buffer(device, queue, label, bytes, usage);
+        Self {
+            positions: buffer("positions", bytemuck::cast_slice(&positions), wgpu::BufferUsages::VERTEX),
+            indices: buffer("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX),
+            index_count: indices.len() as u32,
+            instances: buffer("instances", bytemuck::bytes_of(&Mat4::IDENTITY), wgpu::BufferUsages::VERTEX),
+            bounds: Aabb::of(positions),
+        }
     }
-    add([-2.6, 0.0, -2.2], [2.6, 2.0, -2.0]);
-    let buffer = |label, bytes: &[u8], usage| {
-        let descriptor = wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes.len() as u64,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        };
-        let buffer = device.create_buffer(&descriptor);
-        queue.write_buffer(&buffer, 0, bytes);
-        buffer
-    };
-    let position_buffer = buffer("positions", bytemuck::cast_slice(&positions), wgpu::BufferUsages::VERTEX);
-    let index_buffer = buffer("indices", bytemuck::cast_slice(&indices), wgpu::BufferUsages::INDEX);
-    let instance_buffer = buffer("instances", bytemuck::bytes_of(&Mat4::IDENTITY), wgpu::BufferUsages::VERTEX);
-    let view_from_world = look_at_mat4(Vec3::new(3.4, 2.6, 4.6), Vec3::new(0.0, 0.4, -0.4), Vec3::Y);
-    let clip_from_view = perspective_infinite_reverse(0.7, SIZE.x as f32 / SIZE.y as f32, 0.1);
+}
 
-    // The host's targets and pipelines: depth first, then colour at equal depth.
-    let texture = |label, format, usage| {
-        device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        })
-    };
-    let depth = texture("depth", wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::TEXTURE_BINDING);
-    let color = texture("color", wgpu::TextureFormat::Rgba8UnormSrgb, wgpu::TextureUsages::COPY_SRC);
-    let depth_view = depth.create_view(&wgpu::TextureViewDescriptor::default());
-    let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());
-
-    // Light, casters and receivers are the library's only inputs.
-    let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) }; // shadows
-    let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO); // shadows
-    let mesh = MeshCaster::new(&position_buffer, &index_buffer, indices.len() as u32, &instance_buffer)
-        .with_bounds(Aabb::of(positions.iter().copied()))
-        .with_closed(true); // shadows
-    let casters = [mesh]; // shadows
-    let mask = Mask::new(&device, SIZE); // shadows
-    let camera = Camera { view_from_world, clip_from_view, depth_convention: DepthConvention::Reversed }; // shadows
-    let receivers = Receivers::new(&depth_view, SIZE, camera); // shadows
-    let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
-    let gpu = Gpu::new(&device, &queue); // shadows
-    let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // shadows
-    let work = shadow.prepare(&frame)?; // shadows
-
-    let globals =
-        Globals { clip_from_world: clip_from_view * view_from_world, light_position: light.center, padding: 0.0 };
-    let globals = buffer("globals", bytemuck::bytes_of(&globals), wgpu::BufferUsages::UNIFORM);
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("host"),
-        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+/// Creates a buffer with content.
+fn buffer(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    label: &str,
+    bytes: &[u8],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes.len() as u64,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
     });
-    let pipeline = |label, with_color: bool| {
-        let targets = [Some(wgpu::TextureFormat::Rgba8UnormSrgb.into())];
-        let attributes = wgpu::vertex_attr_array![0 => Float32x3];
-        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(label),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[Some(wgpu::VertexBufferLayout {
-                    array_stride: 12,
-                    step_mode: wgpu::VertexStepMode::Vertex,
-                    attributes: &attributes,
-                })],
-            },
-            primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: wgpu::TextureFormat::Depth32Float,
-                depth_write_enabled: Some(!with_color),
-                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: with_color.then(|| wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
-    };
-    let (depth_pipeline, color_pipeline) = (pipeline("depth", false), pipeline("color", true));
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    let bind_group = |pipeline: &wgpu::RenderPipeline, entries: &[wgpu::BindGroupEntry<'_>]| {
-        let layout = &pipeline.get_bind_group_layout(0);
-        device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("host"), layout, entries })
-    };
-    let depth_group = bind_group(&depth_pipeline, &[entry(0, globals.as_entire_binding())]);
-    let color_entries =
-        [entry(0, globals.as_entire_binding()), entry(1, wgpu::BindingResource::TextureView(mask.view()))];
-    let color_group = bind_group(&color_pipeline, &color_entries);
+    queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}
 
-    // One frame: the host's depth, the shadows, the host's colour.
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let draw = |encoder: &mut wgpu::CommandEncoder, with_color: bool| {
+/// Creates a target of the image's size.
+fn target(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: SIZE.x, height: SIZE.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    })
+}
+
+/// Pass over the host's scene: of depth alone, or of colour at equal depth.
+struct ScenePass {
+    pipeline: wgpu::RenderPipeline,
+    bind_group: wgpu::BindGroup,
+}
+
+impl ScenePass {
+    /// Creates a pass of colour if there is a visibility mask to read, otherwise of depth.
+    fn new(
+        device: &wgpu::Device,
+        module: &wgpu::ShaderModule,
+        globals: &wgpu::Buffer,
+        visibility: Option<&wgpu::TextureView>,
+    ) -> Self {
+        let pipeline = pipeline(device, module, visibility.is_some());
+        let mut entries = vec![wgpu::BindGroupEntry { binding: 0, resource: globals.as_entire_binding() }];
+        entries.extend(
+            visibility
+                .map(|mask| wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(mask) }),
+        );
+        let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("host"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        Self { pipeline, bind_group }
+    }
+
+    /// Draws the scene, with colour if there is a view for it.
+    fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        scene: &Scene,
+        depth: &wgpu::TextureView,
+        color: Option<&wgpu::TextureView>,
+    ) {
         let sky = wgpu::Color { r: 0.35, g: 0.45, b: 0.6, a: 1.0 };
-        let color = [Some(wgpu::RenderPassColorAttachment {
-            view: &color_view,
+        let load = if color.is_some() { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
+        let attachment = |view| wgpu::RenderPassColorAttachment {
+            view,
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations { load: wgpu::LoadOp::Clear(sky), store: wgpu::StoreOp::Store },
-        })];
-        let load = if with_color { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) };
+        };
+        let colors: Vec<_> = color.into_iter().map(|view| Some(attachment(view))).collect();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("host"),
-            color_attachments: if with_color { &color } else { &[] },
+            color_attachments: &colors,
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth_view,
+                view: depth,
                 depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
@@ -196,17 +178,58 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_pipeline(if with_color { &color_pipeline } else { &depth_pipeline });
-        pass.set_bind_group(0, if with_color { &color_group } else { &depth_group }, &[]);
-        pass.set_vertex_buffer(0, position_buffer.slice(..));
-        pass.set_index_buffer(index_buffer.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..indices.len() as u32, 0, 0..1);
-    };
-    draw(&mut encoder, false);
-    work.record(&mut Recorder::new(&mut encoder, None)); // shadows
-    draw(&mut encoder, true);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.set_vertex_buffer(0, scene.positions.slice(..));
+        pass.set_index_buffer(scene.indices.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..scene.index_count, 0, 0..1);
+    }
+}
 
-    // Reads the image back and writes it.
+/// Creates the pipeline of a [`ScenePass`].
+fn pipeline(device: &wgpu::Device, module: &wgpu::ShaderModule, with_color: bool) -> wgpu::RenderPipeline {
+    let targets = [Some(wgpu::TextureFormat::Rgba8UnormSrgb.into())];
+    let attributes = wgpu::vertex_attr_array![0 => Float32x3];
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("host"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: 12,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &attributes,
+            })],
+        },
+        primitive: wgpu::PrimitiveState { cull_mode: Some(wgpu::Face::Back), ..Default::default() },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: wgpu::TextureFormat::Depth32Float,
+            depth_write_enabled: Some(!with_color),
+            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: with_color.then(|| wgpu::FragmentState {
+            module,
+            entry_point: Some("fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Submits the frame, reads its image back, and writes it.
+fn save(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    mut encoder: wgpu::CommandEncoder,
+    color: &wgpu::Texture,
+) -> Result<(), Box<dyn std::error::Error>> {
     let row_bytes = (SIZE.x * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let readback = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("readback"),
@@ -226,4 +249,56 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     image::save_buffer("minimal.png", &pixels, SIZE.x, SIZE.y, image::ColorType::Rgba8)?;
     println!("wrote minimal.png");
     Ok(())
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // The host's device, with the optional features of the library that the adapter supports.
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
+    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+        required_features: adapter.features() & Gpu::WANTED_FEATURES, // shadows
+        ..wgpu::DeviceDescriptor::default()
+    }))?;
+
+    // The host's scene, camera and targets.
+    let scene = Scene::new(&device, &queue);
+    let view_from_world = look_at_mat4(Vec3::new(3.4, 2.6, 4.6), Vec3::new(0.0, 0.4, -0.4), Vec3::Y);
+    let clip_from_view = perspective_infinite_reverse(0.7, SIZE.x as f32 / SIZE.y as f32, 0.1);
+    let depth = target(&device, "depth", wgpu::TextureFormat::Depth32Float, wgpu::TextureUsages::TEXTURE_BINDING);
+    let color = target(&device, "color", wgpu::TextureFormat::Rgba8UnormSrgb, wgpu::TextureUsages::COPY_SRC);
+    let depth_view = depth.create_view(&wgpu::TextureViewDescriptor::default());
+    let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());
+
+    // Light, casters and receivers are the library's only inputs.
+    let shape = LightShape::Rectangle { size_m: Vec2::new(1.2, 0.6) }; // shadows
+    let light = Light::new(shape, Vec3::new(1.5, 4.5, 2.5), Vec3::ZERO); // shadows
+    let mesh = MeshCaster::new(&scene.positions, &scene.indices, scene.index_count, &scene.instances)
+        .with_bounds(scene.bounds)
+        .with_closed(true); // shadows
+    let casters = [mesh]; // shadows
+    let mask = Mask::new(&device, SIZE); // shadows
+    let camera = Camera { view_from_world, clip_from_view, depth_convention: DepthConvention::Reversed }; // shadows
+    let receivers = Receivers::new(&depth_view, SIZE, camera); // shadows
+    let frame = Frame { light: &light, casters: Casters::Meshes(&casters), receivers, mask: &mask }; // shadows
+    let gpu = Gpu::new(&device, &queue); // shadows
+    let mut shadow = TechniqueKind::Smrt.create(&gpu)?; // shadows
+    let work = shadow.prepare(&frame)?; // shadows
+
+    // The host's passes: depth first, then colour, multiplied by the mask.
+    let globals =
+        Globals { clip_from_world: clip_from_view * view_from_world, light_position: light.center, padding: 0.0 };
+    let globals = buffer(&device, &queue, "globals", bytemuck::bytes_of(&globals), wgpu::BufferUsages::UNIFORM);
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("host"),
+        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+    });
+    let depth_pass = ScenePass::new(&device, &module, &globals, None);
+    let color_pass = ScenePass::new(&device, &module, &globals, Some(mask.view()));
+
+    // One frame: the host's depth, the shadows, the host's colour.
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    depth_pass.draw(&mut encoder, &scene, &depth_view, None);
+    work.record(&mut Recorder::new(&mut encoder, None)); // shadows
+    color_pass.draw(&mut encoder, &scene, &depth_view, Some(&color_view));
+    save(&device, &queue, encoder, &color)
 }

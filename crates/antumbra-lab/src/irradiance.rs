@@ -220,18 +220,7 @@ pub fn analytic(lab: &LabDevice, light: &Light, receivers: &[(Vec3, Vec3)]) -> R
         return Ok(Vec::new());
     }
     let device = &lab.device;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("irradiance"),
-        source: wgpu::ShaderSource::Wgsl([IRRADIANCE_WGSL, PROBE].concat().into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("irradiance"),
-        layout: None,
-        module: &module,
-        entry_point: None,
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
+    let pipeline = probe_pipeline(device);
     let buffers = LightBuffers::new(device, light, Vec3::ZERO);
     let buffer = |contents: &[u8], usage| {
         let label = Some("irradiance");
@@ -279,4 +268,20 @@ pub fn analytic(lab: &LabDevice, light: &Light, receivers: &[(Vec3, Vec3)]) -> R
     let mut values = read_f32(lab, &results)?;
     values.truncate(receivers.len());
     Ok(values)
+}
+
+/// Creates the pipeline that evaluates the irradiance of each point.
+fn probe_pipeline(device: &wgpu::Device) -> wgpu::ComputePipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("irradiance"),
+        source: wgpu::ShaderSource::Wgsl([IRRADIANCE_WGSL, PROBE].concat().into()),
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("irradiance"),
+        layout: None,
+        module: &module,
+        entry_point: None,
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
 }

@@ -96,67 +96,22 @@ pub(crate) fn container(document: &Value, mut bin: Vec<u8>) -> Result<Vec<u8>, S
 
 impl Writer {
     fn document(mut self, scene: &Scene) -> Result<(Value, Vec<u8>), String> {
-        let mut samplers: Vec<[Wrap; 2]> = Vec::new();
-        let mut images = Vec::new();
-        let mut textures = Vec::new();
-        for image in &scene.images {
-            let sampler = samplers.iter().position(|s| *s == image.wrap).unwrap_or_else(|| {
-                samplers.push(image.wrap);
-                samplers.len() - 1
-            });
-            let view = self.view(&png(image)?, None);
-            textures.push(json!({ "source": images.len(), "sampler": sampler }));
-            images.push(json!({ "bufferView": view, "mimeType": "image/png" }));
-        }
+        let Images { samplers, images, textures } = self.images(scene)?;
         let (surfaces, of_mesh) = surfaces(scene);
         let materials: Vec<Value> = surfaces.iter().map(material).collect();
-        // glTF does not allow meshes without triangles.
-        let drawn = |mesh: &Mesh| !mesh.indices.is_empty();
         let meshes: Vec<Value> = scene
             .meshes
             .iter()
             .zip(of_mesh)
-            .filter(|(mesh, _)| drawn(mesh))
+            .filter(|(mesh, _)| is_written(mesh))
             .map(|(mesh, (material, scale))| self.mesh(mesh, material, scale))
             .collect();
-
-        let mut nodes: Vec<Value> = Vec::new();
-        let written: Vec<usize> = scene
-            .meshes
-            .iter()
-            .scan(0, |next, mesh| Some(std::mem::replace(next, *next + usize::from(drawn(mesh)))))
-            .collect();
-        for instance in scene.instances.iter().filter(|i| drawn(&scene.meshes[i.mesh])) {
-            nodes.push(object(json!({
-                "name": scene.meshes[instance.mesh].name,
-                "mesh": written[instance.mesh],
-                "matrix": matrix(instance.world_from_object),
-            })));
-        }
-        for (k, camera) in scene.cameras.iter().enumerate() {
-            nodes.push(camera_node(camera, k));
-        }
-        for (k, light) in scene.lights.iter().enumerate() {
-            nodes.push(light_node(light, k));
-        }
-
-        let transmits = scene.materials.iter().any(|m| m.transmission > 0.0);
-        let absorbs = scene.materials.iter().any(|m| m.volume.is_some());
-        let glows = scene.materials.iter().any(|m| m.emissive.max_element() > 1.0);
-        let used: Vec<&str> = [
-            (!scene.lights.is_empty(), "KHR_lights_punctual"),
-            (transmits, "KHR_materials_transmission"),
-            (absorbs, "KHR_materials_volume"),
-            (glows, "KHR_materials_emissive_strength"),
-        ]
-        .into_iter()
-        .filter_map(|(used, name)| used.then_some(name))
-        .collect();
+        let nodes = nodes(scene);
         let all_nodes: Vec<usize> = (0..nodes.len()).collect();
         let length = self.bin.len();
         let document = object(json!({
             "asset": { "version": "2.0", "generator": concat!("antumbra ", env!("CARGO_PKG_VERSION")) },
-            "extensionsUsed": used,
+            "extensionsUsed": extensions(scene),
             "extensions": object(json!({
                 "KHR_lights_punctual": object(json!({
                     "lights": scene.lights.iter().map(light).collect::<Vec<_>>(),
@@ -177,6 +132,69 @@ impl Writer {
         }));
         Ok((document, self.bin))
     }
+
+    /// Writes the images as PNG, with a sampler for each way to wrap.
+    fn images(&mut self, scene: &Scene) -> Result<Images, String> {
+        let (mut samplers, mut images, mut textures) = (Vec::new(), Vec::new(), Vec::new());
+        for image in &scene.images {
+            let sampler = samplers.iter().position(|s| *s == image.wrap).unwrap_or_else(|| {
+                samplers.push(image.wrap);
+                samplers.len() - 1
+            });
+            let view = self.view(&png(image)?, None);
+            textures.push(json!({ "source": images.len(), "sampler": sampler }));
+            images.push(json!({ "bufferView": view, "mimeType": "image/png" }));
+        }
+        Ok(Images { samplers, images, textures })
+    }
+}
+
+/// Images, and the textures that sample them.
+struct Images {
+    samplers: Vec<[Wrap; 2]>,
+    images: Vec<Value>,
+    textures: Vec<Value>,
+}
+
+/// Whether a mesh is part of the file: glTF does not allow meshes without triangles.
+fn is_written(mesh: &Mesh) -> bool {
+    !mesh.indices.is_empty()
+}
+
+/// Nodes of instances, cameras and lights.
+fn nodes(scene: &Scene) -> Vec<Value> {
+    let written: Vec<usize> = scene
+        .meshes
+        .iter()
+        .scan(0, |next, mesh| Some(std::mem::replace(next, *next + usize::from(is_written(mesh)))))
+        .collect();
+    let mut nodes: Vec<Value> = Vec::new();
+    for instance in scene.instances.iter().filter(|i| is_written(&scene.meshes[i.mesh])) {
+        nodes.push(object(json!({
+            "name": scene.meshes[instance.mesh].name,
+            "mesh": written[instance.mesh],
+            "matrix": matrix(instance.world_from_object),
+        })));
+    }
+    nodes.extend(scene.cameras.iter().enumerate().map(|(k, camera)| camera_node(camera, k)));
+    nodes.extend(scene.lights.iter().enumerate().map(|(k, light)| light_node(light, k)));
+    nodes
+}
+
+/// Names of the extensions that the scene uses.
+fn extensions(scene: &Scene) -> Vec<&'static str> {
+    let transmits = scene.materials.iter().any(|m| m.transmission > 0.0);
+    let absorbs = scene.materials.iter().any(|m| m.volume.is_some());
+    let glows = scene.materials.iter().any(|m| m.emissive.max_element() > 1.0);
+    [
+        (!scene.lights.is_empty(), "KHR_lights_punctual"),
+        (transmits, "KHR_materials_transmission"),
+        (absorbs, "KHR_materials_volume"),
+        (glows, "KHR_materials_emissive_strength"),
+    ]
+    .into_iter()
+    .filter_map(|(used, name)| used.then_some(name))
+    .collect()
 }
 
 /// Removes null and empty members: glTF allows no empty list and needs no empty name.

@@ -234,22 +234,35 @@ impl eframe::App for App {
 }
 
 impl App {
+    /// Advances time, and takes what was loaded or chosen since the last frame.
+    fn advance(&mut self, ctx: &egui::Context) {
+        let seconds = self.last_frame.elapsed().as_secs_f32().min(0.1);
+        self.last_frame = Instant::now();
+        self.state.advance(seconds);
+        self.take_loaded(ctx);
+        self.take_chosen(ctx);
+        self.pose();
+        self.history.note(&self.state, ctx.input(|input| input.time));
+    }
+
+    /// Line of the status bar, and whether it reports a failure.
+    fn status(&self) -> (String, bool) {
+        match self.loader.pending() {
+            Some(spec) => (format!("loading {spec}"), false),
+            None => self.message.clone(),
+        }
+    }
+
     /// Handles input and draws one frame.
     fn show(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         if self.give_up_lost_device(&ctx) {
             return;
         }
-        let seconds = self.last_frame.elapsed().as_secs_f32().min(0.1);
-        self.last_frame = Instant::now();
-        self.state.advance(seconds);
-        self.take_loaded(&ctx);
-        self.take_chosen(&ctx);
-        self.pose();
-        self.history.note(&self.state, ctx.input(|input| input.time));
         if ctx.cumulative_pass_nr() == 0 && ui.max_rect().width() < NARROW_WINDOW {
             self.panels.is_side_shown = false;
         }
+        self.advance(&ctx);
         let mut actions = self.keys(&ctx);
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
@@ -279,10 +292,7 @@ impl App {
             adapter: &self.adapter,
             features: self.render_state.device.features(),
         };
-        let (message, is_bad) = match self.loader.pending() {
-            Some(spec) => (format!("loading {spec}"), false),
-            None => self.message.clone(),
-        };
+        let (message, is_bad) = self.status();
         egui::Panel::bottom("status").resizable(false).show(ui, |ui| {
             ui::status_bar(ui, &self.state, &readings, &message, is_bad);
         });

@@ -62,6 +62,23 @@ const USUAL_S: f64 = 2.0;
 /// Time limit of an unmeasured test, seconds, before it moves behind all others.
 const AT_FIRST_S: f64 = 20.0;
 
+/// Returns the tests that may use one of the shaders, the most promising first.
+fn most_promising<'s>(suite: &'s Suite, record: &Record, source: &str, shaders: &BTreeSet<String>) -> Vec<&'s Test> {
+    let mut tests: Vec<(f64, &Test)> = suite
+        .tests
+        .iter()
+        .filter_map(|test| match suite.known(test) {
+            Some(known) if known.shaders.is_disjoint(shaders) => None,
+            known => {
+                let at_first = at_first(test, known.as_ref(), source, shaders);
+                Some((record.worth(test, known.map_or(USUAL_S, |known| known.seconds), at_first), test))
+            }
+        })
+        .collect();
+    tests.sort_by(|a, b| b.0.total_cmp(&a.0));
+    tests.into_iter().map(|(_, test)| test).collect()
+}
+
 /// Runs the tests, the most promising first, until one fails or `seconds` have passed in total. The shaders that a test uses are recorded
 /// at its first run.
 ///
@@ -75,20 +92,8 @@ pub fn judge(
     shaders: &BTreeSet<String>,
     seconds: f64,
 ) -> Result<Verdict, String> {
-    let mut tests: Vec<(f64, &Test)> = suite
-        .tests
-        .iter()
-        .filter_map(|test| match suite.known(test) {
-            Some(known) if known.shaders.is_disjoint(shaders) => None,
-            known => {
-                let at_first = at_first(test, known.as_ref(), source, shaders);
-                Some((record.worth(test, known.map_or(USUAL_S, |known| known.seconds), at_first), test))
-            }
-        })
-        .collect();
-    tests.sort_by(|a, b| b.0.total_cmp(&a.0));
     let (begun, mut asked) = (Instant::now(), 0);
-    for (_, test) in tests {
+    for test in most_promising(suite, record, source, shaders) {
         if begun.elapsed().as_secs_f64() > seconds {
             break;
         }

@@ -78,6 +78,17 @@ fn load(args: &AdviseArgs, bars: &Bars) -> Result<(Vec<antumbra_scene::Scene>, V
 }
 
 fn print(advice: &Advice) {
+    print_facts(advice);
+    print_best(advice);
+    print_others(advice);
+    print_step_up(advice);
+    let spent = &advice.spent;
+    let left_out = if spent.left_out > 0 { format!(", {} skipped as too slow", spent.left_out) } else { String::new() };
+    say!("Measured: {} configurations in {:.1} s{left_out}.", spent.measurements, spent.seconds);
+}
+
+/// Prints the scene, the budget, and facts about each view.
+fn print_facts(advice: &Advice) {
     let times = |values: &[f64]| values.iter().map(|ms| format!("{ms:.2}")).collect::<Vec<_>>().join(", ");
     let [width, height] = advice.size;
     let pcf =
@@ -94,6 +105,9 @@ fn print(advice: &Advice) {
         }
         facts.lines().iter().for_each(|line| say!("  {line}"));
     }
+}
+
+fn print_best(advice: &Advice) {
     let best = &advice.best;
     let [low, high] = best.worst_spread_ms();
     let verb = if advice.keeps_budget { "Take" } else { "Nearest:" };
@@ -110,6 +124,10 @@ fn print(advice: &Advice) {
         if advice.views.len() > 1 { format!(" for {}", advice.views[best.heaviest_view]) } else { String::new() };
     say!("  (time: {}{of_view})", best.counted());
     advice.reasons.iter().for_each(|reason| say!("  - {reason}"));
+}
+
+/// Prints the next best configurations and the next step up as a table, if there are any.
+fn print_others(advice: &Advice) {
     let mut rows = vec![
         ["NEXT BEST", "RMSE", "ROUGHNESS", "MS", "TIMED FRAMES", "MS / BUDGET", "MIB"].map(str::to_owned).to_vec(),
     ];
@@ -135,20 +153,20 @@ fn print(advice: &Advice) {
         say!("");
         table::print(&rows);
     }
+}
+
+fn print_step_up(advice: &Advice) {
     match &advice.next_step {
         Some(step) => say!(
             "\nHigher quality: {} has an error of {:.4}, {:.0} % less, and takes {:.2} ms, {:.2} times the budget.",
             step.name,
             step.rmse,
-            100.0 * (1.0 - step.rmse / best.rmse),
+            100.0 * (1.0 - step.rmse / advice.best.rmse),
             step.worst_ms(),
             step.load
         ),
         None => say!("\nNo slower configuration that was measured has clearly less error."),
     }
-    let spent = &advice.spent;
-    let left_out = if spent.left_out > 0 { format!(", {} skipped as too slow", spent.left_out) } else { String::new() };
-    say!("Measured: {} configurations in {:.1} s{left_out}.", spent.measurements, spent.seconds);
 }
 
 fn mib(one: &Candidate) -> f64 {

@@ -3,14 +3,16 @@
 use std::time::Duration;
 
 use antumbra::{AnyShadow, Error};
+use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
 use antumbra_lab::image_io::{check_picture_path, check_visibility_path, write_picture};
 use antumbra_lab::output_files::check_json_path;
 use antumbra_lab::picture::Visibility;
 use antumbra_lab::progress::Progress;
-use antumbra_lab::technique_run::{Drawn, TechniqueRun, Timing, create, parameters_of};
+use antumbra_lab::technique_run::{Drawn, TechniqueChoice, TechniqueRun, Timing, create, parameters_of};
 use antumbra_lab::view::View;
-use serde_json::json;
+use antumbra_light::Light;
+use serde_json::{Value, json};
 
 use crate::args::{RenderArgs, ShadingFactor};
 use crate::commands::{
@@ -62,12 +64,7 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
     let apart =
         if args.visibility.is_some() && shading != choice { Some(draw(&mut view.create(&choice)?)?) } else { None };
     bars.end();
-    for (light, Drawn { auto_map_sizes, .. }) in setup.lights.iter().zip(&drawn) {
-        if !auto_map_sizes.is_empty() {
-            let sizes = auto_map_sizes.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
-            bars.note(&format!("light `{}`: map_size = auto is {sizes}", light.name));
-        }
-    }
+    note_map_sizes(&setup.lights, &drawn, bars);
 
     write_picture(&args.output, &picture.to_srgb8())?;
     if let Some(path) = &args.visibility {
@@ -75,34 +72,52 @@ pub fn render(args: &RenderArgs, bars: &Bars) -> Result<(), Failure> {
         write_visibilities(path, &setup.lights, &visibilities_of(drawn), chosen, bars)?;
     }
     if let Some(path) = &args.timings {
-        // Timing uses a state of its own, so that it does not change the written image.
-        let timed = |light: usize| {
-            let TechniqueRun { timings, memory_bytes, auto_map_sizes, .. } =
-                view.run(&mut view.create(&shading)?, light, &TIMED)?;
-            Ok(json!({
-                "light": setup.lights[light].name,
-                "timings": timings,
-                "memory_bytes": memory_bytes,
-                "auto_map_sizes": auto_map_sizes,
-            }))
-        };
-        let lights = lights.map(timed).collect::<Result<Vec<_>, LabError>>()?;
-        let timings = json!({
-            "antumbra": env!("CARGO_PKG_VERSION"),
-            "commit": COMMIT,
-            "adapter": lab.adapter.name,
-            "driver": lab.adapter.driver_and_version(),
-            "backend": lab.adapter.backend.to_string(),
-            "software": lab.adapter.is_software(),
-            "scene": args.scene,
-            "size": args.view.size.to_array(),
-            "technique": choice.name(),
-            "parameters": parameters_of(&technique),
-            "lights": lights,
-        });
+        let mut timings = device_facts(&lab);
+        timings["scene"] = json!(args.scene);
+        timings["size"] = json!(args.view.size.to_array());
+        timings["technique"] = json!(choice.name());
+        timings["parameters"] = json!(parameters_of(&technique));
+        timings["lights"] = json!(timed_lights(&view, &setup.lights, &shading)?);
         write_json(path, &timings)?;
     }
     Ok(())
+}
+
+/// Returns the program's version, and the device with its driver.
+fn device_facts(lab: &LabDevice) -> Value {
+    json!({
+        "antumbra": env!("CARGO_PKG_VERSION"),
+        "commit": COMMIT,
+        "adapter": lab.adapter.name,
+        "driver": lab.adapter.driver_and_version(),
+        "backend": lab.adapter.backend.to_string(),
+        "software": lab.adapter.is_software(),
+    })
+}
+
+/// Notes the sizes of maps that are chosen for each light.
+fn note_map_sizes(lights: &[Light], drawn: &[Drawn], bars: &Bars) {
+    for (light, Drawn { auto_map_sizes, .. }) in lights.iter().zip(drawn) {
+        if !auto_map_sizes.is_empty() {
+            let sizes = auto_map_sizes.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+            bars.note(&format!("light `{}`: map_size = auto is {sizes}", light.name));
+        }
+    }
+}
+
+/// Times the technique for each light. Timing uses a state of its own, so that it does not change the written image.
+fn timed_lights(view: &View<'_>, lights: &[Light], choice: &TechniqueChoice) -> Result<Vec<Value>, LabError> {
+    let timed = |(index, light): (usize, &Light)| {
+        let TechniqueRun { timings, memory_bytes, auto_map_sizes, .. } =
+            view.run(&mut view.create(choice)?, index, &TIMED)?;
+        Ok(json!({
+            "light": light.name,
+            "timings": timings,
+            "memory_bytes": memory_bytes,
+            "auto_map_sizes": auto_map_sizes,
+        }))
+    };
+    lights.iter().enumerate().map(timed).collect()
 }
 
 fn visibilities_of(drawn: &[Drawn]) -> Vec<&Visibility> {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use antumbra_lab::baseline::{Baseline, Source, of_reproduced};
+use antumbra_lab::device::LabDevice;
 use antumbra_lab::error::LabError;
 use antumbra_lab::progress::Progress;
 use antumbra_lab::report::{AdapterInfo, ReproductionInfo, utc_now, write_reproduction};
@@ -28,12 +29,7 @@ type Named = (String, &'static Paper, &'static Exhibit);
 /// Lists the papers' exhibits, or runs the chosen ones.
 pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     if args.ids.is_empty() && !args.all {
-        if args.output.is_some() || args.json.is_some() {
-            let why = "reproduce: -o and --json need entries to run; name some, or use --all";
-            return Err(Failure::Input(why.into()));
-        }
-        list();
-        return Ok(());
+        return list_if_asked(args);
     }
     let limits = args.run.limits();
     let chosen = choose(args)?;
@@ -41,29 +37,16 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     let baseline = check(args, dir.as_deref())?;
     let lab = open_device(&args.adapter)?;
     say!("Adapter: {}", lab.adapter.name);
-    let mut options = RunOptions { size_px: args.size, ..RunOptions::for_device(&lab, args.frames) };
-    options.samples = args.samples.unwrap_or(options.samples);
-    options.runs_slow |= args.dear;
-    let mut session = Session::open(&lab, options, limits, dir.as_deref(), COMMIT)?;
-    let info = ReproductionInfo {
-        adapter: AdapterInfo::of(&lab.adapter),
-        bandwidth_gb_s: args.bandwidth,
-        commit: COMMIT.to_owned(),
-        date: utc_now(),
-        arguments: arguments(args, dir.as_deref()),
-    };
+    let mut session = Session::open(&lab, options(args, &lab), limits, dir.as_deref(), COMMIT)?;
+    let info = info(args, &lab, dir.as_deref());
     let all: usize = chosen.iter().map(|(_, paper, exhibit)| exhibit.run_count(paper)).sum();
     let mut begun = 0;
     let mut results: Vec<ExhibitResult> = Vec::new();
-    let json_of = |results: &[&ExhibitResult]| -> Value {
-        let exhibits: Vec<Value> = results.iter().map(|result| as_json(result)).collect();
-        json!({ "adapter": lab.adapter.name, "commit": COMMIT, "exhibits": exhibits })
-    };
     for (_, paper, exhibit) in chosen {
         let mut each = |session: &Session<'_>| -> Result<(), LabError> {
             if let Some(path) = &args.json {
                 let current = session.result(paper, exhibit);
-                put_json(path, &json_of(&results.iter().chain([&current]).collect::<Vec<_>>()))?;
+                put_json(path, &all_as_json(&lab, results.iter().chain([&current])))?;
             }
             dir.iter().for_each(|dir| keep(dir));
             Ok(())
@@ -78,7 +61,7 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     }
     bars.end();
     sum_up(&results, session.ran(), all, dir.as_deref());
-    let mut json = json_of(&results.iter().collect::<Vec<_>>());
+    let mut json = all_as_json(&lab, &results);
     if let Some(baseline) = baseline {
         let against = baseline.against(&of_reproduced(&results));
         say!("\n{}\n", against.summary());
@@ -94,6 +77,28 @@ pub fn reproduce(args: &ReproduceArgs, bars: &Bars) -> Result<(), Failure> {
     }
     let alone = args.json.as_deref().map_or(SavedResults::Nothing, SavedResults::NotResumable);
     Err(Failure::incomplete(session.missing(), all, &dir.as_deref().map_or(alone, SavedResults::Resumable)))
+}
+
+fn options(args: &ReproduceArgs, lab: &LabDevice) -> RunOptions {
+    let mut options = RunOptions { size_px: args.size, ..RunOptions::for_device(lab, args.frames) };
+    options.samples = args.samples.unwrap_or(options.samples);
+    options.runs_slow |= args.dear;
+    options
+}
+
+fn info(args: &ReproduceArgs, lab: &LabDevice, dir: Option<&Path>) -> ReproductionInfo {
+    ReproductionInfo {
+        adapter: AdapterInfo::of(&lab.adapter),
+        bandwidth_gb_s: args.bandwidth,
+        commit: COMMIT.to_owned(),
+        date: utc_now(),
+        arguments: arguments(args, dir),
+    }
+}
+
+fn all_as_json<'a>(lab: &LabDevice, results: impl IntoIterator<Item = &'a ExhibitResult>) -> Value {
+    let exhibits: Vec<Value> = results.into_iter().map(as_json).collect();
+    json!({ "adapter": lab.adapter.name, "commit": COMMIT, "exhibits": exhibits })
 }
 
 /// Validates the options before the long work. Returns the baseline, if any.
@@ -167,6 +172,16 @@ fn sum_up(results: &[ExhibitResult], ran: usize, all: usize, dir: Option<&Path>)
     if let Some(dir) = dir {
         say!("{}", dir.join("index.html").display());
     }
+}
+
+/// Lists the exhibits, unless options ask for results of some.
+fn list_if_asked(args: &ReproduceArgs) -> Result<(), Failure> {
+    if args.output.is_some() || args.json.is_some() {
+        let why = "reproduce: -o and --json need entries to run; name some, or use --all";
+        return Err(Failure::Input(why.into()));
+    }
+    list();
+    Ok(())
 }
 
 fn list() {

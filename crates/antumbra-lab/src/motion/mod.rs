@@ -17,6 +17,7 @@
 mod caster;
 pub mod flicker;
 mod strip;
+mod tracing;
 mod trajectory;
 
 #[cfg(test)]
@@ -28,9 +29,9 @@ pub use strip::{STRIP_FLICKER_RANGE, STRIP_FRAMES};
 use std::time::Instant;
 
 use antumbra::{AnyShadow, Casters, Frame, Mask};
-use antumbra_reference::{Receivers, Tracer, VisibilityOptions};
+use antumbra_reference::Tracer;
 use antumbra_scene::{Camera, Scene, Setup};
-use glam::{Mat4, UVec2, Vec3};
+use glam::UVec2;
 use image::RgbImage;
 
 use crate::device::LabDevice;
@@ -44,7 +45,11 @@ use crate::technique_run::{cut_short, draw_as_host, mask_for};
 use crate::truth::trace_light;
 use flicker::{FlickerSums, TrueFrame, distances_to_settled, lag_frames, touched_pixels};
 use strip::Strip;
+use tracing::Tracing;
 use trajectory::{Pose, Trajectory};
+
+/// Number of progress steps per traced frame.
+const STEPS: u64 = 100;
 
 /// Moving object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -331,18 +336,10 @@ impl<'a> MovingScene<'a> {
         }
         let rest = trajectory.at(last);
         let images = self.look(&rest)?;
-        let mut masks = vec![before];
-        for i in 0..STILL_AFTER {
-            in_time(STILL_BEFORE + last + i, technique)?;
-            let (now, lacked) = self.draw(technique, &rest, &images, &mask)?;
-            // The first frame after the stop reports the overflow of the last moving frame.
-            lacking_room += u32::from(lacked && i == 0);
-            masks.push(now);
-            let newest = &masks[masks.len().saturating_sub(SAME_MASKS)..];
-            if newest.len() == SAME_MASKS && newest.iter().all(|mask| *mask == newest[0]) {
-                break;
-            }
-        }
+        let in_time = |i: u32, technique: &AnyShadow| in_time(STILL_BEFORE + last + i, technique);
+        let (masks, lacked) = self.settle(technique, (&rest, &images), &mask, before, in_time)?;
+        // The first frame after the stop reports the overflow of the last moving frame.
+        lacking_room += u32::from(lacked);
         let true_rest = &truth.frames[last as usize];
         let after_stop = distances_to_settled(&masks, true_rest, &truth.touched);
         Ok(MotionFigures {
@@ -354,6 +351,30 @@ impl<'a> MovingScene<'a> {
             lacking_room,
             strip: strip.finish(masks.last().expect("the mask that stopped is there"), &sums, &true_rest.judged),
         })
+    }
+
+    /// Draws frames at rest until masks are equal. Returns `last`, the last moving frame's mask, followed by theirs; and whether the
+    /// first of them reports an overflow. `in_time` fails once the end of the run has passed.
+    fn settle(
+        &self,
+        technique: &mut AnyShadow,
+        (rest, images): (&Pose, &ReceiverImages),
+        mask: &Mask,
+        last: Visibility,
+        in_time: impl Fn(u32, &AnyShadow) -> Result<(), LabError>,
+    ) -> Result<(Vec<Visibility>, bool), LabError> {
+        let (mut masks, mut lacked_room) = (vec![last], false);
+        for i in 0..STILL_AFTER {
+            in_time(i, technique)?;
+            let (now, lacked) = self.draw(technique, rest, images, mask)?;
+            lacked_room |= lacked && i == 0;
+            masks.push(now);
+            let newest = &masks[masks.len().saturating_sub(SAME_MASKS)..];
+            if newest.len() == SAME_MASKS && newest.iter().all(|mask| *mask == newest[0]) {
+                break;
+            }
+        }
+        Ok((masks, lacked_room))
     }
 
     /// Draws a frame. Returns its mask, and whether the previous frame's lists overflowed.
@@ -369,44 +390,5 @@ impl<'a> MovingScene<'a> {
             Frame { light: &pose.light, casters: Casters::Meshes(&casters), receivers: images.receivers(), mask };
         let (visibility, overflow) = draw_as_host(self.lab, technique, &frame)?;
         Ok((visibility, overflow.is_some()))
-    }
-}
-
-/// Number of progress steps per traced frame.
-const STEPS: u64 = 100;
-
-/// Tracer of a scene with moving instances.
-struct Tracing {
-    scene: Scene,
-    /// Moving instances with their final transforms.
-    moving: Vec<(usize, Mat4)>,
-    tracer: Tracer,
-    samples: u32,
-}
-
-impl Tracing {
-    fn new(scene: Scene, caster: Option<&MovingCaster>, samples: u32) -> Result<Self, LabError> {
-        let moving = caster.map_or(&[][..], |caster| &caster.instances);
-        let moving = moving.iter().map(|i| (*i, scene.instances[*i].world_from_object)).collect();
-        let tracer = Tracer::new(&scene)?;
-        Ok(Self { scene, moving, tracer, samples })
-    }
-
-    /// Updates the tracer to a pose and returns what the camera sees.
-    fn receivers(&mut self, pose: &Pose, size_px: UVec2) -> Result<Receivers, LabError> {
-        if !self.moving.is_empty() {
-            for (instance, place) in &self.moving {
-                let offset = pose.caster_offset_m;
-                self.scene.instances[*instance].world_from_object =
-                    if offset == Vec3::ZERO { *place } else { Mat4::from_translation(offset) * *place };
-            }
-            self.tracer = Tracer::new(&self.scene)?;
-        }
-        Ok(self.tracer.primary(&pose.camera, size_px))
-    }
-
-    fn options(&self, seed: u32) -> VisibilityOptions {
-        let samples = self.samples;
-        VisibilityOptions { samples, seed, same_set_for_all_pixels: true, ..VisibilityOptions::default() }
     }
 }

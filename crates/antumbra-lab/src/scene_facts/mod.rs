@@ -103,6 +103,28 @@ const MAX_PIXELS: usize = 1024;
 /// Maximum number of rays per pixel.
 const RAYS: u32 = 32;
 
+impl PictureShares {
+    /// Shares from numbers of pixels, of which `lit` and `penumbra` are among the judged ones.
+    fn of(receivers: &Receivers, judged: usize, lit: usize, penumbra: usize) -> Self {
+        let share = |count: usize| count as f64 / receivers.points.len().max(1) as f64;
+        let hits = receivers.hits();
+        Self {
+            lit: share(lit),
+            penumbra: share(penumbra),
+            umbra: share(judged - lit - penumbra),
+            not_judged: share(hits - judged.min(hits)),
+            background: share(receivers.points.len() - hits),
+        }
+    }
+}
+
+/// Returns the share of a scene's triangles whose mesh is a wanted occluder.
+fn share_of_triangles(scene: &Scene, occluders: &[Occluder], wanted: fn(&Occluder) -> bool) -> f64 {
+    let is = |instance: &&antumbra_scene::Instance| wanted(&occluders[instance.mesh]);
+    let count: usize = scene.instances.iter().filter(is).map(|i| scene.meshes[i.mesh].indices.len() / 3).sum();
+    count as f64 / scene.triangle_count().max(1) as f64
+}
+
 impl SceneFacts {
     /// Measures a traced view. `receivers` are what `camera` sees through `tracer`, and `truth` is `light`'s there.
     ///
@@ -125,18 +147,9 @@ impl SceneFacts {
             let channels = truth.visibility.channel_count();
             (0..channels).map(|channel| truth.visibility.at(pixel, channel)).sum::<f32>() / channels as f32
         };
-        let share = |count: usize| count as f64 / receivers.points.len().max(1) as f64;
         let penumbra: Vec<usize> =
             judged.iter().copied().filter(|&i| (UMBRA_BELOW..=LIT_ABOVE).contains(&value(i))).collect();
         let lit = judged.iter().filter(|&&i| value(i) > LIT_ABOVE).count();
-        let hits = receivers.hits();
-        let picture = PictureShares {
-            lit: share(lit),
-            penumbra: share(penumbra.len()),
-            umbra: share(judged.len() - lit - penumbra.len()),
-            not_judged: share(hits - judged.len().min(hits)),
-            background: share(receivers.points.len() - hits),
-        };
 
         let frame = light.frame();
         let towards = |at: glam::Vec3| if light.is_distant() { -light.axis } else { (light.center - at).normalize() };
@@ -153,13 +166,8 @@ impl SceneFacts {
         (0..chosen).for_each(|k| probe.look(penumbra[k * penumbra.len() / chosen], &mut tally));
 
         let occluders = scene.occluders();
-        let triangles_of = |wanted: fn(&Occluder) -> bool| {
-            let is = |instance: &&antumbra_scene::Instance| wanted(&occluders[instance.mesh]);
-            let count: usize = scene.instances.iter().filter(is).map(|i| scene.meshes[i.mesh].indices.len() / 3).sum();
-            count as f64 / scene.triangle_count().max(1) as f64
-        };
         Ok(Self {
-            picture,
+            picture: PictureShares::of(receivers, judged.len(), lit, penumbra.len()),
             penumbra: tally.facts(),
             grazing: (!judged.is_empty()).then(|| grazing as f64 / judged.len() as f64),
             light_diameter_deg: Spread::of(points().map(|p| diameter(p.position)).collect()),
@@ -168,8 +176,8 @@ impl SceneFacts {
             } else {
                 Spread::of(points().map(|p| off_axis(p.position)).collect())
             },
-            masked_triangles: triangles_of(|occluder| matches!(occluder, Occluder::Masked { .. })),
-            tinted_triangles: triangles_of(|occluder| matches!(occluder, Occluder::Translucent)),
+            masked_triangles: share_of_triangles(scene, &occluders, |one| matches!(one, Occluder::Masked { .. })),
+            tinted_triangles: share_of_triangles(scene, &occluders, |one| matches!(one, Occluder::Translucent)),
         })
     }
 

@@ -223,34 +223,7 @@ impl ReceiverPass {
                 entries: &[buffer_entry(0, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Uniform)],
             },
         );
-        let vertex_data = |binding| {
-            buffer_entry(binding, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Storage { read_only: true })
-        };
-        let sampler = |binding| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-            count: None,
-        };
-        let texture = texture_entry(7, wgpu::TextureSampleType::Float { filterable: true });
-        let draw_layout = programs::create_bind_group_layout(
-            device,
-            &wgpu::BindGroupLayoutDescriptor {
-                label: Some("receivers: draw"),
-                entries: &[
-                    vertex_data(0),
-                    vertex_data(1),
-                    vertex_data(2),
-                    vertex_data(3),
-                    vertex_data(4),
-                    vertex_data(5),
-                    buffer_entry(6, wgpu::ShaderStages::VERTEX_FRAGMENT, wgpu::BufferBindingType::Uniform),
-                    texture,
-                    sampler(8),
-                    sampler(9),
-                ],
-            },
-        );
+        let draw_layout = draw_layout(device);
         let layout = programs::create_pipeline_layout(
             device,
             &wgpu::PipelineLayoutDescriptor {
@@ -373,6 +346,38 @@ impl ReceiverPass {
             entries: &entries,
         })
     }
+}
+
+/// Layout of the group of a draw: vertex data, uniforms, texture and samplers.
+fn draw_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let vertex_data = |binding| {
+        buffer_entry(binding, wgpu::ShaderStages::VERTEX, wgpu::BufferBindingType::Storage { read_only: true })
+    };
+    let sampler = |binding| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        count: None,
+    };
+    let texture = texture_entry(7, wgpu::TextureSampleType::Float { filterable: true });
+    programs::create_bind_group_layout(
+        device,
+        &wgpu::BindGroupLayoutDescriptor {
+            label: Some("receivers: draw"),
+            entries: &[
+                vertex_data(0),
+                vertex_data(1),
+                vertex_data(2),
+                vertex_data(3),
+                vertex_data(4),
+                vertex_data(5),
+                buffer_entry(6, wgpu::ShaderStages::VERTEX_FRAGMENT, wgpu::BufferBindingType::Uniform),
+                texture,
+                sampler(8),
+                sampler(9),
+            ],
+        },
+    )
 }
 
 fn material_uniform(scene: &GpuScene, geometry: &Geometry) -> MaterialUniform {

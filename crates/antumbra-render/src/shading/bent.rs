@@ -107,7 +107,7 @@ fn draw_groups<'s>(
     light: &LightBuffers,
     no_faces: &wgpu::Buffer,
 ) -> Vec<(&'s Draw, wgpu::BindGroup, wgpu::BindGroup)> {
-    let uniform = uniform_buffer(gpu.device(), "bent: light", bytemuck::bytes_of(&light.uniform));
+    let uniform = uniform_buffer(gpu.device(), "bent: light", light.uniform_bytes());
     let groups = scene.draws.iter().map(|draw| {
         let faces = scene.geometries[draw.geometry].faces.as_ref().unwrap_or(no_faces);
         let buffers = [uniform.as_entire_binding(), light.points.as_entire_binding(), faces.as_entire_binding()];

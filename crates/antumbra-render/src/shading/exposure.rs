@@ -16,7 +16,7 @@ use std::f32::consts::PI;
 use antumbra_light::{Light, LightShape, SampleSet};
 use glam::Vec3;
 
-use super::{ELLIPSOID, MIN_HALF_WIDTH_M, POINTS, RECTANGLE, SPHERE, SUN, kind_and_half_size};
+use super::light_buffers::{ELLIPSOID, MIN_HALF_WIDTH_M, POINTS, RECTANGLE, SPHERE, SUN, kind_and_half_size};
 
 /// Largest number of visible points that determine the exposure.
 const EXPOSURE_POINTS: usize = 2048;

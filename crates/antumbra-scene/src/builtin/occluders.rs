@@ -83,31 +83,8 @@ pub(super) fn lantern_wall(arguments: &Arguments) -> Scene {
 
     let iron = stage.material("iron", palette::IRON * 1.5, 0.45);
     let hook = Vec3::new(0.62, 2.62, 0.34);
-    let mut lantern = MeshBuilder::new();
-    lantern.box_between(Vec3::new(hook.x - 0.06, 2.25, -SUNK_M), Vec3::new(hook.x + 0.06, 2.85, 0.025));
-    let bracket: Vec<Vec3> = (0..=16)
-        .map(|i| {
-            let t = i as f32 / 16.0;
-            Vec3::new(hook.x, 2.32 + 0.36 * (t * 0.25 * TAU).sin(), 0.015 + (hook.z + 0.06) * t)
-        })
-        .collect();
-    lantern.tube(&bracket, 8, |_| 0.016);
-    lantern.box_between(Vec3::new(hook.x - 0.015, 2.61, 0.0), Vec3::new(hook.x + 0.015, 2.64, hook.z + 0.1));
-    lantern.cylinder(hook - Vec3::Y * 0.16, hook + Vec3::Y * 0.01, 0.012, 8);
-    // Cap, cage and foot, from the hook down; radii in metres.
-    let (foot, eaves) = (hook - Vec3::Y * 0.68, hook - Vec3::Y * 0.3);
-    let cap = [(0.0, 0.0), (0.2, 0.0), (0.2, 0.03), (0.11, 0.09), (0.06, 0.15), (0.03, 0.2), (0.0, 0.2)];
-    lantern.lathe(eaves, Vec3::Y, &cap.map(Vec2::from), 24);
-    let base = [(0.0, -0.06), (0.03, -0.06), (0.05, -0.02), (0.15, 0.0), (0.15, 0.03), (0.0, 0.03)];
-    lantern.lathe(foot, Vec3::Y, &base.map(Vec2::from), 24);
-    for i in 0..6 {
-        let spoke = Vec2::from_angle(TAU * (i as f32 + 0.25) / 6.0);
-        let outward = Vec3::new(spoke.x, 0.0, spoke.y);
-        lantern.beam(foot + outward * 0.135, eaves + outward * 0.165 + Vec3::Y * 0.01, 0.024, 0.024, outward);
-    }
-    let ring = |r: f32, y: f32| [(r - 0.012, y), (r + 0.012, y), (r + 0.012, y + 0.024), (r - 0.012, y + 0.024)];
-    lantern.lathe_ring(foot, Vec3::Y, &ring(0.152, 0.2).map(Vec2::from), 24);
-    stage.add("lantern", iron, lantern);
+    let foot = hook - Vec3::Y * 0.68;
+    stage.add("lantern", iron, lantern(hook, foot));
 
     let wax = stage.material("candle", Vec3::new(0.78, 0.70, 0.52), 0.6);
     let mut candle = MeshBuilder::new();
@@ -129,6 +106,35 @@ pub(super) fn lantern_wall(arguments: &Arguments) -> Scene {
     stage.camera(Vec3::new(1.9, 1.9, 4.7), Vec3::new(0.05, 1.72, 0.2), 40.0);
     stage.square_light(0.5, Vec3::new(-2.4, 3.6, 4.6), Vec3::new(-0.35, 1.1, 0.6));
     stage.scene
+}
+
+/// A lantern with its bracket on the wall, which hangs from `hook` down to `foot`.
+fn lantern(hook: Vec3, foot: Vec3) -> MeshBuilder {
+    let mut lantern = MeshBuilder::new();
+    lantern.box_between(Vec3::new(hook.x - 0.06, 2.25, -SUNK_M), Vec3::new(hook.x + 0.06, 2.85, 0.025));
+    let bracket: Vec<Vec3> = (0..=16)
+        .map(|i| {
+            let t = i as f32 / 16.0;
+            Vec3::new(hook.x, 2.32 + 0.36 * (t * 0.25 * TAU).sin(), 0.015 + (hook.z + 0.06) * t)
+        })
+        .collect();
+    lantern.tube(&bracket, 8, |_| 0.016);
+    lantern.box_between(Vec3::new(hook.x - 0.015, 2.61, 0.0), Vec3::new(hook.x + 0.015, 2.64, hook.z + 0.1));
+    lantern.cylinder(hook - Vec3::Y * 0.16, hook + Vec3::Y * 0.01, 0.012, 8);
+    // Cap, cage and foot, from the hook down; radii in metres.
+    let eaves = hook - Vec3::Y * 0.3;
+    let cap = [(0.0, 0.0), (0.2, 0.0), (0.2, 0.03), (0.11, 0.09), (0.06, 0.15), (0.03, 0.2), (0.0, 0.2)];
+    lantern.lathe(eaves, Vec3::Y, &cap.map(Vec2::from), 24);
+    let base = [(0.0, -0.06), (0.03, -0.06), (0.05, -0.02), (0.15, 0.0), (0.15, 0.03), (0.0, 0.03)];
+    lantern.lathe(foot, Vec3::Y, &base.map(Vec2::from), 24);
+    for i in 0..6 {
+        let spoke = Vec2::from_angle(TAU * (i as f32 + 0.25) / 6.0);
+        let outward = Vec3::new(spoke.x, 0.0, spoke.y);
+        lantern.beam(foot + outward * 0.135, eaves + outward * 0.165 + Vec3::Y * 0.01, 0.024, 0.024, outward);
+    }
+    let ring = |r: f32, y: f32| [(r - 0.012, y), (r + 0.012, y), (r + 0.012, y + 0.024), (r - 0.012, y + 0.024)];
+    lantern.lathe_ring(foot, Vec3::Y, &ring(0.152, 0.2).map(Vec2::from), 24);
+    lantern
 }
 
 /// A plank that leans against a low wall; the light behind the wall casts its shadow towards the camera.

@@ -13,20 +13,43 @@ use super::shapes::MeshBuilder;
 use super::stage::{Stage, palette, shade};
 use crate::Scene;
 
-/// A blade is three pairs of points and a tip: five triangles.
+/// Sides of the lawn, metres.
+const LAWN_M: Vec2 = Vec2::new(5.6, 4.6);
+
 pub(super) fn ring_in_grass(arguments: &Arguments) -> Scene {
     const TRIANGLES: usize = 379_000;
     const TRIANGLES_PER_BLADE: usize = 5;
-    const LAWN_M: Vec2 = Vec2::new(5.6, 4.6);
     let mut stage = Stage::new(arguments.scene);
     stage.ground(Vec2::ZERO, LAWN_M, palette::BARK * 1.4);
 
     let gold = stage.metal("ring", Vec3::new(0.80, 0.52, 0.17), 0.3);
-    let mut ring = MeshBuilder::new();
+    stage.add("ring", gold, ring());
+
+    let grass = stage.push_material(crate::Material {
+        name: "grass".into(),
+        base_color: palette::GRASS.extend(1.0),
+        roughness: 0.7,
+        double_sided: true,
+        ..crate::Material::default()
+    });
+    let count = (TRIANGLES - stage.triangle_count()) / TRIANGLES_PER_BLADE;
+    stage.add("grass", grass, lawn(count));
+
+    stage.camera(Vec3::new(1.5, 2.5, 4.2), Vec3::new(0.15, 0.68, 0.1), 38.0);
+    stage.light(
+        antumbra_light::LightShape::Sphere { radius_m: 0.35 },
+        Vec3::new(-2.2, 4.9, -1.4),
+        Vec3::new(0.1, 0.3, 0.2),
+    );
+    stage.scene
+}
+
+/// A band with a rounded section and a cord of knots along its middle, about +z.
+fn ring() -> MeshBuilder {
     const RING_RADIUS_M: f32 = 0.95;
     const COLUMNS: u32 = 192;
     const ROWS: u32 = 48;
-    // A band with a rounded section and a cord of knots along its middle, about +z.
+    let mut ring = MeshBuilder::new();
     ring.place(Affine3A::from_rotation_translation(
         Quat::from_rotation_y(0.55) * Quat::from_rotation_x(-0.16),
         Vec3::new(-0.15, 0.94, -0.1),
@@ -40,18 +63,13 @@ pub(super) fn ring_in_grass(arguments: &Arguments) -> Scene {
         let radius = RING_RADIUS_M + section_r;
         Vec3::new(radius * cos, radius * sin, section_z)
     });
-    stage.add("ring", gold, ring);
+    ring
+}
 
-    let grass = stage.push_material(crate::Material {
-        name: "grass".into(),
-        base_color: palette::GRASS.extend(1.0),
-        roughness: 0.7,
-        double_sided: true,
-        ..crate::Material::default()
-    });
+/// Blades of grass. A blade is three pairs of points and a tip: five triangles.
+fn lawn(count: usize) -> MeshBuilder {
     let mut blades = MeshBuilder::new();
     let mut random = Random::new(379);
-    let count = (TRIANGLES - stage.triangle_count()) / TRIANGLES_PER_BLADE;
     for _ in 0..count {
         let half = 0.5 * LAWN_M - 0.06;
         let base = Vec3::new(random.around_zero(half.x), -0.01, random.around_zero(half.y));
@@ -72,13 +90,5 @@ pub(super) fn ring_in_grass(arguments: &Arguments) -> Scene {
         blades.tint(shade(random.unit(), 0.3) * (1.0 + 0.25 * tuft) * hue);
         blades.blade_sheet(&pairs, at(1.0), normal);
     }
-    stage.add("grass", grass, blades);
-
-    stage.camera(Vec3::new(1.5, 2.5, 4.2), Vec3::new(0.15, 0.68, 0.1), 38.0);
-    stage.light(
-        antumbra_light::LightShape::Sphere { radius_m: 0.35 },
-        Vec3::new(-2.2, 4.9, -1.4),
-        Vec3::new(0.1, 0.3, 0.2),
-    );
-    stage.scene
+    blades
 }

@@ -13,14 +13,9 @@ use super::shapes::MeshBuilder;
 use super::stage::{Stage, palette, shade};
 use crate::Scene;
 
-/// A rectangular shed: the middle of its floor, size (width, height at the eaves, depth) and turn about +y.
-struct Shed {
-    floor: Vec3,
-    size_m: Vec3,
-    turn_rad: f32,
-    /// Rise of the roof from its back to its front, metres.
-    roof_rise_m: f32,
-}
+mod sheds;
+
+use sheds::{Shed, add_shed};
 
 /// Mesh builders, one per material.
 #[derive(Default)]
@@ -182,94 +177,6 @@ fn add_loose_planks(planks: &mut MeshBuilder, random: &mut Random, count: usize)
         };
         planks.beam(start, end, random.range(0.07, 0.14), 0.028, Vec3::new(0.05, 1.0, 0.1));
     }
-}
-
-/// Walls of upright planks with gaps, a door, and a lean-to roof of corrugated sheets on rafters.
-fn add_shed(parts: &mut Parts, random: &mut Random, shed: &Shed) {
-    const PLANK_M: f32 = 0.14;
-    let turn = Quat::from_rotation_y(shed.turn_rad);
-    let at = |x: f32, y: f32, z: f32| shed.floor + turn * Vec3::new(x, y, z);
-    let (half_x, half_z) = (0.5 * shed.size_m.x, 0.5 * shed.size_m.z);
-    let eaves = |z: f32| shed.size_m.y + shed.roof_rise_m * (z + half_z) / (2.0 * half_z);
-    for wall in 0..4 {
-        let along_x = wall % 2 == 0;
-        let side = if wall < 2 { 1.0 } else { -1.0 };
-        let half = if along_x { half_x } else { half_z };
-        let count = (2.0 * half / PLANK_M) as i32;
-        for i in 0..count {
-            let s = -half + (i as f32 + 0.5) * 2.0 * half / count as f32;
-            let is_door = wall == 0 && (s + 0.1).abs() < 0.36;
-            if is_door || random.unit() < 0.06 {
-                continue;
-            }
-            let (x, z) = if along_x { (s, side * half_z) } else { (side * half_x, s) };
-            let foot = at(x, -random.range(0.005, 0.02), z);
-            let head =
-                at(x + random.around_zero(0.025), eaves(z) - random.range(0.0, 0.14), z + random.around_zero(0.025));
-            parts.planks.tint(shade(random.unit(), 0.4));
-            let thickness = turn * if along_x { Vec3::Z } else { Vec3::X };
-            parts.planks.beam(foot, head, PLANK_M * random.range(0.8, 0.98), 0.025, thickness);
-        }
-        for y in [0.35, 0.8 * shed.size_m.y] {
-            let inset = 0.03;
-            let [a, b] = [-1.0, 1.0].map(|end| {
-                let (x, z) = if along_x {
-                    (end * half_x * 0.98, side * (half_z - inset))
-                } else {
-                    (side * (half_x - inset), end * half_z * 0.98)
-                };
-                at(x, y + 0.01 * wall as f32, z)
-            });
-            parts.planks.tint(shade(0.3, 0.3));
-            parts.planks.beam(a, b, 0.04, 0.08, Vec3::Y);
-        }
-    }
-    // Rafters, then sheets that overlap: waves run down the slope.
-    let overhang = 0.18;
-    for i in 0..4 {
-        let x = -half_x + 0.05 + (2.0 * half_x - 0.1) * i as f32 / 3.0;
-        parts.planks.tint(shade(random.unit(), 0.3));
-        parts.planks.beam(
-            at(x, eaves(-half_z - overhang) + 0.02, -half_z - overhang),
-            at(x, eaves(half_z + overhang) + 0.02, half_z + overhang),
-            0.05,
-            0.07,
-            Vec3::Y,
-        );
-    }
-    let sheets = 3;
-    let sheet_width = (2.0 * half_x + 2.0 * overhang) / sheets as f32 + 0.12;
-    let slope = (shed.roof_rise_m / (2.0 * half_z)).atan();
-    for sheet in 0..sheets {
-        let x = -half_x - overhang + (2.0 * half_x + 2.0 * overhang - sheet_width) * sheet as f32 / (sheets - 1) as f32;
-        let slide = random.around_zero(0.08);
-        let lift = 0.075 + 0.022 * (sheet % 2) as f32 + 0.004 * sheet as f32;
-        let start = at(x, eaves(-half_z - overhang) + lift, -half_z - overhang + slide);
-        let length = (2.0 * half_z + 2.0 * overhang) / slope.cos() * random.range(0.94, 1.05);
-        // Sheet space: x across the waves, y up, z down the length.
-        let part = Affine3A::from_rotation_translation(
-            turn * Quat::from_rotation_y(random.around_zero(0.03)) * Quat::from_rotation_x(-slope),
-            start,
-        );
-        parts.iron.tint(shade(random.unit(), 0.35));
-        add_corrugated(&mut parts.iron, part, sheet_width, length);
-    }
-}
-
-/// A sheet of waves of 9 cm, 2.2 cm high and 8 mm thick.
-fn add_corrugated(mesh: &mut MeshBuilder, part: Affine3A, width_m: f32, length_m: f32) {
-    const WAVE_M: f32 = 0.09;
-    const POINTS_PER_WAVE: f32 = 6.0;
-    const AMPLITUDE_M: f32 = 0.011;
-    const THICKNESS_M: f32 = 0.008;
-    let points = (width_m / WAVE_M * POINTS_PER_WAVE).round() as usize + 1;
-    let wave = |k: usize| {
-        let x = width_m * k as f32 / (points - 1) as f32;
-        Vec2::new(x, AMPLITUDE_M * (TAU * x / WAVE_M + 0.4).sin())
-    };
-    let lower: Vec<Vec2> = (0..points).map(wave).collect();
-    let upper: Vec<Vec2> = lower.iter().map(|p| *p + Vec2::Y * THICKNESS_M).collect();
-    mesh.strip_prism(part, &lower, &upper, length_m);
 }
 
 /// A round tank on four braced legs.

@@ -2,6 +2,9 @@
 //!
 //! Source: glTF 2.0, section 3.6.2, and KHR_mesh_quantization.
 
+use std::ops::Range;
+
+use gltf::json::Accessor;
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
 
@@ -59,6 +62,17 @@ struct Layout<'s> {
     component: ComponentType,
     normalized: bool,
     place: String,
+}
+
+/// Returns the range of an accessor's elements in its view, bytes; `None` if its end is no number. The last element needs only its own
+/// bytes, not a whole stride (section 3.6.2.4).
+fn range_of(accessor: &Accessor, size: usize, stride: usize) -> Option<Range<u64>> {
+    let begin = accessor.byte_offset.map_or(0, |offset| offset.0);
+    let length = match accessor.count.0.checked_sub(1) {
+        Some(last) => last.checked_mul(stride as u64)?.checked_add(size as u64)?,
+        None => 0,
+    };
+    Some(begin..length.checked_add(begin)?)
 }
 
 impl Source<'_> {
@@ -172,46 +186,30 @@ impl Source<'_> {
                 "`count`, `byteOffset` and the stride must not exceed the buffer view",
             )
         };
-        let offset = accessor.byte_offset.map_or(0, |o| o.0);
-        let mut layout = Layout {
-            bytes: None,
-            stride: size,
-            count: 0,
-            component,
-            normalized: accessor.normalized,
-            place: own.clone(),
-        };
-        match accessor.buffer_view {
+        let (bytes, stride) = match accessor.buffer_view {
             Some(view) => {
                 let view = self.view(view.value())?;
-                layout.stride = view.stride.unwrap_or(size);
-                if layout.stride < size {
+                let stride = view.stride.unwrap_or(size);
+                if stride < size {
                     return Err(Fault::new(
                         own,
-                        format!("elements of {size} bytes in a view of stride {}", layout.stride),
+                        format!("elements of {size} bytes in a view of stride {stride}"),
                         "the stride must be at least the size of an element",
                     ));
                 }
-                // The last element needs only its own bytes, not a whole stride (section 3.6.2.4).
-                let end = accessor
-                    .count
-                    .0
-                    .checked_sub(1)
-                    .map_or(Some(0), |last| last.checked_mul(layout.stride as u64)?.checked_add(size as u64))
-                    .and_then(|length| length.checked_add(offset))
-                    .filter(|end| *end <= view.bytes.len() as u64)
-                    .ok_or_else(|| too_many(view.bytes.len()))?;
-                layout.count = accessor.count.0 as usize;
-                layout.bytes = Some(view.bytes.get(offset as usize..end as usize).unwrap_or_default());
+                let range = range_of(accessor, size, stride).filter(|range| range.end <= view.bytes.len() as u64);
+                let range = range.ok_or_else(|| too_many(view.bytes.len()))?;
+                (Some(view.bytes.get(range.start as usize..range.end as usize).unwrap_or_default()), stride)
             }
             None => {
                 let count = usize::try_from(accessor.count.0).map_err(|_| too_many(0))?;
                 self.budget.take_zero_elements(count, &own)?;
-                layout.count = count;
+                (None, size)
             }
-        }
-        self.budget.take_elements(layout.count, place)?;
-        Ok(layout)
+        };
+        let count = accessor.count.0 as usize;
+        self.budget.take_elements(count, place)?;
+        Ok(Layout { bytes, stride, count, component, normalized: accessor.normalized, place: own })
     }
 
     fn apply_sparse(

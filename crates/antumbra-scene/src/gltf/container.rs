@@ -38,17 +38,11 @@ pub(super) fn split(bytes: &[u8]) -> Result<Container<'_>> {
 }
 
 fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
-    let truncated =
-        |at: usize, what: &str| Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), TRUNCATED);
-    let u32_at = |at: usize, what: &str| match bytes.get(at..at + 4) {
-        Some(&[a, b, c, d]) => Ok(u32::from_le_bytes([a, b, c, d])),
-        _ => Err(truncated(bytes.len(), what)),
-    };
-    let version = u32_at(4, "the header")?;
+    let version = u32_at(bytes, 4, "the header")?;
     if version != 2 {
         return Err(Fault::new("byte 4", format!("container version {version}"), "only version 2 is supported"));
     }
-    let length = u32_at(8, "the header")? as usize;
+    let length = u32_at(bytes, 8, "the header")? as usize;
     let Some(bytes) = bytes.get(..length) else {
         return Err(Fault::new(
             "byte 8",
@@ -56,30 +50,7 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
             TRUNCATED,
         ));
     };
-    let chunk_at = |at: usize, what: &str| -> Result<(u32, &[u8])> {
-        let (chunk_bytes, kind) = (u32_at(at, what)? as usize, u32_at(at + 4, what)?);
-        let start = at + CHUNK_HEADER_BYTES;
-        if start > bytes.len() {
-            return Err(truncated(bytes.len(), what));
-        }
-        if !chunk_bytes.is_multiple_of(4) {
-            return Err(Fault::new(
-                format!("byte {at}"),
-                format!("a chunk of {chunk_bytes} bytes"),
-                "chunk lengths must be multiples of 4",
-            ));
-        }
-        match bytes[start..].get(..chunk_bytes) {
-            Some(data) => Ok((kind, data)),
-            None => Err(Fault::new(
-                format!("byte {at}"),
-                format!("a chunk states {chunk_bytes} bytes, but only {} remain", bytes.len() - start),
-                TRUNCATED,
-            )),
-        }
-    };
-
-    let (kind, json) = chunk_at(HEADER_BYTES, "the header of the JSON chunk")?;
+    let (kind, json) = chunk_at(bytes, HEADER_BYTES, "the header of the JSON chunk")?;
     if kind != CHUNK_JSON {
         return Err(Fault::new("byte 16", "the first chunk is not JSON", "the first chunk must have type `JSON`"));
     }
@@ -88,7 +59,7 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
     let mut at = HEADER_BYTES + CHUNK_HEADER_BYTES + json.len();
     let mut second = true;
     while at < bytes.len() {
-        let (kind, data) = chunk_at(at, "a chunk header")?;
+        let (kind, data) = chunk_at(bytes, at, "a chunk header")?;
         match kind {
             CHUNK_BIN if second => bin = Some(data),
             CHUNK_BIN | CHUNK_JSON => {
@@ -104,4 +75,39 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
         at += CHUNK_HEADER_BYTES + data.len();
     }
     Ok(Container { json, bin })
+}
+
+/// Returns kind and data of the chunk that begins at a byte; `what` is its header.
+fn chunk_at<'b>(bytes: &'b [u8], at: usize, what: &str) -> Result<(u32, &'b [u8])> {
+    let (chunk_bytes, kind) = (u32_at(bytes, at, what)? as usize, u32_at(bytes, at + 4, what)?);
+    let start = at + CHUNK_HEADER_BYTES;
+    if start > bytes.len() {
+        return Err(truncated(bytes.len(), what));
+    }
+    if !chunk_bytes.is_multiple_of(4) {
+        return Err(Fault::new(
+            format!("byte {at}"),
+            format!("a chunk of {chunk_bytes} bytes"),
+            "chunk lengths must be multiples of 4",
+        ));
+    }
+    match bytes[start..].get(..chunk_bytes) {
+        Some(data) => Ok((kind, data)),
+        None => Err(Fault::new(
+            format!("byte {at}"),
+            format!("a chunk states {chunk_bytes} bytes, but only {} remain", bytes.len() - start),
+            TRUNCATED,
+        )),
+    }
+}
+
+fn u32_at(bytes: &[u8], at: usize, what: &str) -> Result<u32> {
+    match bytes.get(at..at + 4) {
+        Some(&[a, b, c, d]) => Ok(u32::from_le_bytes([a, b, c, d])),
+        _ => Err(truncated(bytes.len(), what)),
+    }
+}
+
+fn truncated(at: usize, what: &str) -> Fault {
+    Fault::new(format!("byte {at}"), format!("the file ends inside {what}"), TRUNCATED)
 }

@@ -227,31 +227,43 @@ struct Loader<'s, 'a> {
 
 impl Loader<'_, '_> {
     fn node(&mut self, index: usize, world_from_node: Mat4) -> Result<()> {
-        let source = self.source;
-        let node = &source.root.nodes[index];
-        let limits = &source.budget.limits;
-        let full = |have: usize, what: &str| {
-            let full = have >= limits.cameras_and_lights;
-            if full {
-                source.warn(format!("{what}: only the first {} are used", limits.cameras_and_lights));
-            }
-            full
-        };
-        if let Some(camera) = node.camera
-            && !full(self.placement.scene.cameras.len(), "cameras")
-        {
-            self.placement.scene.cameras.extend(cameras::read(source, camera.value(), world_from_node)?);
-        }
+        self.camera(index, world_from_node)?;
         // A camera is used even if its node is invisible.
         if !self.graph.is_visible[index] {
             return Ok(());
         }
+        self.light(index, world_from_node)?;
+        self.primitives(index, world_from_node)
+    }
+
+    /// Adds the node's camera, if it has one.
+    fn camera(&mut self, index: usize, world_from_node: Mat4) -> Result<()> {
+        let source = self.source;
+        if let Some(camera) = source.root.nodes[index].camera
+            && !source.is_full(self.placement.scene.cameras.len(), "cameras")
+        {
+            self.placement.scene.cameras.extend(cameras::read(source, camera.value(), world_from_node)?);
+        }
+        Ok(())
+    }
+
+    /// Adds the node's light, if it has one.
+    fn light(&mut self, index: usize, world_from_node: Mat4) -> Result<()> {
+        let source = self.source;
+        let node = &source.root.nodes[index];
         if let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref())
-            && !full(self.lights.len(), "lights")
+            && !source.is_full(self.lights.len(), "lights")
         {
             let found = lights::read(source, light.light.value(), world_from_node, extras::of(&node.extras))?;
             self.lights.extend(found);
         }
+        Ok(())
+    }
+
+    /// Places the primitives of the node's mesh, if it has one: once, or once per instance of the node.
+    fn primitives(&mut self, index: usize, world_from_node: Mat4) -> Result<()> {
+        let source = self.source;
+        let node = &source.root.nodes[index];
         let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else { return Ok(()) };
         let Some(json) = source.root.meshes.get(mesh) else {
             let place = format!("nodes[{index}].mesh");

@@ -63,18 +63,7 @@ pub(super) fn read(source: &Source, primitive: &Primitive, wanted: Wanted, place
         geometry.influences = influences(source, primitive, count, place)?;
     }
     if wanted.targets {
-        for (k, target) in primitive.targets.iter().flatten().enumerate() {
-            let place = format!("{place}.targets[{k}]");
-            source.budget.take_vertices(count, &place)?;
-            let displacements = |accessor: Option<gltf::json::Index<gltf::json::Accessor>>| match accessor {
-                Some(index) => vec3s(source, index.value(), count, &place),
-                None => Ok(Vec::new()),
-            };
-            geometry.targets.push(MorphTarget {
-                positions: displacements(target.positions)?,
-                normals: displacements(target.normals)?,
-            });
-        }
+        geometry.targets = targets(source, primitive, count, place)?;
     }
 
     geometry.compact();
@@ -92,6 +81,21 @@ pub(super) fn read(source: &Source, primitive: &Primitive, wanted: Wanted, place
         return Ok(None);
     }
     Ok(Some(geometry))
+}
+
+fn targets(source: &Source, primitive: &Primitive, count: usize, place: &str) -> Result<Vec<MorphTarget>> {
+    let mut targets = Vec::new();
+    for (k, target) in primitive.targets.iter().flatten().enumerate() {
+        let place = format!("{place}.targets[{k}]");
+        source.budget.take_vertices(count, &place)?;
+        let displacements = |accessor: Option<gltf::json::Index<gltf::json::Accessor>>| match accessor {
+            Some(index) => vec3s(source, index.value(), count, &place),
+            None => Ok(Vec::new()),
+        };
+        targets
+            .push(MorphTarget { positions: displacements(target.positions)?, normals: displacements(target.normals)? });
+    }
+    Ok(targets)
 }
 
 /// Refuses attribute lists of different lengths, which are invalid.

@@ -56,6 +56,15 @@ impl<'a> Source<'a> {
         })
     }
 
+    /// Whether `have` cameras or lights are as many as the limit allows; warns that further ones are left out.
+    pub(super) fn is_full(&self, have: usize, what: &str) -> bool {
+        let most = self.budget.limits.cameras_and_lights;
+        if have >= most {
+            self.warn(format!("{what}: only the first {most} are used"));
+        }
+        have >= most
+    }
+
     /// Adds a warning about something left out or repaired; each line once.
     pub(super) fn warn(&self, line: String) {
         /// Largest number of warnings, so that the list stays readable even for a file in which everything is wrong.

@@ -108,17 +108,7 @@ fn drag(ui: &egui::Ui, state: &mut State, response: &egui::Response, rect: egui:
     }
     if response.drag_started() {
         let from = ui.input(|input| input.pointer.press_origin()).unwrap_or(rect.center());
-        let light = place_of(&state.setup.camera, handle_of(state), rect);
-        let hold = if state.is_split && (from.x - divider_x(state, rect)).abs() < REACH {
-            DragTarget::Divider
-        } else if light.is_some_and(|place| place.distance(from) < 1.5 * REACH) {
-            DragTarget::Light
-        } else if let Some(handle) = beam_at(state, from, rect) {
-            DragTarget::Beam(handle)
-        } else {
-            DragTarget::Camera
-        };
-        ui.data_mut(|data| data.insert_temp(hold_id, hold));
+        ui.data_mut(|data| data.insert_temp(hold_id, hold_at(state, from, rect)));
     }
     // At low frame rates the last movement arrives together with the release.
     if !response.dragged() && !response.drag_stopped() {
@@ -130,35 +120,56 @@ fn drag(ui: &egui::Ui, state: &mut State, response: &egui::Response, rect: egui:
     if by == Vec2::ZERO {
         return;
     }
-    if hold == Some(DragTarget::Divider) {
-        if let Some(pointer) = response.interact_pointer_pos() {
-            state.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+    match hold {
+        Some(DragTarget::Divider) => {
+            if let Some(pointer) = response.interact_pointer_pos() {
+                state.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+            }
         }
-    } else if let Some(DragTarget::Beam(handle)) = hold {
-        let (camera, diagonal_m) = (state.setup.camera, diagonal_of(state));
-        if let Some(pointer) = response.interact_pointer_pos() {
+        Some(DragTarget::Beam(handle)) => {
+            let (camera, diagonal_m) = (state.setup.camera, diagonal_of(state));
+            if let Some(pointer) = response.interact_pointer_pos() {
+                let light = &mut state.setup.lights[state.light];
+                handle.drag(light, &camera, diagonal_m, pointer, |x| place_of(&camera, x, rect));
+            }
+        }
+        Some(DragTarget::Light) => {
+            let camera = state.setup.camera;
             let light = &mut state.setup.lights[state.light];
-            handle.drag(light, &camera, diagonal_m, pointer, |x| place_of(&camera, x, rect));
+            if light.is_distant() {
+                turn_sun(light, &camera, by);
+            } else {
+                drag_light(light, &camera, by);
+            }
         }
-    } else if hold == Some(DragTarget::Light) {
-        let camera = state.setup.camera;
-        let light = &mut state.setup.lights[state.light];
-        if light.is_distant() {
-            turn_sun(light, &camera, by);
-        } else {
-            drag_light(light, &camera, by);
-        }
+        Some(DragTarget::Camera) | None => drag_camera(ui, &mut state.setup.camera, response, by),
+    }
+}
+
+/// Returns the object at the pointer that a drag moves.
+fn hold_at(state: &State, pointer: egui::Pos2, rect: egui::Rect) -> DragTarget {
+    let light = place_of(&state.setup.camera, handle_of(state), rect);
+    if state.is_split && (pointer.x - divider_x(state, rect)).abs() < REACH {
+        DragTarget::Divider
+    } else if light.is_some_and(|place| place.distance(pointer) < 1.5 * REACH) {
+        DragTarget::Light
+    } else if let Some(handle) = beam_at(state, pointer, rect) {
+        DragTarget::Beam(handle)
     } else {
-        let is_panning = ui.input(|input| input.modifiers.shift) || !response.dragged_by(egui::PointerButton::Primary);
-        let is_looking = ui.input(|input| input.modifiers.ctrl);
-        let camera = &mut state.setup.camera;
-        if is_panning {
-            camera::pan(camera, by);
-        } else if is_looking {
-            camera::look(camera, -TURN_RAD * by.x, -TURN_RAD * by.y);
-        } else {
-            camera::orbit(camera, -TURN_RAD * by.x, -TURN_RAD * by.y);
-        }
+        DragTarget::Camera
+    }
+}
+
+/// Pans, turns or orbits the camera, by the button and keys that are held.
+fn drag_camera(ui: &egui::Ui, camera: &mut Camera, response: &egui::Response, by: Vec2) {
+    let is_panning = ui.input(|input| input.modifiers.shift) || !response.dragged_by(egui::PointerButton::Primary);
+    let is_looking = ui.input(|input| input.modifiers.ctrl);
+    if is_panning {
+        camera::pan(camera, by);
+    } else if is_looking {
+        camera::look(camera, -TURN_RAD * by.x, -TURN_RAD * by.y);
+    } else {
+        camera::orbit(camera, -TURN_RAD * by.x, -TURN_RAD * by.y);
     }
 }
 

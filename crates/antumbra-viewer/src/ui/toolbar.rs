@@ -38,33 +38,7 @@ pub fn show(
             }
         }
         ui.separator();
-        for show in Show::ALL {
-            ui.selectable_value(&mut state.show, show, show.name()).on_hover_text(match show {
-                Show::Shaded => "The scene with all lights",
-                Show::Visibility => "Visibility of the selected light: white is lit, black is umbra",
-                Show::Error => "Visibility minus ray-traced visibility: red is too bright, blue is too dark",
-                Show::Truth => "Ray-traced visibility, refined while nothing moves",
-                Show::LightMap => "Shadow maps of the selected light: bright is near the light",
-                Show::Lists => "Lengths of the lists of the selected light: yellow is longest",
-            });
-        }
-        let of_lists = "Level of the lists: 1 is the finest; each further level is merged from a finer one";
-        let of_map = "Level of the map: 1 is the map itself; the others are derived from it, the finest first";
-        one_of(
-            ui,
-            "level",
-            choices.levels,
-            &mut state.level,
-            if state.show == Show::Lists { of_lists } else { of_map },
-        );
-        one_of(
-            ui,
-            "layer",
-            choices.layers,
-            &mut state.layer,
-            "Depth layer of casters: 1 is the nearest to the light; the others are behind it",
-        );
-        one_of(ui, "map", choices.points, &mut state.layer, "Map of one light sample, of the last batch");
+        what(ui, state, choices);
         ui.separator();
         ui.toggle_value(&mut state.is_split, "Compare")
             .on_hover_text("Show two techniques with a divider between them. Drag it to move it");
@@ -85,6 +59,30 @@ pub fn show(
         }
     });
     actions
+}
+
+/// Shows the selectors of what the picture shows, and of which map, level and layer.
+fn what(ui: &mut egui::Ui, state: &mut State, choices: MapChoices) {
+    for show in Show::ALL {
+        ui.selectable_value(&mut state.show, show, show.name()).on_hover_text(match show {
+            Show::Shaded => "The scene with all lights",
+            Show::Visibility => "Visibility of the selected light: white is lit, black is umbra",
+            Show::Error => "Visibility minus ray-traced visibility: red is too bright, blue is too dark",
+            Show::Truth => "Ray-traced visibility, refined while nothing moves",
+            Show::LightMap => "Shadow maps of the selected light: bright is near the light",
+            Show::Lists => "Lengths of the lists of the selected light: yellow is longest",
+        });
+    }
+    let of_levels = if state.show == Show::Lists {
+        "Level of the lists: 1 is the finest; each further level is merged from a finer one"
+    } else {
+        "Level of the map: 1 is the map itself; the others are derived from it, the finest first"
+    };
+    let of_layers = "Depth layer of casters: 1 is the nearest to the light; the others are behind it";
+    let of_points = "Map of one light sample, of the last batch";
+    one_of(ui, "level", choices.levels, &mut state.level, of_levels);
+    one_of(ui, "layer", choices.layers, &mut state.layer, of_layers);
+    one_of(ui, "map", choices.points, &mut state.layer, of_points);
 }
 
 /// Shows a selector for one of `count` items, numbered from 1; nothing if there is no choice.

@@ -26,6 +26,22 @@ impl PreparedCasters<'_> {
     }
 }
 
+#[cfg(any(feature = "light_views", feature = "multi_layer", feature = "ray_traced", feature = "receiver_lists"))]
+impl<'a> PreparedCasters<'a> {
+    /// Returns the meshes, or an error that says why `technique` cannot use a depth map.
+    pub(crate) fn meshes(&self, technique: &'static str, why: &str) -> Result<&'a [MeshCaster<'a>], super::Error> {
+        match *self {
+            Self::Draws(meshes) => Ok(meshes),
+            Self::HostDepthMap(_) => Err(super::Error::BadFrame {
+                technique,
+                what: "the kind of casters",
+                had: "`Casters::DepthMap`".into(),
+                needed: format!("meshes, because {why}"),
+            }),
+        }
+    }
+}
+
 impl<'a> MeshCaster<'a> {
     /// One instance of `index_count / 3` triangles: opaque, not closed, its bounds unknown. `with_` and a field's name set the rest.
     pub fn new(

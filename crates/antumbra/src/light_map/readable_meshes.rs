@@ -1,6 +1,6 @@
 //! Check that compute shaders can read the casters' triangles.
 
-use crate::contract::{Error, MeshCaster, PreparedCasters, PreparedFrame};
+use crate::contract::{Error, MeshCaster, PreparedFrame};
 
 /// Returns the casters' meshes if compute shaders can read them, else an error with the remedy; `or` names an alternative.
 pub(crate) fn readable_meshes<'a>(
@@ -9,14 +9,7 @@ pub(crate) fn readable_meshes<'a>(
     or: Option<&'static str>,
 ) -> Result<&'a [MeshCaster<'a>], Error> {
     let or = or.map_or(String::new(), |or| format!(", or {or}"));
-    let PreparedCasters::Draws(meshes) = frame.casters else {
-        return Err(Error::BadFrame {
-            technique,
-            what: "the kind of casters",
-            had: "`Casters::DepthMap`".into(),
-            needed: format!("meshes, because each triangle is tested{or}"),
-        });
-    };
+    let meshes = frame.casters.meshes(technique, &format!("each triangle is tested{or}"))?;
     for mesh in meshes {
         let mut buffers = vec![("positions", mesh.positions), ("indices", mesh.indices), ("instances", mesh.instances)];
         if let Some(texture) = mesh.opacity.texture() {

@@ -183,21 +183,8 @@ struct DummyScene {
 
 impl DummyScene {
     fn new(gpu: &Gpu, what: WarmUp) -> Result<Self, Error> {
-        let texture = |format, usage| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("antumbra warm-up"),
-                size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            });
-            gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
-        };
         let surface_texture = Texture {
-            view: texture(wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureUsages::TEXTURE_BINDING),
+            view: texture(gpu, wgpu::TextureFormat::Rgba8Unorm),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor::default()),
         };
         // Zero-initialised positions and texture coordinates of one triangle, with room for twice as many.
@@ -207,23 +194,8 @@ impl DummyScene {
             usage: wgpu::BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        let mesh = |closed| Mesh {
-            vertex_count: 3,
-            positions: Positions { buffer: &buffer, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
-            texture_coordinates: Some(TextureCoordinates {
-                buffer: &buffer,
-                offset: 0,
-                stride: 8,
-                format: TextureCoordinateFormat::Float32x2,
-                transform: Affine2::IDENTITY,
-            }),
-            indices: None,
-            topology: wgpu::PrimitiveTopology::TriangleList,
-            closed,
-            bounds: Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE },
-        };
         let mut set = CasterSet::new(gpu);
-        let (open, closed) = (set.add_mesh(&mesh(false))?, set.add_mesh(&mesh(true))?);
+        let (open, closed) = (set.add_mesh(&triangle(&buffer, false))?, set.add_mesh(&triangle(&buffer, true))?);
         let here = [Mat4::IDENTITY];
         let mut add =
             |mesh, surface| set.add(&Caster { surface, ..Caster::new(mesh, Instances::Matrices(&here)) }).map(drop);
@@ -249,7 +221,7 @@ impl DummyScene {
         let channels = if what.tinted { MaskChannels::Three } else { MaskChannels::One };
         Ok(Self {
             set,
-            depth: texture(wgpu::TextureFormat::R32Float, wgpu::TextureUsages::TEXTURE_BINDING),
+            depth: texture(gpu, wgpu::TextureFormat::R32Float),
             mask: Mask::with_channels(gpu.device(), UVec2::ONE, channels),
         })
     }
@@ -274,5 +246,39 @@ impl DummyScene {
             },
             mask: &self.mask,
         }
+    }
+}
+
+/// Creates a texture of one texel.
+fn texture(gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("antumbra warm-up"),
+        size: wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    gpu.device.create_view(&texture, &wgpu::TextureViewDescriptor::default())
+}
+
+/// Mesh of one triangle, from a buffer of positions that are read as texture coordinates, too.
+fn triangle(buffer: &wgpu::Buffer, closed: bool) -> Mesh<'_> {
+    Mesh {
+        vertex_count: 3,
+        positions: Positions { buffer, offset: 0, stride: 12, format: PositionFormat::Float32x3 },
+        texture_coordinates: Some(TextureCoordinates {
+            buffer,
+            offset: 0,
+            stride: 8,
+            format: TextureCoordinateFormat::Float32x2,
+            transform: Affine2::IDENTITY,
+        }),
+        indices: None,
+        topology: wgpu::PrimitiveTopology::TriangleList,
+        closed,
+        bounds: Aabb { min: Vec3::splat(-1.0), max: Vec3::ONE },
     }
 }

@@ -46,14 +46,9 @@ pub(super) fn table(report: &Report, rows: &[Measured]) -> String {
     let (min_ms, min_memory) = (least(&|m| m.total_ms), least(&memory_of));
 
     let mut html = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"numbers-title\"><table \
-     class=\"numbers\" id=\"table\"><thead><tr><th scope=\"col\" data-key=\"technique\">Technique</th>"
+     class=\"numbers\" id=\"table\"><thead><tr>"
         .to_owned();
-    let meaning = "Median time of one frame's shadows in milliseconds, with the numbers of timed frames and of warm-up frames before them.";
-    html += &head("total_ms", "ms", meaning, "lower is better");
-    for info in &METRICS {
-        html += &head(info.key, info.label, info.meaning, info.direction());
-    }
-    html += &head("memory_bytes", "memory", "GPU memory of the technique.", "lower is better");
+    html += &heads();
     let _ = write!(
         html,
         "</tr></thead><tbody><tr class=\"truth\"><th scope=\"row\"><a \
@@ -86,6 +81,23 @@ pub(super) fn table(report: &Report, rows: &[Measured]) -> String {
         html += &cell(memory, |b| bytes(b as u64), rows.len() > 1 && memory.is_some() && memory == min_memory);
         html += "</tr>";
     }
+    html + &skipped(report) + "</tbody></table></div>"
+}
+
+/// Returns the column heads.
+fn heads() -> String {
+    let mut html = "<th scope=\"col\" data-key=\"technique\">Technique</th>".to_owned();
+    let meaning = "Median time of one frame's shadows in milliseconds, with the numbers of timed frames and of warm-up frames before them.";
+    html += &head("total_ms", "ms", meaning, "lower is better");
+    for info in &METRICS {
+        html += &head(info.key, info.label, info.meaning, info.direction());
+    }
+    html + &head("memory_bytes", "memory", "GPU memory of the technique.", "lower is better")
+}
+
+/// Returns the rows of skipped techniques, with the reasons.
+fn skipped(report: &Report) -> String {
+    let mut html = String::new();
     for row in &report.rows {
         if let Outcome::Skipped(reason) = &row.outcome {
             let _ = write!(
@@ -99,7 +111,7 @@ pub(super) fn table(report: &Report, rows: &[Measured]) -> String {
             );
         }
     }
-    html + "</tbody></table></div>"
+    html
 }
 
 pub(super) fn time_note(report: &Report) -> String {

@@ -91,15 +91,7 @@ impl ViewFit {
         };
         let boxes: Vec<[Vec3; 8]> = casters.all().map(|bounds| bounds.corners().map(in_light)).collect();
         let receivers: Vec<Vec3> = receivers.iter().copied().map(in_light).collect();
-        let (mut near, mut far) = (f32::INFINITY, 0.0f32);
-        for corner in boxes.iter().flatten() {
-            near = near.min(corner.z);
-            far = far.max(corner.z);
-        }
-        far = receivers.iter().fold(far, |far, p| far.max(p.z));
-        // A light with nothing in front still has a view; its map stays empty.
-        let far = if far > 0.0 { far * 1.001 } else { 1.0 };
-        let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MAX_NEAR_M), far * 0.99);
+        let (near, far) = depth_range(&boxes, &receivers);
         let mut of_receivers = Vec::new();
         add_tangents(&mut of_receivers, &receivers, near, HORIZON_TANGENT);
         // Casters outside the receivers' window and its margin shade receivers only if they are close to the light.
@@ -217,6 +209,20 @@ impl ViewFit {
         let Self { frame, perspective, near_m, far_m, complete_from_m, .. } = *self;
         LightView { frame, perspective, window, near_m, far_m, complete_from_m }
     }
+}
+
+/// Returns the near and far plane of a perspective view of light-space boxes of casters and points of receivers, metres.
+fn depth_range(boxes: &[[Vec3; 8]], receivers: &[Vec3]) -> (f32, f32) {
+    let (mut near, mut far) = (f32::INFINITY, 0.0f32);
+    for corner in boxes.iter().flatten() {
+        near = near.min(corner.z);
+        far = far.max(corner.z);
+    }
+    far = receivers.iter().fold(far, |far, p| far.max(p.z));
+    // A light with nothing in front still has a view; its map stays empty.
+    let far = if far > 0.0 { far * 1.001 } else { 1.0 };
+    let near = (near * 0.999).clamp((far * MIN_NEAR_FRACTION).min(MAX_NEAR_M), far * 0.99);
+    (near, far)
 }
 
 /// Smallest caster depth for which the margin widens the receivers' window, metres. If a caster's box contains the light, as a

@@ -78,72 +78,88 @@ pub(crate) struct LevelOptions {
 /// distance. In a fine stack, a kernel shifted by a fourth of itself to either side makes one of 1.3 times its width, about
 /// half-way to the next, and levels halve once kernels are four texels wide.
 pub(crate) fn levels(options: &LevelOptions) -> Vec<Level> {
-    let LevelOptions { map_size, octaves, stack_size, fine, subsampled_steps, samples } = *options;
+    let LevelOptions { map_size, octaves, fine, subsampled_steps, samples, .. } = *options;
     let mut levels: Vec<Level> = Vec::new();
-    // State of the level of the last whole octave.
-    let (mut size, mut spacing, mut source) = (map_size, 1, 0);
-    let mut first = 0;
-    let mut is_stacked = false;
-    let mut push = |levels: &mut Vec<Level>, level: Level| {
-        levels.push(Level { first, ..level });
-        first += level.size.element_product();
-    };
+    let mut grid = Grid { size: map_size, spacing: 1, is_stacked: false };
+    // Index of the level of the last whole octave.
+    let mut source = 0;
     for i in 0..octaves.min(MAX_OCTAVES) {
         let kernel = 1u32 << i;
         if i > 0 && kernel / 2 >= map_size.max_element() {
             break;
         }
-        // Half the distance between the merged texels, in texels of the previous level.
-        let half = (kernel / spacing / 4) as i32;
-        let step = if i == 0 {
-            None
-        } else if !is_stacked && size.element_product() > stack_size * stack_size {
-            size = size.map(|texels| texels.div_ceil(2));
-            spacing *= 2;
-            Some(Step { stride: 2, near: 0, far: 1, subsample: i <= subsampled_steps })
-        } else if !is_stacked {
-            is_stacked = true;
-            size += UVec2::ONE;
-            Some(Step { stride: 1, near: -1, far: 0, subsample: false })
-        } else if fine && kernel / spacing > FINE_KERNEL_TEXELS {
-            size = size.map(|texels| (texels - 1).div_ceil(2) + 1);
-            spacing *= 2;
-            Some(Step { stride: 2, near: -half, far: half, subsample: false })
-        } else {
-            Some(Step { stride: 1, near: -half, far: half, subsample: false })
+        let step = (i > 0).then(|| grid.advance(i, options));
+        let Grid { size, spacing, is_stacked } = grid;
+        // Widths of the lookup and of the merged texels, for an area in squares of the kernel.
+        let widths = |area: f32| {
+            let merged_squared = area * (kernel as f32).powi(2) - 4f32.powi(subsampled_steps.min(i) as i32);
+            (effective_width(merged_squared, spacing, samples), merged_squared.sqrt())
         };
-        let merged_squared = |kernel_squared: f32| kernel_squared - 4f32.powi(subsampled_steps.min(i) as i32);
-        let whole = merged_squared((kernel as f32).powi(2));
+        let (width, merged) = widths(1.0);
         let level = Level {
             first: 0,
             size,
             spacing: spacing as f32,
             offset: if is_stacked { 0.0 } else { 0.5 },
             octave: i as f32,
-            width: effective_width(whole, spacing, samples),
-            merged: whole.sqrt(),
+            width,
+            merged,
             source,
             step,
             z_limit_m: f32::MAX,
         };
         source = levels.len();
-        push(&mut levels, level);
+        levels.push(level);
         if fine && is_stacked && i + 1 < octaves && kernel < map_size.max_element() {
             let fourth = (kernel / spacing / 4) as i32;
             // A fourth of a kernel of two texels is half a texel: the new texels lie between the old ones.
             let (near, far, size, offset) =
                 if fourth == 0 { (-1, 0, size + 1, -0.5) } else { (-fourth, fourth, size, 0.0) };
             // Two positions at ¼ kernel from the middle have the variance of a square of √¾ kernels.
-            let squared = merged_squared(1.75 * (kernel as f32).powi(2));
-            let width = effective_width(squared, spacing, samples);
+            let (width, merged) = widths(1.75);
             let step = Some(Step { stride: 1, near, far, subsample: false });
-            push(
-                &mut levels,
-                Level { size, offset, octave: i as f32 + 0.5, width, merged: squared.sqrt(), source, step, ..level },
-            );
+            levels.push(Level { size, offset, octave: i as f32 + 0.5, width, merged, source, step, ..level });
         }
     }
+    let mut first = 0;
+    for level in &mut levels {
+        level.first = first;
+        first += level.size.element_product();
+    }
     levels
+}
+
+/// Texels of the last whole octave while levels are made.
+#[derive(Clone, Copy)]
+struct Grid {
+    size: UVec2,
+    /// Distance between texels, in texels of the base.
+    spacing: u32,
+    is_stacked: bool,
+}
+
+impl Grid {
+    /// Advances to octave `i`, at least 1. Returns the merge step from the previous one.
+    fn advance(&mut self, i: u32, options: &LevelOptions) -> Step {
+        let kernel_texels = (1u32 << i) / self.spacing;
+        // Half the distance between the merged texels, in texels of the previous level.
+        let half = (kernel_texels / 4) as i32;
+        if !self.is_stacked && self.size.element_product() > options.stack_size * options.stack_size {
+            self.size = self.size.map(|texels| texels.div_ceil(2));
+            self.spacing *= 2;
+            Step { stride: 2, near: 0, far: 1, subsample: i <= options.subsampled_steps }
+        } else if !self.is_stacked {
+            self.is_stacked = true;
+            self.size += UVec2::ONE;
+            Step { stride: 1, near: -1, far: 0, subsample: false }
+        } else if options.fine && kernel_texels > FINE_KERNEL_TEXELS {
+            self.size = self.size.map(|texels| (texels - 1).div_ceil(2) + 1);
+            self.spacing *= 2;
+            Step { stride: 2, near: -half, far: half, subsample: false }
+        } else {
+            Step { stride: 1, near: -half, far: half, subsample: false }
+        }
+    }
 }
 
 /// Returns the side of the box with the variance of a level's lookup. The texels of a kernel, `2^subsampled_steps` apart, have

@@ -117,12 +117,11 @@ use crate::contract::{
     PreparedFrame,
 };
 use crate::gpu::{
-    Bindings, Cached, Content, Feedback, Gpu, Recorder, Span, Stage, bindings, compute_pipeline_without_zeroing,
-    create_uniform, upload_growable, write_uniform,
+    Bindings, Cached, Content, Gpu, Recorder, Span, Stage, bindings, compute_pipeline_without_zeroing, create_uniform,
+    upload_growable, write_uniform,
 };
 use crate::light_map::light_view::LightViewGpu;
-use crate::light_map::texel_lists::options::Accumulation;
-use crate::light_map::texel_lists::{FRAGMENT_BYTES, PreparedLists, TexelLists};
+use crate::light_map::texel_lists::{PreparedLists, TexelLists};
 use crate::mask::resolve::{PreparedResolve, Resolve, ResolveShader};
 use crate::receivers::inputs::FrameInputs;
 use crate::shaders;
@@ -130,6 +129,8 @@ use crate::techniques::Technique;
 
 #[cfg(test)]
 mod cpu;
+mod designs;
+mod fragment_room;
 pub(crate) mod gpu_types;
 mod levels;
 mod nearest;
@@ -138,8 +139,10 @@ mod plan;
 #[cfg(test)]
 mod tests;
 
+use designs::FilterDesign;
+use fragment_room::FragmentRoom;
 use gpu_types::{FilterStep, MultiLayerLadder, MultiLayerUniform};
-use levels::{Level, list_count};
+use levels::Level;
 use nearest::{NearestSquares, PreparedNearest, all_squares};
 pub use params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
@@ -174,12 +177,6 @@ const TILE: u32 = 8;
 /// Distance of [`FilterStep`]s, bytes: dynamic offsets are multiples of WebGPU's default alignment.
 const STEP_STRIDE: u32 = 256;
 
-/// Fragments per texel of the base that the first frame allocates, before any count is known.
-const FIRST_FRAGMENTS_PER_TEXEL: u32 = 4;
-
-/// Factor on the number of fragments that the last frame needed, so that a moving scene seldom overflows.
-const HEADROOM: f64 = 1.25;
-
 /// Filtered multi-layer shadow maps.
 #[derive(Debug)]
 pub struct MultiLayer {
@@ -196,65 +193,11 @@ pub struct MultiLayer {
     ladder_uniform: wgpu::Buffer,
     /// [`FilterStep`]s, [`STEP_STRIDE`] bytes apart.
     filter_steps: Option<wgpu::Buffer>,
-    feedback: Feedback,
-    capacity: u32,
+    room: FragmentRoom,
     /// Cache key of lists, levels and squares.
     content: Content<(CastersKey, Vec<u8>)>,
-    /// Side of a square base with as many texels, in the frames that the feedback describes.
-    map_size: u32,
-    overflow: Option<Overflow>,
     /// Lists of the frame prepared last, if they are the light's own.
     drawn_lists: Option<DrawnLists>,
-}
-
-/// Key of the lookup's pipeline: the constants of `resolve.wesl`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct LookupDesign {
-    colored: bool,
-    list_accumulation: Accumulation,
-    level_accumulation: MultiLayerLevelAccumulation,
-    light_parts: MultiLayerLightParts,
-    level_weights: MultiLayerLevelWeights,
-    hat: MultiLayerHat,
-    lists: MultiLayerLists,
-    planes: bool,
-    shows_levels: bool,
-}
-
-impl LookupDesign {
-    /// Returns the constants with their names.
-    fn constants(self) -> [(&'static str, f64); 9] {
-        [
-            ("COLORED", f64::from(u8::from(self.colored))),
-            ("LIST_ACCUMULATION", f64::from(self.list_accumulation as u32)),
-            ("LEVEL_ACCUMULATION", f64::from(self.level_accumulation as u32)),
-            ("LIGHT_PARTS", f64::from(self.light_parts.count())),
-            ("LEVEL_WEIGHTS", f64::from(self.level_weights as u32)),
-            ("WEIGHTS_FRAGMENTS", f64::from(u8::from(self.hat == MultiLayerHat::Fragments))),
-            ("LISTS_APART", f64::from(self.lists as u32)),
-            ("HAS_PLANES", f64::from(u8::from(self.planes))),
-            ("SHOWS_LEVELS", f64::from(u8::from(self.shows_levels))),
-        ]
-    }
-}
-
-/// Key of the filter's pipeline, which contains no code for options that are off.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct FilterDesign {
-    averages_by_count: bool,
-    colored: bool,
-    list_accumulation: Accumulation,
-}
-
-impl FilterDesign {
-    /// Returns the constants with their names.
-    fn constants(self) -> [(&'static str, f64); 3] {
-        [
-            ("AVERAGES_BY_COUNT", f64::from(u8::from(self.averages_by_count))),
-            ("COLORED", f64::from(u8::from(self.colored))),
-            ("LIST_ACCUMULATION", f64::from(self.list_accumulation as u32)),
-        ]
-    }
 }
 
 /// Passes of one frame.
@@ -294,11 +237,8 @@ impl Technique for MultiLayer {
             lookup_uniform: create_uniform::<MultiLayerUniform>(gpu, "antumbra multi_layer lookup"),
             ladder_uniform: create_uniform::<MultiLayerLadder>(gpu, "antumbra multi_layer ladder"),
             filter_steps: None,
-            feedback: Feedback::new(gpu, 2),
-            capacity: 0,
+            room: FragmentRoom::new(gpu),
             content: Content::default(),
-            map_size: 0,
-            overflow: None,
             drawn_lists: None,
             inputs,
         })
@@ -310,18 +250,11 @@ impl Technique for MultiLayer {
         frame: &PreparedFrame<'_>,
         params: &MultiLayerParams,
     ) -> Result<PreparedMultiLayer, Error> {
-        let technique = Self::NAME;
-        let PreparedCasters::Draws(meshes) = &frame.casters else {
-            return Err(Error::BadFrame {
-                technique,
-                what: "the kind of casters",
-                had: "`Casters::DepthMap`".into(),
-                needed: "meshes, because lists contain every fragment, a depth map only the first".into(),
-            });
-        };
+        let meshes = frame.casters.meshes(Self::NAME, "lists contain every fragment, a depth map only the first")?;
         let plan = FramePlan::new(stage, frame, meshes, params);
-        self.make_room(stage, plan.square_size, &plan.levels)?;
-        let list_options = plan.list_options(self.capacity);
+        self.room.update(stage, plan.square_size, &plan.levels)?;
+        let capacity = self.room.capacity;
+        let list_options = plan.list_options(capacity);
         let lists = self.lists.prepare(stage, &plan.view, meshes, &list_options);
         write_uniform(stage, &self.view_uniform, &plan.gpu_view);
         let squares = all_squares(plan.map_size);
@@ -336,7 +269,7 @@ impl Technique for MultiLayer {
             layouts: &[&self.lookup_layout],
         };
         let resolve = self.resolve.prepare(stage, &mut self.inputs, frame, params.sub, &shader);
-        let steps = plan.filter_steps(self.capacity);
+        let steps = plan.filter_steps(capacity);
         // `Debug` prints the fields in order, and floats that print alike are equal.
         let options = format!("{list_options:?} {squares:?} {:?}", plan.filter_design());
         let casters = stage.casters().filter(|_| lists.lease.is_own());
@@ -344,17 +277,9 @@ impl Technique for MultiLayer {
         let are_made = self.content.ask(casters.map(|casters| (casters, of.concat())));
         let largest = ladder.rungs.iter().map(|rung| rung.square_shift).max().unwrap_or(0);
         let filter_group = self.bind_filter(stage, &lists, &steps);
-        let room_bytes = NearestSquares::bytes_of(self.map_size);
+        let room_bytes = NearestSquares::bytes_of(plan.square_size);
         let nearest = self.nearest.prepare(stage, &lists, room_bytes, &squares, largest, plan.map_size);
-        let lookup = LookedUp {
-            light_view: &self.view_uniform,
-            multi_layer: &self.lookup_uniform,
-            lists: &lists.lists,
-            fragments: &lists.fragments,
-            nearest_in: &nearest.depths,
-            ladder: &self.ladder_uniform,
-        };
-        let lookup_group = lookup.group(stage, &self.lookup_layout);
+        let lookup_group = self.bind_lookup(stage, &lists, &nearest);
         self.drawn_lists = lists.lease.is_own().then(|| drawn_lists(&lists, &plan.levels));
         Ok(PreparedMultiLayer {
             lists,
@@ -375,15 +300,15 @@ impl Technique for MultiLayer {
         if !prepared.are_made {
             self.record_lists(recorder, prepared, meshes);
         }
-        if !prepared.are_made || self.feedback.is_missing() {
-            self.feedback.record(recorder, &prepared.lists.counters);
+        if !prepared.are_made || self.room.feedback.is_missing() {
+            self.room.feedback.record(recorder, &prepared.lists.counters);
         }
         prepared.resolve.record(recorder, |pass| pass.set_bind_group(1, &prepared.lookup_group, &[]));
     }
 
     /// Whether counts have arrived, some frames later, and all fragments fitted.
     fn is_settled(&self, _params: &MultiLayerParams, _still_frames: u32) -> bool {
-        !self.feedback.is_awaited() && self.overflow.is_none()
+        !self.room.feedback.is_awaited() && self.room.overflow.is_none()
     }
 
     fn drawn_lists(&self) -> Vec<DrawnLists> {
@@ -391,11 +316,11 @@ impl Technique for MultiLayer {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.lists.memory_bytes() + self.feedback.memory_bytes()
+        self.lists.memory_bytes() + self.room.feedback.memory_bytes()
     }
 
     fn overflow(&self) -> Option<Overflow> {
-        self.overflow
+        self.room.overflow
     }
 }
 
@@ -420,6 +345,18 @@ impl MultiLayer {
         FilteredLists { filter_step, lists, fragments, counters }.group(stage, &self.filter_layout)
     }
 
+    fn bind_lookup(&self, stage: &Stage<'_>, lists: &PreparedLists, nearest: &PreparedNearest) -> wgpu::BindGroup {
+        let lookup = LookedUp {
+            light_view: &self.view_uniform,
+            multi_layer: &self.lookup_uniform,
+            lists: &lists.lists,
+            fragments: &lists.fragments,
+            nearest_in: &nearest.depths,
+            ladder: &self.ladder_uniform,
+        };
+        lookup.group(stage, &self.lookup_layout)
+    }
+
     /// Returns the filter's pipeline, and compiles it if it is missing.
     fn filter(&mut self, gpu: &Gpu, design: FilterDesign) -> wgpu::ComputePipeline {
         let make = || {
@@ -427,38 +364,6 @@ impl MultiLayer {
             compute_pipeline_without_zeroing(gpu, "multi_layer filter", wgsl, &design.constants(), &layouts)
         };
         self.filter.get_or_make(design, make).clone()
-    }
-
-    /// Sets the capacity from what the last frames needed, and records whether it sufficed.
-    fn make_room(&mut self, stage: &Stage<'_>, map_size: u32, levels: &[Level]) -> Result<(), Error> {
-        let limits = stage.device.limits();
-        let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let largest = (binding / FRAGMENT_BYTES) as u32;
-        let lists = list_count(levels);
-        if lists > largest {
-            return Err(Error::Unsupported {
-                technique: Self::NAME,
-                needed: format!("{lists} lists for a base map of {map_size} × {map_size} texels"),
-                had: format!("at most {largest} in a binding of {binding} bytes"),
-                remedy: "set a smaller `map_size`",
-            });
-        }
-        let needed = self.feedback.collect(stage).map(|counters| counters[0].max(counters[1]));
-        self.overflow = needed.filter(|needed| *needed > self.capacity).map(|needed| Overflow {
-            what: "fragments",
-            needed: needed.into(),
-            had: self.capacity.into(),
-        });
-        let first = (map_size * map_size).saturating_mul(FIRST_FRAGMENTS_PER_TEXEL);
-        let wanted = needed.map_or(0, |needed| (f64::from(needed) * HEADROOM) as u32);
-        if self.map_size != map_size {
-            self.capacity = 0;
-            self.map_size = map_size;
-        }
-        if self.overflow.is_some() || self.capacity == 0 {
-            self.capacity = wanted.max(first).clamp(1024, largest);
-        }
-        Ok(())
     }
 }
 

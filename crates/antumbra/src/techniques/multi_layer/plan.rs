@@ -5,6 +5,8 @@ use std::borrow::Cow;
 use antumbra_light::{Aabb, Light, LightShape};
 use glam::{UVec2, Vec2};
 
+use super::STEP_STRIDE;
+use super::designs::{FilterDesign, LookupDesign};
 use super::gpu_types::{FilterStep, MultiLayerLadder, MultiLayerRung, MultiLayerUniform};
 use super::levels::{DepthReach, Level, LevelOptions, fixed_rung, levels, list_count, prune_levels, rungs};
 use super::nearest::{NearestSquares, Squares, squares_for};
@@ -12,7 +14,6 @@ use super::params::{
     MultiLayerDepthAverage, MultiLayerEpsilonGrowth, MultiLayerFaces, MultiLayerFilterWidths, MultiLayerGather,
     MultiLayerHierarchy, MultiLayerListAccumulation, MultiLayerMapShape, MultiLayerParams, MultiLayerShow,
 };
-use super::{FilterDesign, LookupDesign, STEP_STRIDE};
 use crate::contract::{MaskChannels, MeshCaster, PreparedFrame};
 use crate::gpu::Stage;
 use crate::light_map::central_view::{central_reach, fit_central_view_within};

@@ -129,7 +129,7 @@ fn unpruned_levels_are_those_that_are_asked_for() {
     let (_, light, meshes) = &scenes()[0];
     let found = |prune, levels| {
         let mut technique = MultiLayer::new(gpu).expect("default limits");
-        (technique.capacity, technique.map_size) = (1 << 20, 128);
+        (technique.room.capacity, technique.room.map_size) = (1 << 20, 128);
         let params = MultiLayerParams {
             map_size: MapSize::Texels(128),
             hierarchy: MultiLayerHierarchy::MipMap,
@@ -241,8 +241,8 @@ fn every_level_equals_its_cpu_reference() {
                 ..MultiLayerParams::default()
             };
             let mut technique = MultiLayer::new(gpu).expect("default limits");
-            technique.capacity = 1 << 20;
-            technique.map_size = 96;
+            technique.room.capacity = 1 << 20;
+            technique.room.map_size = 96;
             let prepared = record(gpu, &mut technique, &light, &meshes, &params);
             let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.fragments);
             let entries: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.lists);
@@ -301,7 +301,7 @@ fn squares_know_their_nearest_fragment() {
         // Not a multiple of any square's side.
         let params = MultiLayerParams { map_size: MapSize::Texels(84), ..MultiLayerParams::default() };
         let mut technique = MultiLayer::new(gpu).expect("default limits");
-        (technique.capacity, technique.map_size) = (1 << 20, 84);
+        (technique.room.capacity, technique.room.map_size) = (1 << 20, 84);
         let prepared = record(gpu, &mut technique, &light, &meshes, &params);
         let fragments: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.fragments);
         let entries: Vec<[u32; 2]> = read_storage(gpu, &prepared.lists.lists);
@@ -350,7 +350,7 @@ fn a_frame_without_room_says_so_and_the_next_has_it() {
     let (_, light, meshes) = scenes().swap_remove(2);
     let params = MultiLayerParams { map_size: MapSize::Texels(96), ..MultiLayerParams::default() };
     let mut technique = MultiLayer::new(gpu).expect("default limits");
-    (technique.capacity, technique.map_size) = (10_000, 96);
+    (technique.room.capacity, technique.room.map_size) = (10_000, 96);
     let mut overflows = Vec::new();
     let mut counters = Vec::new();
     for _ in 0..6 {
@@ -361,7 +361,7 @@ fn a_frame_without_room_says_so_and_the_next_has_it() {
     assert!(!overflows.is_empty() && overflows.len() < 5, "{overflows:?}");
     assert!(overflows.iter().all(|overflow| overflow.needed > overflow.had));
     assert_eq!(technique.overflow(), None, "there is room at last");
-    assert!(counters[1] <= technique.capacity);
+    assert!(counters[1] <= technique.room.capacity);
 }
 
 #[test]

@@ -200,6 +200,7 @@ impl Technique for RayTraced {
 }
 
 impl RayTraced {
+    /// Uploads the table of light points and casters, and returns a pass for each batch of rays and group of textures.
     fn prepare_passes(
         &mut self,
         stage: &Stage<'_>,
@@ -213,28 +214,10 @@ impl RayTraced {
             upload_growable(stage, &mut self.tables, "antumbra ray tables", bytemuck::cast_slice(table)).clone();
         let surfaces = textures.groups(stage, &self.surfaces_layout, &self.no_texture);
         let weighs_irradiance = params.weights == SampleWeights::Irradiance;
-        let max_iterations = stage.device.max_iterations();
-        let max_rays = if max_iterations < TURNS_OF_CARDS { PASS_RAYS } else { PASS_RAYS_OF_CARDS };
         let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
-        let (pass_rays, passed_stride) = if surfaces.len() == 1 {
-            (max_rays, 0)
-        } else {
-            let max_bytes = stage.device.limits().max_storage_buffer_binding_size;
-            let words = max_bytes / 4 / pixels.max(1);
-            let rays = words.saturating_sub(weighs_irradiance.into()).min(u64::from(max_rays)) as u32;
-            (rays, rays)
-        };
-        if pass_rays == 0 {
-            return Err(Error::Unsupported {
-                technique: Self::NAME,
-                needed: format!(
-                    "{} bytes for the transmittance of one ray per pixel, besides so many textures",
-                    4 * pixels
-                ),
-                had: "too little left in a binding".into(),
-                remedy: "use a smaller mask or fewer textures, or request a larger max_storage_buffer_binding_size",
-            });
-        }
+        let stores_passed = surfaces.len() > 1;
+        let pass_rays = rays_per_pass(stage, pixels, stores_passed, weighs_irradiance)?;
+        let passed_stride = if stores_passed { pass_rays } else { 0 };
         let keeps_sums = weighs_irradiance && points.len() > pass_rays as usize;
         let passed_bytes = 4 * (pixels * (u64::from(passed_stride) + u64::from(keeps_sums))).max(1);
         let usage = wgpu::BufferUsages::STORAGE;
@@ -256,7 +239,7 @@ impl RayTraced {
                     texture_group: group,
                     is_last_group: (group + 1 == textures.group_count()).into(),
                     rotate: is_rotated.into(),
-                    max_iterations,
+                    max_iterations: stage.device.max_iterations(),
                     passed_stride,
                     weighs_irradiance: weighs_irradiance.into(),
                 };
@@ -276,6 +259,29 @@ impl RayTraced {
         }
         Ok(passes)
     }
+}
+
+/// Returns the number of rays per pass. `stores_passed`: each ray's transmittance is stored between passes over groups of textures, and
+/// with `stores_sums` also a sum for each pixel; then a binding must hold them.
+fn rays_per_pass(stage: &Stage<'_>, pixels: u64, stores_passed: bool, stores_sums: bool) -> Result<u32, Error> {
+    let max_rays = if stage.device.max_iterations() < TURNS_OF_CARDS { PASS_RAYS } else { PASS_RAYS_OF_CARDS };
+    if !stores_passed {
+        return Ok(max_rays);
+    }
+    let words = stage.device.limits().max_storage_buffer_binding_size / 4 / pixels.max(1);
+    let rays = words.saturating_sub(stores_sums.into()).min(u64::from(max_rays)) as u32;
+    if rays == 0 {
+        return Err(Error::Unsupported {
+            technique: RayTraced::NAME,
+            needed: format!(
+                "{} bytes for the transmittance of one ray per pixel, besides so many textures",
+                4 * pixels
+            ),
+            had: "too little left in a binding".into(),
+            remedy: "use a smaller mask or fewer textures, or request a larger max_storage_buffer_binding_size",
+        });
+    }
+    Ok(rays)
 }
 
 /// Point of the unit cube, which the shader maps to the light, and the weight of the light that it represents.

@@ -80,25 +80,54 @@ pub(crate) fn batches_of(
     most: u32,
     by_bits: bool,
 ) -> Vec<Batch> {
-    let mut batches = vec![Batch::new(Surfaces::Opaque)];
-    let mut add = |index: usize, surfaces: Surfaces, flags: u32| {
-        let caster = &casters[index];
+    let mut batches = Batches { casters, most, batches: vec![Batch::new(Surfaces::Opaque)] };
+    for (i, caster) in casters.iter().enumerate() {
+        if matches!(caster.opacity, Opacity::Opaque) {
+            let is_closed = caster.closed && !sees_within(&caster.bounds);
+            batches.add(i, Surfaces::Opaque, if is_closed { FLAG_CLOSED } else { 0 });
+        }
+    }
+    let hides_points = |opacity: &Opacity<'_>| match opacity {
+        Opacity::Opaque => false,
+        Opacity::Masked { .. } => true,
+        Opacity::Translucent { .. } => by_bits && !opacity.tints(),
+    };
+    let hiding = (0..casters.len()).filter(|i| hides_points(&casters[*i].opacity));
+    for same in by_surface(casters, hiding) {
+        for i in &same {
+            batches.add(*i, Surfaces::Masked(same[0]), FLAG_MASKED);
+        }
+    }
+    for (i, caster) in casters.iter().enumerate() {
+        if !hides_points(&caster.opacity) && !matches!(caster.opacity, Opacity::Opaque) {
+            batches.add(i, Surfaces::Tinted(i), FLAG_TINTED);
+        }
+    }
+    batches.batches
+}
+
+/// Batches to which casters are added one after the other.
+struct Batches<'a> {
+    casters: &'a [MeshCaster<'a>],
+    /// Largest number of triangles of a batch.
+    most: u32,
+    batches: Vec<Batch>,
+}
+
+impl Batches<'_> {
+    /// Adds every triangle of the caster of this index: whole instances if one fits into a batch, otherwise parts of them.
+    fn add(&mut self, index: usize, surfaces: Surfaces, flags: u32) {
+        let caster = &self.casters[index];
         let per_instance = caster.index_count / 3;
         let (mut instance, mut triangle) = (0, 0);
         if per_instance == 0 {
             return;
         }
         while instance < caster.instance_count {
-            let batch = match batches.last_mut() {
-                Some(batch) if batch.surfaces == surfaces && batch.triangles() < most => batch,
-                _ => {
-                    batches.push(Batch::new(surfaces));
-                    batches.last_mut().expect("just pushed")
-                }
-            };
+            let most = self.most;
+            let batch = self.with_room(surfaces);
             let first_place = batch.triangles();
             let room = most - first_place;
-            // Whole instances if one fits, otherwise part of one.
             let (triangle_count, instance_count) = if triangle == 0 && room >= per_instance {
                 (per_instance, (room / per_instance).min(caster.instance_count - instance))
             } else {
@@ -119,37 +148,29 @@ pub(crate) fn batches_of(
                 triangle += triangle_count;
             }
         }
-    };
-    for (i, caster) in casters.iter().enumerate() {
-        if matches!(caster.opacity, Opacity::Opaque) {
-            let is_closed = caster.closed && !sees_within(&caster.bounds);
-            add(i, Surfaces::Opaque, if is_closed { FLAG_CLOSED } else { 0 });
-        }
     }
-    let hides_points = |opacity: &Opacity<'_>| match opacity {
-        Opacity::Opaque => false,
-        Opacity::Masked { .. } => true,
-        Opacity::Translucent { .. } => by_bits && !opacity.tints(),
-    };
-    let mut by_surface: Vec<Vec<usize>> = Vec::new();
-    for (i, caster) in casters.iter().enumerate().filter(|(_, caster)| hides_points(&caster.opacity)) {
-        let same = by_surface.iter_mut().find(|same| has_surface_of(&caster.opacity, &casters[same[0]].opacity));
+
+    /// Returns the last batch if it has these surfaces and is not full, otherwise a new one.
+    fn with_room(&mut self, surfaces: Surfaces) -> &mut Batch {
+        let has_room = |batch: &Batch| batch.surfaces == surfaces && batch.triangles() < self.most;
+        if !self.batches.last().is_some_and(has_room) {
+            self.batches.push(Batch::new(surfaces));
+        }
+        self.batches.last_mut().expect("just pushed if there was none")
+    }
+}
+
+/// Returns the casters of these indices in groups with the same surface, in the order of their first casters.
+fn by_surface(casters: &[MeshCaster<'_>], indices: impl Iterator<Item = usize>) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for i in indices {
+        let same = groups.iter_mut().find(|same| has_surface_of(&casters[i].opacity, &casters[same[0]].opacity));
         match same {
             Some(same) => same.push(i),
-            None => by_surface.push(vec![i]),
+            None => groups.push(vec![i]),
         }
     }
-    for same in &by_surface {
-        for i in same {
-            add(*i, Surfaces::Masked(same[0]), FLAG_MASKED);
-        }
-    }
-    for (i, caster) in casters.iter().enumerate() {
-        if !hides_points(&caster.opacity) && !matches!(caster.opacity, Opacity::Opaque) {
-            add(i, Surfaces::Tinted(i), FLAG_TINTED);
-        }
-    }
-    batches
+    groups
 }
 
 /// Whether two surfaces have the same effect on light at the same texture coordinates.

@@ -57,94 +57,45 @@ pub(super) struct BufferSet<'a> {
 
 impl Buffers {
     /// Allocates the buffers of the frame, and uploads the light's points that every pass reads.
-    pub(super) fn prepare(&mut self, stage: &Stage<'_>, plan: &FramePlan, points: &[LocalPoint]) -> BufferSet<'_> {
-        let storage = wgpu::BufferUsages::STORAGE;
-        let FramePlan { pixels, max_triangles, .. } = *plan;
+    pub(super) fn prepare<'a>(
+        &'a mut self,
+        stage: &Stage<'_>,
+        plan: &FramePlan,
+        points: &[LocalPoint],
+    ) -> BufferSet<'a> {
+        use wgpu::BufferUsages as Usages;
+
+        let sized = |slot: &'a mut Option<wgpu::Buffer>, label, bytes, more: Usages| {
+            sized_buffer(stage, slot, label, bytes, Usages::STORAGE | more)
+        };
+        let storage = |slot: &'a mut Option<wgpu::Buffer>, label, bytes| sized(slot, label, bytes, Usages::empty());
+        let pixels = plan.pixels;
+        let (lists, triangles) = (u64::from(plan.list_count), u64::from(plan.max_triangles));
+        let corners = triangles * u64::from(plan.max_stride);
+        let positions = if plan.stores_positions { pixels } else { 1 };
+        let penumbrae = if plan.draws_silhouettes() { lists } else { 1 };
+        let hulls_bytes = if plan.makes_hulls { triangles * HULL_BYTES } else { 8 };
+        let cluster_boxes = u64::from(plan.max_clusters() + plan.max_supers());
+        let work_words = u64::from(FIRST_GROUP + 4 * plan.max_groups());
         BufferSet {
-            state: sized_buffer(stage, &mut self.state, "view-sample state", STATE_LENGTH * 4, storage),
-            counts: sized_buffer(
-                stage,
-                &mut self.counts,
-                "view-sample counts",
-                u64::from(plan.list_count + 2) * 4,
-                storage,
-            ),
-            places: sized_buffer(stage, &mut self.places, "view-sample places", pixels * 8, storage),
-            list: sized_buffer(stage, &mut self.list, "view-sample lists", pixels * 4, storage),
-            positions: sized_buffer(
-                stage,
-                &mut self.positions,
-                "view-sample positions",
-                if plan.stores_positions { pixels * POSITIONS_BYTES } else { POSITIONS_BYTES },
-                storage,
-            ),
-            penumbrae: sized_buffer(
-                stage,
-                &mut self.penumbrae,
-                "view-sample penumbrae",
-                if plan.draws_silhouettes() { u64::from(plan.list_count) * 4 } else { 4 },
-                storage,
-            ),
-            hulls: sized_buffer(
-                stage,
-                &mut self.hulls,
-                "view-sample region hulls",
-                if plan.makes_hulls { u64::from(max_triangles) * HULL_BYTES } else { 8 },
-                storage,
-            ),
-            shaft: sized_buffer(
-                stage,
-                &mut self.shaft,
-                "view-sample shaft",
-                SHAFT_LENGTH * 16,
-                storage | wgpu::BufferUsages::UNIFORM,
-            ),
+            state: storage(&mut self.state, "view-sample state", STATE_LENGTH * 4),
+            counts: storage(&mut self.counts, "view-sample counts", (lists + 2) * 4),
+            places: storage(&mut self.places, "view-sample places", pixels * 8),
+            list: storage(&mut self.list, "view-sample lists", pixels * 4),
+            positions: storage(&mut self.positions, "view-sample positions", positions * POSITIONS_BYTES),
+            penumbrae: storage(&mut self.penumbrae, "view-sample penumbrae", penumbrae * 4),
+            hulls: storage(&mut self.hulls, "view-sample region hulls", hulls_bytes),
+            shaft: sized(&mut self.shaft, "view-sample shaft", SHAFT_LENGTH * 16, Usages::UNIFORM),
             whole_light: upload_storage(stage, &mut self.whole_light, "view-sample light", &packed_box(points)),
-            cells: sized_buffer(stage, &mut self.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4, storage),
-            triangle_places: sized_buffer(
-                stage,
-                &mut self.triangle_places,
-                "triangle places",
-                u64::from(max_triangles) * 8,
-                storage,
-            ),
-            triangles: sized_buffer(
-                stage,
-                &mut self.triangles,
-                "triangles",
-                u64::from(max_triangles) * u64::from(plan.max_stride) * 16,
-                storage,
-            ),
-            edges: sized_buffer(stage, &mut self.edges, "edge faces", u64::from(plan.edge_slots()) * 4, storage),
-            boxes: sized_buffer(
-                stage,
-                &mut self.boxes,
-                "cluster boxes",
-                u64::from(plan.max_clusters() + plan.max_supers()) * 32,
-                storage,
-            ),
-            totals: sized_buffer(stage, &mut self.totals, "view-sample totals", 20, storage),
-            dispatches: sized_buffer(
-                stage,
-                &mut self.dispatches,
-                "view-sample dispatches",
-                16,
-                storage | wgpu::BufferUsages::INDIRECT,
-            ),
-            work: sized_buffer(
-                stage,
-                &mut self.work,
-                "view-sample work",
-                u64::from(FIRST_GROUP + 4 * plan.max_groups()) * 4,
-                storage | wgpu::BufferUsages::COPY_SRC,
-            ),
-            bits: sized_buffer(
-                stage,
-                &mut self.bits,
-                "view-sample bits",
-                plan.bits_bytes(),
-                storage | wgpu::BufferUsages::COPY_SRC,
-            ),
+            cells: storage(&mut self.cells, "triangle cells", u64::from(CELL_COUNT + 1) * 4),
+            triangle_places: storage(&mut self.triangle_places, "triangle places", triangles * 8),
+            triangles: storage(&mut self.triangles, "triangles", corners * 16),
+            edges: storage(&mut self.edges, "edge faces", u64::from(plan.edge_slots()) * 4),
+            boxes: storage(&mut self.boxes, "cluster boxes", cluster_boxes * 32),
+            totals: storage(&mut self.totals, "view-sample totals", 20),
+            dispatches: sized(&mut self.dispatches, "view-sample dispatches", 16, Usages::INDIRECT),
+            work: sized(&mut self.work, "view-sample work", work_words * 4, Usages::COPY_SRC),
+            bits: sized(&mut self.bits, "view-sample bits", plan.bits_bytes(), Usages::COPY_SRC),
         }
     }
 

@@ -3,6 +3,7 @@
 use glam::UVec2;
 
 use super::ViewSamples;
+use super::plan::FramePlan;
 use crate::contract::{DrawnLists, ListLengths, ListLevel, ListOrder};
 
 /// Layout of a frame's lists.
@@ -13,6 +14,12 @@ pub(super) struct ListWindows {
     pub(super) side: u32,
     /// Whether the device chooses between windows and cells.
     pub(super) are_chosen: bool,
+}
+
+impl ListWindows {
+    pub(super) fn of(plan: &FramePlan) -> Self {
+        Self { count: plan.windows.map(|windows| windows.count), side: plan.window_side, are_chosen: plan.chooses() }
+    }
 }
 
 impl ViewSamples {

@@ -14,6 +14,7 @@ use super::pipelines::{Evaluator, WorkCondition};
 use super::plan::FramePlan;
 use super::raster::{Draw, Hulls, Raster, RasterTargets};
 use super::settings::{FIRST_POINTS, FIRST_TRIANGLES, KEEP_BITS, LAST_TRIANGLES};
+use super::windows::Windows;
 use super::{Options, settings_uniform, stride_of};
 use crate::gpu::{Bindings, Stage, shared_constants};
 use crate::receivers::inputs::FrameInputs;
@@ -86,71 +87,96 @@ pub(super) struct Evaluations<'a> {
     pub(super) raster_targets: Option<&'a RasterTargets>,
 }
 
+/// Batch of triangles against a batch of light points.
+#[derive(Clone, Copy, Debug)]
+struct Step<'a> {
+    batch: &'a Batch,
+    light: &'a PointBatch<'a>,
+    settings: SampleSettings,
+}
+
 impl Evaluations<'_> {
     /// Returns the evaluation of the plan's triangle batch `index` with a batch of light points.
     pub(super) fn of(&self, raster: Option<&mut Raster>, index: usize, light: &PointBatch<'_>) -> Evaluation {
-        let (plan, FrameGroups { stage, layouts, buffers }) = (self.plan, self.groups);
+        let plan = self.plan;
         let batch = &plan.batches[index];
-        let step = self.settings(index, light);
-        let evaluator = Evaluator::of(batch.surfaces, self.options);
-        let walked = |condition| {
-            let turns = u64::from(batch.triangles()) * u64::from(step.iterations_per_triangle)
-                + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * step.word_count);
-            let passes = turns.div_ceil(u64::from(step.max_iterations)).max(1) as u32;
-            self.over_groups(condition, &step, light, &self.evaluators[&evaluator], passes)
-        };
+        let step = Step { batch, light, settings: self.settings(index, light) };
         let drawn = raster.zip(self.raster_targets).zip(plan.windows);
         let Some(((raster, targets), windows)) = drawn.filter(|_| plan.is_drawn(batch)) else {
-            return Evaluation::Groups(walked(WorkCondition::Either));
+            return Evaluation::Groups(self.walk(WorkCondition::Either, &step));
         };
-        let without_triangles = |pipeline| self.over_groups(WorkCondition::Drawn, &step, light, pipeline, 1);
-        let BufferSet { state, counts, list, positions, penumbrae, hulls, triangles, totals, work, bits, .. } = buffers;
-        let window_group = |window| {
-            let window = Window {
-                settings: &settings_uniform(stage, &SampleSettings { window, ..step }),
-                list,
-                triangles,
-                state,
-                light_words: &light.words,
-                bits,
-                firsts: counts,
-                lookup: self.table,
-                work,
-                totals,
-                positions,
-                penumbrae,
-                hulls,
-                snapped_texels: stage.snapped_texels(),
-            };
-            window.group(stage, &raster.layout)
-        };
-        let settings = settings_uniform(stage, &step);
-        let arguments = DrawArguments { settings: &settings, state, totals, draw: &targets.arguments };
-        let hulls_of_windows = |raster: &mut Raster| {
-            let (layout, pipeline) = raster.hulls(stage, self.inputs);
-            let ellipsoid = &stage.storage("view-sample light ellipsoid", &windows.ellipsoid);
-            let group = |window| {
-                let settings = &settings_uniform(stage, &SampleSettings { window, ..step });
-                RegionHulls { settings, triangles, state, totals, hulls, ellipsoid }.group(stage, layout)
-            };
-            let windows = (0..windows.count).map(group).collect();
-            Hulls { pipeline: pipeline.clone(), windows, triangles: batch.triangles() }
-        };
+        let without_triangles = |pipeline| self.over_groups(WorkCondition::Drawn, &step, pipeline, 1);
         Evaluation::Raster {
-            walked: plan.chooses().then(|| walked(WorkCondition::Walked)),
+            walked: plan.chooses().then(|| self.walk(WorkCondition::Walked, &step)),
             before: (index == 0).then(|| without_triangles(&raster.before)),
             after: (index + 1 == plan.opaque_batches()).then(|| without_triangles(&raster.after)),
-            draw: Box::new(Draw {
-                targets: targets.clone(),
-                make_arguments: raster.arguments.clone(),
-                windows: (0..windows.count).map(window_group).collect(),
-                arguments: arguments.group(stage, &raster.arguments_layout),
-                hulls: plan.makes_hulls.then(|| hulls_of_windows(raster)),
-                silhouettes: plan.draws_silhouettes().then(|| raster.silhouettes(stage, self.inputs)),
-                stencil: self.options.drawn.stencil.then(|| raster.stencil(stage)),
-                pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator, self.options.drawn),
-            }),
+            draw: Box::new(self.draw(&step, raster, targets, &windows)),
         }
+    }
+
+    /// Returns the passes in which groups of receivers walk the triangles.
+    fn walk(&self, condition: WorkCondition, step: &Step<'_>) -> OverGroups {
+        let Step { batch, settings, .. } = step;
+        let turns = u64::from(batch.triangles()) * u64::from(settings.iterations_per_triangle)
+            + u64::from(batch.triangles().div_ceil(64)) * u64::from(48 + 2 * settings.word_count);
+        let passes = turns.div_ceil(u64::from(settings.max_iterations)).max(1) as u32;
+        let evaluator = Evaluator::of(batch.surfaces, self.options);
+        self.over_groups(condition, step, &self.evaluators[&evaluator], passes)
+    }
+
+    /// Returns the draws of the triangles over all windows.
+    fn draw(&self, step: &Step<'_>, raster: &mut Raster, targets: &RasterTargets, windows: &Windows) -> Draw {
+        let (plan, drawn) = (self.plan, self.options.drawn);
+        let FrameGroups { stage, layouts, buffers: BufferSet { state, totals, .. } } = self.groups;
+        let settings = settings_uniform(stage, &step.settings);
+        let arguments = DrawArguments { settings: &settings, state, totals, draw: &targets.arguments };
+        let evaluator = Evaluator::of(step.batch.surfaces, self.options);
+        Draw {
+            targets: targets.clone(),
+            make_arguments: raster.arguments.clone(),
+            windows: (0..windows.count).map(|window| self.window_group(step, &raster.layout, window)).collect(),
+            arguments: arguments.group(stage, &raster.arguments_layout),
+            hulls: plan.makes_hulls.then(|| self.hulls(step, raster, windows)),
+            silhouettes: plan.draws_silhouettes().then(|| raster.silhouettes(stage, self.inputs)),
+            stencil: drawn.stencil.then(|| raster.stencil(stage)),
+            pipeline: raster.pipeline(stage, self.inputs, layouts, evaluator, drawn),
+        }
+    }
+
+    /// Returns group 1 of the draws over a window.
+    fn window_group(&self, step: &Step<'_>, layout: &wgpu::BindGroupLayout, window: u32) -> wgpu::BindGroup {
+        let FrameGroups { stage, buffers, .. } = self.groups;
+        let BufferSet { state, counts, list, positions, penumbrae, hulls, triangles, totals, work, bits, .. } = buffers;
+        let window = Window {
+            settings: &settings_uniform(stage, &SampleSettings { window, ..step.settings }),
+            list,
+            triangles,
+            state,
+            light_words: &step.light.words,
+            bits,
+            firsts: counts,
+            lookup: self.table,
+            work,
+            totals,
+            positions,
+            penumbrae,
+            hulls,
+            snapped_texels: stage.snapped_texels(),
+        };
+        window.group(stage, layout)
+    }
+
+    /// Returns the computation of the triangles' hulls of hexagons.
+    fn hulls(&self, step: &Step<'_>, raster: &mut Raster, windows: &Windows) -> Hulls {
+        let FrameGroups { stage, buffers: BufferSet { triangles, state, totals, hulls, .. }, .. } = self.groups;
+        let (layout, pipeline) = raster.hulls(stage, self.inputs);
+        let ellipsoid = &stage.storage("view-sample light ellipsoid", &windows.ellipsoid);
+        let group = |window| {
+            let settings = &settings_uniform(stage, &SampleSettings { window, ..step.settings });
+            RegionHulls { settings, triangles, state, totals, hulls, ellipsoid }.group(stage, layout)
+        };
+        let windows = (0..windows.count).map(group).collect();
+        Hulls { pipeline: pipeline.clone(), windows, triangles: step.batch.triangles() }
     }
 
     fn settings(&self, index: usize, light: &PointBatch<'_>) -> SampleSettings {
@@ -186,16 +212,15 @@ impl Evaluations<'_> {
     fn over_groups(
         &self,
         condition: WorkCondition,
-        settings: &SampleSettings,
-        light: &PointBatch<'_>,
+        step: &Step<'_>,
         pipeline: &wgpu::ComputePipeline,
         passes: u32,
     ) -> OverGroups {
         let FrameGroups { stage, layouts, buffers } = self.groups;
         let BufferSet { list, triangles, boxes, totals, work, bits, .. } = buffers;
-        let settings = &settings_uniform(stage, settings);
+        let settings = &settings_uniform(stage, &step.settings);
         let lookup = self.table;
-        let (light_words, light_cells) = (&light.words, &light.cells);
+        let (light_words, light_cells) = (&step.light.words, &step.light.cells);
         let snapped_texels = stage.snapped_texels();
         let evaluated = Evaluated {
             settings,

@@ -20,18 +20,22 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// Allocates the lookup table, unless the present one is for the same points.
+    /// Allocates the lookup table, unless the present one is for the same points; drops it if light points are tested without it.
     pub(super) fn prepare(
         table: &mut Option<Self>,
         stage: &Stage<'_>,
         technique: &'static str,
         options: &Options,
-        point_batches: &[&[LocalPoint]],
+        point_batch_count: usize,
     ) -> Result<(), Error> {
         let size = options.lookup_size;
+        if size == 0 {
+            *table = None;
+            return Ok(());
+        }
         let blocks = options.points.len().div_ceil(128) as u32;
         let limit = stage.device.limits().max_texture_dimension_3d;
-        if point_batches.len() > 1 || size * blocks > limit {
+        if point_batch_count > 1 || size * blocks > limit {
             return Err(Error::Unsupported {
                 technique,
                 needed: format!("a table of {size} × {size} × {} planes", u64::from(size) * u64::from(blocks)),

@@ -65,12 +65,10 @@ use std::collections::HashMap;
 
 use antumbra_light::{Light, LightShape};
 
-use crate::contract::{Error, PreparedFrame, param_choice};
+use crate::contract::param_choice;
 use crate::gpu::{Gpu, Stage, white_texture};
-use crate::light_map::readable_meshes::readable_meshes;
-use crate::mask::sparse_upsample::SparseUpsample;
 use crate::primitives::prefix_scan::PrefixScan;
-use crate::receivers::inputs::{FrameInputs, PreparedInputs, clip_depth_rows, matrix_rounding_m};
+use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 
 pub mod alias_free;
 mod batches;
@@ -85,6 +83,7 @@ mod light_points;
 mod lookup_table;
 mod pipelines;
 mod plan;
+mod prepare;
 mod raster;
 mod record;
 mod region;
@@ -96,22 +95,19 @@ mod tests;
 mod windows;
 
 use batches::{Batch, Surfaces};
-use buffers::{BufferSet, Buffers};
-use caster_groups::{RunGroup, run_groups, surface_group};
+use buffers::Buffers;
+use caster_groups::RunGroup;
 use drawn_lists::ListWindows;
-use evaluation::{Evaluation, Evaluations, PointBatch};
+use evaluation::Evaluation;
 use gpu_types::SampleSettings;
-use groups::{FrameGroups, Layouts, TABLE_FORMAT};
+use groups::{Layouts, TABLE_FORMAT};
 use irradiance::{Irradiance, PreparedIrradiance};
-use light_points::WORD;
 pub(crate) use light_points::{LocalPoint, local_points};
 use lookup_table::Table;
 use pipelines::{Evaluator, Pipelines};
-use plan::FramePlan;
 use raster::Raster;
 pub(crate) use raster::RasterOptions;
 pub(crate) use region::Region;
-use settings::{CELL_COUNT, SUBSET_ALL, SUBSET_KNOWN, SUBSET_MISSING};
 pub(crate) use settings::{CULL_FACING, CUT_BY_PLANE, PENUMBRA_ONLY, STOP_WHEN_OCCLUDED};
 use subset::{PreparedSubset, Subset};
 
@@ -213,15 +209,6 @@ struct Clears {
     work: wgpu::BindGroup,
 }
 
-impl Clears {
-    fn new(groups: &FrameGroups<'_>) -> Self {
-        let BufferSet { state, counts, cells, edges, penumbrae, work, .. } = groups.buffers;
-        let [state, counts, cells, edges, penumbrae, work] =
-            [state, counts, cells, edges, penumbrae, work].map(|buffer| groups.clear(buffer));
-        Self { state, counts, cells, edges, penumbrae, work }
-    }
-}
-
 #[derive(Debug)]
 struct PreparedBatch {
     casters: wgpu::BindGroup,
@@ -265,123 +252,6 @@ impl ViewSamples {
             irradiance: None,
             subset: None,
             windows: None,
-        }
-    }
-
-    /// Allocates and uploads a frame's data.
-    pub(crate) fn prepare(
-        &mut self,
-        stage: &Stage<'_>,
-        frame: &PreparedFrame<'_>,
-        options: &Options,
-    ) -> Result<PreparedSamples, Error> {
-        let technique = self.technique;
-        let meshes = readable_meshes(technique, frame, None)?;
-        // Points are in any order, so that nothing can be interpolated between them.
-        let is_sparse = options.is_sparse && frame.receivers.have_neighbours();
-        let inputs = self.inputs.prepare_known(stage, frame, if is_sparse { SparseUpsample::STRIDE_PX } else { 1 });
-        let plan =
-            FramePlan::new(technique, frame, meshes, options, stage.device.limits().max_storage_buffer_binding_size)?;
-        let point_batches: Vec<&[LocalPoint]> = options.points.chunks(plan.words * WORD).collect();
-        if options.lookup_size > 0 {
-            Table::prepare(&mut self.table, stage, technique, options, &point_batches)?;
-        } else {
-            self.table = None;
-        }
-        self.make_programs(stage, &plan, options);
-
-        let buffers = self.buffers.prepare(stage, &plan, &options.points);
-        self.list_scan.prepare(stage, buffers.counts, plan.list_count + 1);
-        self.cell_scan.prepare(stage, buffers.cells, CELL_COUNT + 1);
-        let [clip_z_row, clip_w_row] = clip_depth_rows(&frame.receivers);
-        let base = SampleSettings {
-            clip_z_row,
-            clip_w_row,
-            matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
-            subset: if is_sparse { SUBSET_KNOWN } else { SUBSET_ALL },
-            ..plan.settings(frame, meshes, options)
-        };
-        let base_uniform = settings_uniform(stage, &base);
-        let point_batches: Vec<PointBatch<'_>> =
-            (point_batches.iter().enumerate()).map(|(i, points)| PointBatch::new(stage, i, points)).collect();
-        let raster_targets = self.raster.as_mut().map(|raster| raster.prepare(stage, plan.window_side, options.drawn));
-        let layouts = &self.layouts;
-        let groups = FrameGroups { stage, layouts, buffers };
-        let evaluations = Evaluations {
-            groups,
-            inputs: &self.inputs,
-            evaluators: &self.evaluators,
-            plan: &plan,
-            options,
-            base: &base,
-            table: self.table.as_ref().map_or(&self.no_table, |table| &table.view),
-            raster_targets: raster_targets.as_ref(),
-        };
-        let prepare_batch = |(i, batch): (usize, &Batch)| {
-            let settings = settings_uniform(stage, &SampleSettings { triangle_stride: stride_of(batch), ..base });
-            let raster = &mut self.raster;
-            PreparedBatch {
-                evaluate: point_batches.iter().map(|points| evaluations.of(raster.as_mut(), i, points)).collect(),
-                casters: groups.casters(&settings),
-                arguments: groups.arguments(&settings),
-                boxes: groups.boxes(&settings),
-                surface: surface_group(stage, layouts, &self.no_texture, meshes, batch.surfaces),
-                runs: run_groups(stage, layouts, meshes, &batch.runs),
-                // Drawn triangles need no boxes.
-                clusters: if plan.is_drawn(batch) && !plan.chooses() { 0 } else { batch.triangles().div_ceil(64) },
-            }
-        };
-        let irradiance = options.weighs_irradiance.then(|| {
-            let irradiance = self.irradiance.get_or_insert_with(|| Irradiance::new(stage, &self.inputs));
-            irradiance.prepare(stage, buffers, &base_uniform, &options.points)
-        });
-        let subset = is_sparse.then(|| {
-            let missing = settings_uniform(stage, &SampleSettings { subset: SUBSET_MISSING, ..base });
-            let subset = self.subset.get_or_insert_with(|| Subset::new(stage, &self.inputs));
-            subset.prepare(stage, &self.inputs, frame, &inputs, (buffers, groups.lists(&missing)))
-        });
-        let prepared = PreparedSamples {
-            irradiance,
-            subset,
-            inputs,
-            dispatches: buffers.dispatches.clone(),
-            clears: Clears::new(&groups),
-            lists: groups.lists(&base_uniform),
-            stores_positions: plan.stores_positions,
-            chooses: plan.chooses(),
-            passes: groups.passes(),
-            edges: groups.casters(&base_uniform),
-            batches: plan.batches.iter().enumerate().map(prepare_batch).collect(),
-            edge_runs: run_groups(stage, layouts, meshes, plan.silhouette_runs()),
-        };
-        self.windows = Some(ListWindows {
-            count: plan.windows.map(|windows| windows.count),
-            side: plan.window_side,
-            are_chosen: plan.chooses(),
-        });
-        if let Some(table) = &mut self.table {
-            table.bind(stage, &layouts.make_lookup, &base_uniform, &point_batches[0].words);
-        }
-        Ok(prepared)
-    }
-
-    /// Creates missing pipelines of the frame's batches.
-    fn make_programs(&mut self, gpu: &Gpu, plan: &FramePlan, options: &Options) {
-        for batch in &plan.batches {
-            let evaluator = Evaluator::of(batch.surfaces, options);
-            let make = || evaluator.pipeline(gpu, &self.inputs, &self.layouts);
-            self.evaluators.entry(evaluator).or_insert_with(make);
-        }
-        if plan.windows.is_none() {
-            self.raster = None;
-        } else {
-            self.raster.get_or_insert_with(|| Raster::new(gpu, &self.inputs, &self.layouts));
-        }
-        if plan.stores_positions {
-            self.pipelines.prepare_storing(gpu, &self.inputs, &self.layouts);
-        }
-        if plan.chooses() {
-            self.pipelines.prepare_choice(gpu, &self.inputs, &self.layouts);
         }
     }
 

@@ -1,5 +1,7 @@
 //! Plan of a frame, computed before allocation: batches of triangles and light points, and their sizes.
 
+use std::fmt;
+
 use antumbra_light::Aabb;
 use glam::Vec3;
 
@@ -7,11 +9,15 @@ use super::batches::{BATCH_TRIANGLES, Batch, Run, Surfaces, batches_of};
 use super::gpu_types::SampleSettings;
 use super::light_points::{MAX_WORDS, WORD, world_box};
 use super::region::Region;
-use super::settings::{CELL_COUNT, CHOOSES, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE};
+use super::settings::{
+    CELL_COUNT, CHOOSES, FLAG_CLOSED, PENUMBRA_ONLY, PROJECT_PARALLEL, PROJECT_SPHERE, SUBSET_ALL, SUBSET_KNOWN,
+};
 use super::windows::Windows;
 use super::{Options, Traversal, is_weighted, stride_of};
 use crate::contract::{Error, MeshCaster, PreparedFrame};
+use crate::gpu::Stage;
 use crate::light_map::occluding_bounds::OccludingBounds;
+use crate::receivers::inputs::{clip_depth_rows, matrix_rounding_m};
 
 /// Largest size of the bits of all pixels, bytes; more light points are taken in turn.
 const BITS_BUDGET_BYTES: u64 = 120 << 20;
@@ -27,6 +33,8 @@ pub(super) const POSITIONS_BYTES: u64 = 32;
 #[derive(Clone, Debug)]
 pub(super) struct FramePlan {
     pub(super) pixels: u64,
+    /// Whether only every other pixel in both directions is listed at first.
+    pub(super) is_sparse: bool,
     /// Batches of triangles; the first is opaque.
     pub(super) batches: Vec<Batch>,
     /// Number of words of light points that are tested together.
@@ -58,24 +66,20 @@ impl FramePlan {
         options: &Options,
         binding_limit: u64,
     ) -> Result<Self, Error> {
-        let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
-        let towards = || Windows::towards(&frame.receivers, frame.light, &options.points, options.rotations > 0);
-        let windows = match options.traversal {
-            Traversal::Groups => None,
-            Traversal::Raster => Some(towards()),
-            Traversal::Chosen => Some(towards()).filter(|windows| windows.count == 1),
+        let check_fits = |bytes: u64, what: fmt::Arguments<'_>, remedy| {
+            if bytes <= binding_limit {
+                return Ok(());
+            }
+            let (needed, had) =
+                (format!("{bytes} bytes for {what}"), format!("at most {binding_limit} bytes per binding"));
+            Err(Error::Unsupported { technique, needed, had, remedy })
         };
+        let pixels = u64::from(frame.receivers.size_px.x) * u64::from(frame.receivers.size_px.y);
+        let windows = windows_of(frame, options);
         let chooses = windows.is_some() && options.traversal == Traversal::Chosen;
         let stores_positions = windows.is_some() && options.drawn.stored_positions;
         let listed_bytes = pixels * if stores_positions { POSITIONS_BYTES } else { 8 };
-        if listed_bytes > binding_limit {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("{listed_bytes} bytes for a list of {pixels} receivers"),
-                had: format!("at most {binding_limit} bytes per binding"),
-                remedy: "render the mask in several parts",
-            });
-        }
+        check_fits(listed_bytes, format_args!("a list of {pixels} receivers"), "render the mask in several parts")?;
 
         // A thread holds the bits of a batch of light points, and a buffer those of all pixels if they must outlast a
         // batch of triangles.
@@ -88,18 +92,16 @@ impl FramePlan {
         let words = stored_words.min(if is_textured { TEXTURED_WORDS } else { MAX_WORDS });
         let pixel_words =
             options.points.len().div_ceil(WORD).min(if options.keep_bits { usize::MAX } else { words }) as u32;
-        if options.keep_bits && pixels * u64::from(pixel_words) * 4 > binding_limit {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("{} bytes for the bits of every pixel", pixels * u64::from(pixel_words) * 4),
-                had: format!("at most {binding_limit} bytes per binding"),
-                remedy: "use fewer light points or a smaller mask, or set `keep_bits` to false",
-            });
+        if options.keep_bits {
+            let remedy = "use fewer light points or a smaller mask, or set `keep_bits` to false";
+            check_fits(pixels * u64::from(pixel_words) * 4, format_args!("the bits of every pixel"), remedy)?;
         }
 
         let window_side = options.map_size.next_power_of_two();
         let mut plan = Self {
             pixels,
+            // Points are in any order, so that nothing can be interpolated between them.
+            is_sparse: options.is_sparse && frame.receivers.have_neighbours(),
             words,
             pixel_words,
             windows,
@@ -180,17 +182,23 @@ impl FramePlan {
     /// Returns the settings that all passes of the frame share.
     pub(super) fn settings(
         &self,
+        stage: &Stage<'_>,
         frame: &PreparedFrame<'_>,
         meshes: &[MeshCaster<'_>],
         options: &Options,
     ) -> SampleSettings {
         let light = frame.light;
+        let [clip_z_row, clip_w_row] = clip_depth_rows(&frame.receivers);
         let whole = world_box(light, &options.points, options.rotations > 0);
         let bounds: Vec<Aabb> = meshes.iter().map(|mesh| mesh.bounds).collect();
         let between = OccludingBounds::new(light, &bounds, &frame.receivers.corners());
         let casters_box = between.all().fold(Aabb::EMPTY, Aabb::union);
         let casters_box = if casters_box.is_empty() { Aabb { min: Vec3::ZERO, max: Vec3::ZERO } } else { casters_box };
         let base = SampleSettings {
+            clip_z_row,
+            clip_w_row,
+            matrix_rounding_m: matrix_rounding_m(stage, &frame.receivers),
+            subset: if self.is_sparse { SUBSET_KNOWN } else { SUBSET_ALL },
             light_min: whole.min,
             point_count: options.points.len() as u32,
             light_max: whole.max,
@@ -228,5 +236,15 @@ impl FramePlan {
             window_light_max: windows.light.max,
             ..base
         }
+    }
+}
+
+/// Returns the windows over which triangles are drawn; `None` if groups of receivers walk them.
+fn windows_of(frame: &PreparedFrame<'_>, options: &Options) -> Option<Windows> {
+    let towards = || Windows::towards(&frame.receivers, frame.light, &options.points, options.rotations > 0);
+    match options.traversal {
+        Traversal::Groups => None,
+        Traversal::Raster => Some(towards()),
+        Traversal::Chosen => Some(towards()).filter(|windows| windows.count == 1),
     }
 }

@@ -109,16 +109,12 @@ impl LayerRelaxation {
         overlap: f32,
     ) -> PreparedRelaxation {
         let multisampled = map.sample_count > 1;
-        let (stride, grid) = match params.relax_over {
-            RelaxOver::Map | RelaxOver::MapAsPublished => {
-                let stride = map.size.max_element().div_ceil(MAX_NEIGHBOURHOODS);
-                (stride, UVec2::new(map.size.x.div_ceil(stride), map.size.y.div_ceil(stride)))
-            }
-            RelaxOver::View => {
-                let stride = view_size.max_element().div_ceil(MAX_RECEIVERS);
-                (stride, UVec2::new(view_size.x.div_ceil(stride), view_size.y.div_ceil(stride)))
-            }
+        let (size, most) = match params.relax_over {
+            RelaxOver::Map | RelaxOver::MapAsPublished => (map.size, MAX_NEIGHBOURHOODS),
+            RelaxOver::View => (view_size, MAX_RECEIVERS),
         };
+        let stride = size.max_element().div_ceil(most);
+        let grid = size.map(|texels| texels.div_ceil(stride));
         let is_distance = passes.is_distance();
         let (source, counts_background) = (params.relax_over, params.relax_background);
         let gathering = Gathering { source, multisampled, is_distance, counts_background, grid };
@@ -132,18 +128,7 @@ impl LayerRelaxation {
             ..LvsmHistogramUniform::default()
         };
         write_uniform(stage, &self.uniform, &uniform);
-        let how = Relaxation {
-            iterations: 1,
-            moved_count: params.splits_per_frame,
-            // A second occluder needs a split behind it; a receiver names the split itself.
-            shift: if params.relax_over == RelaxOver::Map { 1.5 * overlap } else { 0.0 },
-            min_gap: if params.relax_over == RelaxOver::MapAsPublished { MIN_LAYER } else { 3.0 * overlap },
-            teleport: match params.teleport {
-                LvsmTeleport::Inertia => Teleport::Inertia,
-                LvsmTeleport::Weight => Teleport::Weight,
-            },
-        };
-        self.lloyd.prepare(stage, params.layers - 1, &how);
+        self.lloyd.prepare(stage, params.layers - 1, &relaxation_of(params, overlap));
         let (layout, pipeline) = (&self.layout, &mut self.pipelines[gathering.index()]);
         let [distance] = passes.distance_constant();
         let pipeline = pipeline.get_or_insert_with(|| match params.relax_over {
@@ -197,5 +182,20 @@ impl LayerRelaxation {
 
     pub(super) fn memory_bytes(&self) -> u64 {
         self.gathering.map_or(0, |_| self.lloyd.memory_bytes())
+    }
+}
+
+/// Returns how a frame relaxes the splits.
+fn relaxation_of(params: &LvsmParams, overlap: f32) -> Relaxation {
+    Relaxation {
+        iterations: 1,
+        moved_count: params.splits_per_frame,
+        // A second occluder needs a split behind it; a receiver names the split itself.
+        shift: if params.relax_over == RelaxOver::Map { 1.5 * overlap } else { 0.0 },
+        min_gap: if params.relax_over == RelaxOver::MapAsPublished { MIN_LAYER } else { 3.0 * overlap },
+        teleport: match params.teleport {
+            LvsmTeleport::Inertia => Teleport::Inertia,
+            LvsmTeleport::Weight => Teleport::Weight,
+        },
     }
 }

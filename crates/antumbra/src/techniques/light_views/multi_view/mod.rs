@@ -79,53 +79,29 @@ use antumbra_light::{Aabb, LightPoint};
 use glam::{Mat4, Vec2, Vec3};
 
 use crate::contract::{DrawnMap, Error, MaskChannels, MeshCaster, Opacity, PreparedCasters, PreparedFrame};
-use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, samples, texels};
+use crate::gpu::{Gpu, Recorder, Span, Stage};
 use crate::light_map::caster_depth::{CasterDepth, DrawnView, check_map_size};
 use crate::light_map::caster_triangles::maps::TriangleMaps;
 use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 use crate::light_map::light_view::LightView;
 use crate::light_map::readable_meshes::readable_meshes;
 use crate::receivers::inputs::{FrameInputs, PreparedInputs};
-use crate::shaders;
 use crate::techniques::Technique;
 use crate::techniques::light_views::gpu_types::ALL_CHANNELS;
 use crate::techniques::light_views::{
-    Batch, BatchBindings, Comparison, DepthMapsBatch, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size,
-    light_points, shifted_apart, views_from,
+    Batch, Comparison, MapSamplers, PointChoice, SampleViews, UnitPoints, batch_size, light_points, shifted_apart,
+    views_from,
 };
 
+mod accumulation;
 pub(crate) mod bands;
 mod params;
 #[cfg(test)]
 mod tests;
 
+use accumulation::{Accumulations, BandGroup, BatchMaps};
 use bands::{Band, Bands};
 pub use params::{MultiViewCompare, MultiViewParams, MultiViewWindow};
-
-bindings! {
-    struct SharpBatch = "multi_view batch with slopes", COMPUTE, group 1 of [MULTI_VIEW_ACCUMULATE_SHARP],
-        with views: BatchBindings
-    {
-        3 maps: TextureArray(texels::DEPTH),
-        4 gather_sampler: Sampler(samples::TAKES),
-        6 edge_sums: ReadWrite,
-        7 gradients: TextureArray(texels::FLOAT),
-        9 band: Uniform,
-        10 snapped_texels: Uniform,
-    }
-
-    struct TrianglesBatch = "multi_view batch by triangles", COMPUTE, group 1 of [MULTI_VIEW_ACCUMULATE_TRIANGLES],
-        with views: BatchBindings
-    {
-        3 maps: TextureArray(texels::DEPTH),
-        4 gather_sampler: Sampler(samples::TAKES),
-        6 life_tables: ReadWrite,
-        7 triangle_maps: TextureArray(texels::UINT),
-        8 caster_triangles: Storage,
-        9 band: Uniform,
-        10 snapped_texels: Uniform,
-    }
-}
 
 /// Bound on the bytes of one batch's maps: within WebGPU's default buffer limit, and small enough for any adapter.
 const BATCH_BUDGET_BYTES: u64 = 64 << 20;
@@ -150,9 +126,7 @@ pub struct MultiView {
     layers: DepthLayers,
     /// Triangle maps, created on first use.
     triangle_maps: Option<TriangleMaps>,
-    by_depths: Accumulation,
-    by_slopes: Accumulation,
-    by_triangles: Accumulation,
+    accumulations: Accumulations,
     compare: MultiViewCompare,
     samplers: MapSamplers,
     unit_points: UnitPoints,
@@ -188,27 +162,6 @@ struct DrawnBatch {
 /// Colour weights of the light that a view counts, and the mask's channel that it is added to.
 type Color = (Vec3, u32);
 
-/// Bind group 1 for rows of the image.
-#[derive(Clone, Debug)]
-struct BandGroup {
-    rows: u32,
-    group: wgpu::BindGroup,
-}
-
-/// Pipeline that adds a batch to the mask, and the layout of its bind group 1.
-#[derive(Debug)]
-struct Accumulation {
-    layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
-}
-
-impl Accumulation {
-    fn new(gpu: &Gpu, inputs: &FrameInputs, wgsl: &'static str, layout: wgpu::BindGroupLayout) -> Self {
-        let pipeline = compute_pipeline(gpu, "multi_view accumulate", wgsl, &[&inputs.layout, &layout]);
-        Self { layout, pipeline }
-    }
-}
-
 impl Technique for MultiView {
     const NAME: &'static str = "multi_view";
     type Params = MultiViewParams;
@@ -216,13 +169,10 @@ impl Technique for MultiView {
 
     fn new(gpu: &Gpu) -> Result<Self, Error> {
         let inputs = FrameInputs::new(gpu);
-        let accumulation = |wgsl, layout| Accumulation::new(gpu, &inputs, wgsl, layout);
         Ok(Self {
             layers: DepthLayers::new(gpu),
             triangle_maps: None,
-            by_depths: accumulation(shaders::MULTI_VIEW_ACCUMULATE, DepthMapsBatch::layout(gpu)),
-            by_slopes: accumulation(shaders::MULTI_VIEW_ACCUMULATE_SHARP, SharpBatch::layout(gpu)),
-            by_triangles: accumulation(shaders::MULTI_VIEW_ACCUMULATE_TRIANGLES, TrianglesBatch::layout(gpu)),
+            accumulations: Accumulations::new(gpu, &inputs),
             compare: MultiViewCompare::Triangles,
             samplers: MapSamplers::new(gpu),
             inputs,
@@ -241,14 +191,7 @@ impl Technique for MultiView {
         params: &MultiViewParams,
     ) -> Result<PreparedViews, Error> {
         let technique = Self::NAME;
-        let PreparedCasters::Draws(meshes) = &frame.casters else {
-            return Err(Error::BadFrame {
-                technique,
-                what: "the kind of casters",
-                had: "`Casters::DepthMap`".into(),
-                needed: "meshes, because each light point has its own view".into(),
-            });
-        };
+        let meshes = frame.casters.meshes(technique, "each light point has its own view")?;
         check_map_size(stage, technique, params.view_size, "set a smaller `view_size`")?;
         self.compare = comparison_of(meshes, params);
         if self.compare == MultiViewCompare::Triangles {
@@ -272,11 +215,14 @@ impl Technique for MultiView {
         let channels: Vec<u32> = colors.iter().map(|(_, channel)| *channel).collect();
         self.sample_views.prepare_channels(stage, &points, &views, maps.views, &comparison, &channels);
         let of_color = self.sample_views.batches().len() / channels.len();
+        let accumulation = self.accumulations.of(self.compare);
+        let batch_maps =
+            BatchMaps { layers: &self.layers, triangles: self.triangle_maps.as_ref(), samplers: &self.samplers };
         let bind = |(i, batch): (usize, &Batch)| {
             let first = (i / of_color * views.len()) as u32 + batch.first;
             DrawnBatch {
                 views: first..first + batch.count,
-                groups: self.bind(stage, batch, frame.receivers.size_px.y, &bands),
+                groups: accumulation.bind(stage, batch, &batch_maps, frame.receivers.size_px.y, &bands),
             }
         };
         let batches = self.sample_views.batches().iter().enumerate().map(bind).collect();
@@ -285,7 +231,7 @@ impl Technique for MultiView {
         self.views = (views, params.view_size);
         Ok(PreparedViews {
             inputs,
-            accumulate: self.accumulation().pipeline.clone(),
+            accumulate: accumulation.pipeline.clone(),
             by_triangles: self.compare == MultiViewCompare::Triangles,
             batches,
         })
@@ -343,14 +289,6 @@ impl Technique for MultiView {
 }
 
 impl MultiView {
-    fn accumulation(&self) -> &Accumulation {
-        match self.compare {
-            MultiViewCompare::Triangles => &self.by_triangles,
-            MultiViewCompare::Sharp => &self.by_slopes,
-            MultiViewCompare::Gather | MultiViewCompare::Hardware => &self.by_depths,
-        }
-    }
-
     /// Returns the light points, and the view from each.
     fn points_and_views(
         &mut self,
@@ -412,44 +350,6 @@ impl MultiView {
         let views: Vec<_> = colors.iter().flat_map(of_color).collect();
         self.layers.prepare_views(stage, &views, meshes, of);
         Ok(())
-    }
-
-    /// Bind groups of a batch: one per band, or one for all of the image's rows if only depths are compared.
-    fn bind(&self, stage: &Stage<'_>, batch: &Batch, rows: u32, bands: &[Band]) -> Vec<BandGroup> {
-        let layout = &self.accumulation().layout;
-        let views = batch.bindings();
-        let MapSamplers { gather: gather_sampler, comparison: comparison_sampler } = &self.samplers;
-        if bands.is_empty() {
-            let maps = self.layers.depth_array();
-            let group = DepthMapsBatch { views, maps, gather_sampler, comparison_sampler }.group(stage, layout);
-            return vec![BandGroup { rows, group }];
-        }
-        let snapped_texels = stage.snapped_texels();
-        let mut groups = Vec::new();
-        for Band { rows, uniform: band, pixels } in bands {
-            let views = batch.bindings();
-            let group = if let Some(triangle_maps) = &self.triangle_maps {
-                let (maps, caster_triangles) = (triangle_maps.depth_array(), triangle_maps.triangles().buffer());
-                let (triangle_maps, life_tables) = (triangle_maps.id_array(), pixels);
-                TrianglesBatch {
-                    views,
-                    maps,
-                    gather_sampler,
-                    life_tables,
-                    triangle_maps,
-                    caster_triangles,
-                    band,
-                    snapped_texels,
-                }
-                .group(stage, layout)
-            } else {
-                let (maps, gradients) = (self.layers.depth_array(), self.layers.gradient_array());
-                SharpBatch { views, maps, gather_sampler, edge_sums: pixels, gradients, band, snapped_texels }
-                    .group(stage, layout)
-            };
-            groups.push(BandGroup { rows: *rows, group });
-        }
-        groups
     }
 
     /// Prepares the per-pixel state that is kept from batch to batch; only the mask if depths are compared.

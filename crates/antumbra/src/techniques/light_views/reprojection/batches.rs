@@ -122,17 +122,9 @@ impl Engine {
         frame: &PreparedFrame<'_>,
         settings: &Settings,
     ) -> Result<PreparedEngine, Error> {
-        let technique = self.technique;
-        let PreparedCasters::Draws(meshes) = &frame.casters else {
-            return Err(Error::BadFrame {
-                technique,
-                what: "the kind of casters",
-                had: "`Casters::DepthMap`".into(),
-                needed: "meshes, because the central map is fitted to the light's points".into(),
-            });
-        };
+        let meshes = frame.casters.meshes(self.technique, "the central map is fitted to the light's points")?;
         let largest = settings.central_size.max(settings.view_size);
-        check_map_size(stage, technique, largest, "set a smaller `view_size` or `central_scale`")?;
+        check_map_size(stage, self.technique, largest, "set a smaller `view_size` or `central_scale`")?;
         let inputs = self.inputs.prepare(stage, frame);
 
         let light = frame.light;
@@ -149,22 +141,11 @@ impl Engine {
             with_gradients: self.with_gradients,
         };
         let is_from_behind = views.behind.is_some();
-        let drawn = if is_from_behind { &open_about_light(light, meshes) } else { *meshes };
+        let drawn = if is_from_behind { &open_about_light(light, meshes) } else { meshes };
         self.layers.prepare(stage, &clip_from_world, drawn, layers_size);
 
         let (targets, in_batch) = self.make_targets(stage, &views, points.len() as u32)?;
-        let comparison = Comparison {
-            view_size: views.view_size,
-            hardware_compare: settings.filter == ReprojectionFilter::Draw,
-            bias_scale: if settings.bias_before { 0.0 } else { settings.bias_scale },
-            kernel_texels: 0.0,
-            light_radius: 0.0,
-            slope_bias_texels: match settings.splat {
-                Splat::Point => 0.5,
-                Splat::NearCentre(texels) => texels,
-                Splat::Surfel(_) => 0.0,
-            },
-        };
+        let comparison = comparison(settings, views.view_size);
         self.sample_views.prepare(stage, &points, &views.targets, in_batch, &comparison);
         let matrices = views.matrices(settings);
         let (groups, ranges) = matrices.groups(faces, self.sample_views.batches());
@@ -272,5 +253,21 @@ impl Engine {
     #[cfg(test)]
     pub(crate) fn limit_list(&mut self, piece: u32, kept: u64) {
         self.scatter.limit(super::surfel_list::Limits { piece, kept });
+    }
+}
+
+/// Returns the comparison of receivers with maps of `view_size`² texels.
+fn comparison(settings: &Settings, view_size: u32) -> Comparison {
+    Comparison {
+        view_size,
+        hardware_compare: settings.filter == ReprojectionFilter::Draw,
+        bias_scale: if settings.bias_before { 0.0 } else { settings.bias_scale },
+        kernel_texels: 0.0,
+        light_radius: 0.0,
+        slope_bias_texels: match settings.splat {
+            Splat::Point => 0.5,
+            Splat::NearCentre(texels) => texels,
+            Splat::Surfel(_) => 0.0,
+        },
     }
 }

@@ -51,6 +51,7 @@ mod params;
 mod program;
 mod resolve;
 mod scatter;
+mod scatter_program;
 pub(crate) mod settings;
 mod surfel_list;
 #[cfg(test)]

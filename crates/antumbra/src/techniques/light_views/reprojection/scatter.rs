@@ -1,22 +1,19 @@
 //! Scatter of the central views' fragments into a batch of integer maps.
 
-use std::sync::{Arc, LazyLock};
+use std::sync::Arc;
 
 use antumbra_light::{Aabb, LightPoint};
 use glam::UVec2;
 
 use super::central::{GroupRange, Views};
 use super::gpu_types::{SplatBatch, ViewGroup};
-use super::program::compute_program;
-use super::settings::{Settings, Source, Splat};
+use super::scatter_program::{PipelineKey, Program, ScatterLayouts, Scattering};
+use super::settings::{Settings, Splat};
 use super::surfel_list::{Limits, PreparedList, SurfelList};
 use crate::contract::MeshCaster;
-use crate::gpu::{
-    Bindings, DrawPipeline, Gpu, NoDepth, Recorder, Span, Stage, bindings, sized_buffer, texels, with_early_depth_test,
-};
-use crate::light_map::caster_depth::{CasterDepth, CasterProgram, CasterProgramDescriptor};
-use crate::light_map::depth_layers::DepthLayers;
-use crate::shaders;
+use crate::gpu::{Bindings, Gpu, NoDepth, Recorder, Span, Stage, bindings, sized_buffer, texels};
+use crate::light_map::caster_depth::{CasterDepth, CasterProgram};
+use crate::light_map::depth_layers::{DepthLayers, LayersSize};
 
 bindings! {
     struct CentralMap = "central map", COMPUTE | FRAGMENT, group 1 of [REPROJECTION_SPLAT_POINTS, REPROJECTION_SPLAT_SCREEN] {
@@ -69,9 +66,7 @@ pub(super) struct Targets {
 /// Passes from central maps to integer maps.
 #[derive(Debug)]
 pub(super) struct Scatter {
-    group_layout: wgpu::BindGroupLayout,
-    rasterised_layout: wgpu::BindGroupLayout,
-    central_layout: wgpu::BindGroupLayout,
+    layouts: ScatterLayouts,
     program: Option<(PipelineKey, Arc<Program>)>,
     /// List of surfels that compute scatters; created on first use.
     list: Option<SurfelList>,
@@ -79,40 +74,6 @@ pub(super) struct Scatter {
     groups: Option<wgpu::Buffer>,
     /// Depth attachment of a fragment pass over a central map, which is not attached itself while it is read.
     no_depth: Option<NoDepth>,
-}
-
-/// Key of the pipelines.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct PipelineKey {
-    scattering: Scattering,
-    is_surfel: bool,
-    synchronized: bool,
-    is_affine: bool,
-    tries_faces: bool,
-    has_reach: bool,
-    brings_together: bool,
-}
-
-/// Stage in which fragments are scattered.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Scattering {
-    Compute,
-    Screen,
-    /// Rasterisation of the central view, of only the nearest fragments or all.
-    Raster {
-        nearest: bool,
-    },
-}
-
-/// Pipelines of one key; created on first use, since a host uses one.
-#[derive(Debug)]
-enum Program {
-    /// Compute pass with one thread per 2 × 2 texels.
-    Points(wgpu::ComputePipeline),
-    /// Compute pass with one thread per surfel of the list.
-    Surfels(wgpu::ComputePipeline),
-    Screen(wgpu::RenderPipeline),
-    Raster(CasterProgram),
 }
 
 /// Scatter of one frame.
@@ -135,9 +96,11 @@ struct ViewSplat {
 impl Scatter {
     pub(super) fn new(gpu: &Gpu) -> Self {
         Self {
-            group_layout: GroupSplat::layout(gpu),
-            rasterised_layout: RasterisedSplat::layout(gpu),
-            central_layout: CentralMap::layout(gpu),
+            layouts: ScatterLayouts {
+                central: CentralMap::layout(gpu),
+                group: GroupSplat::layout(gpu),
+                rasterised: RasterisedSplat::layout(gpu),
+            },
             program: None,
             list: None,
             limits: Limits::DEFAULT,
@@ -167,12 +130,13 @@ impl Scatter {
         let key = PipelineKey::of(settings, views, is_affine);
         let is_listed = key.scattering == Scattering::Compute && key.is_surfel;
         if is_listed {
-            self.list.get_or_insert_with(|| SurfelList::new(stage, &self.group_layout));
+            self.list.get_or_insert_with(|| SurfelList::new(stage, &self.layouts.group));
         } else {
             self.list = None;
         }
         let made = self.program.take().filter(|(made, _)| *made == key);
-        let program = made.map_or_else(|| Arc::new(self.make_program(stage, layers, key)), |(_, program)| program);
+        let make = || Arc::new(Program::new(stage, &self.layouts, layers, self.list.as_ref(), key));
+        let program = made.map_or_else(make, |(_, program)| program);
         self.program = Some((key, Arc::clone(&program)));
         let screen_size = UVec2::splat(layers.size().size.div_ceil(FRAGMENT_TEXELS));
         self.no_depth = (key.scattering == Scattering::Screen).then(|| match self.no_depth.take() {
@@ -185,9 +149,9 @@ impl Scatter {
             let (batch, targets) = (&uniform, &targets.buffer);
             let bind_group = match key.scattering {
                 Scattering::Raster { .. } => {
-                    RasterisedSplat { batch, view_groups: &buffer, targets }.group(stage, &self.rasterised_layout)
+                    RasterisedSplat { batch, view_groups: &buffer, targets }.group(stage, &self.layouts.rasterised)
                 }
-                _ => GroupSplat { batch, views: &buffer, targets }.group(stage, &self.group_layout),
+                _ => GroupSplat { batch, views: &buffer, targets }.group(stage, &self.layouts.group),
             };
             ViewSplat { bind_group, groups }
         };
@@ -197,85 +161,8 @@ impl Scatter {
         let batches = ranges.iter().map(of_batch).collect();
         let list = self.list.as_mut().map(|list| list.prepare(stage, layers, self.limits));
         let central = (settings.source.needs_central_map() && !is_listed)
-            .then(|| CentralMap { central_depth: layers.depth_array() }.group(stage, &self.central_layout));
+            .then(|| CentralMap { central_depth: layers.depth_array() }.group(stage, &self.layouts.central));
         PreparedScatter { program, central, list, batches }
-    }
-
-    fn make_program(&self, gpu: &Gpu, layers: &DepthLayers, key: PipelineKey) -> Program {
-        let constant = |name: &'static str, value: bool| (name, f64::from(u8::from(value)));
-        let of_all = [
-            constant("SYNCHRONIZED", key.synchronized),
-            constant("IS_AFFINE", key.is_affine),
-            constant("TRIES_FACES", key.tries_faces),
-        ];
-        let of_points = [of_all.as_slice(), &[constant("HAS_REACH", key.has_reach)]].concat();
-        let of_quads = [of_points.as_slice(), &[constant("BRINGS_TOGETHER", key.brings_together)]].concat();
-        let of_rasterised = [of_points.as_slice(), &[constant("IS_SURFEL", key.is_surfel)]].concat();
-        match key.scattering {
-            Scattering::Compute if key.is_surfel => {
-                let list = self.list.as_ref().expect("created before its program");
-                let layouts = [None, Some(list.listed_layout()), Some(&self.group_layout)];
-                Program::Surfels(compute_program(gpu, shaders::REPROJECTION_SPLAT_SURFELS, &layouts, &of_all))
-            }
-            Scattering::Compute => {
-                let wgsl = shaders::REPROJECTION_SPLAT_POINTS;
-                Program::Points(compute_program(gpu, wgsl, &self.map_layouts(), &of_quads))
-            }
-            Scattering::Screen => {
-                let screen = DrawPipeline {
-                    label: "reprojection by fragments",
-                    wgsl: shaders::REPROJECTION_SPLAT_SCREEN,
-                    layouts: &self.map_layouts(),
-                    fragment: Some("splat"),
-                    constants: &of_quads,
-                    depth: Some(NoDepth::state()),
-                    ..DrawPipeline::default()
-                };
-                Program::Screen(screen.create(gpu))
-            }
-            Scattering::Raster { nearest } => {
-                Program::Raster(self.raster_program(gpu, layers, nearest, &of_rasterised))
-            }
-        }
-    }
-
-    /// Layouts of groups 1, the central map, and 2, the splat; group 0 is the casters', if there are any.
-    fn map_layouts(&self) -> [Option<&wgpu::BindGroupLayout>; 3] {
-        [None, Some(&self.central_layout), Some(&self.group_layout)]
-    }
-
-    /// Pipelines that scatter while rasterising. `nearest`: with the depth test, before the fragment stage if the device
-    /// supports that; otherwise hidden fragments are reprojected, too.
-    fn raster_program(
-        &self,
-        gpu: &Gpu,
-        layers: &DepthLayers,
-        nearest: bool,
-        constants: &[(&str, f64)],
-    ) -> CasterProgram {
-        let early = nearest && gpu.has(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
-        let [opaque_wgsl, cutout_wgsl] = if early {
-            [&EARLY_OPAQUE, &EARLY_CUTOUT].map(|text| text.as_str())
-        } else {
-            [shaders::REPROJECTION_SPLAT_OPAQUE, shaders::REPROJECTION_SPLAT_CUTOUT]
-        };
-        layers.casters().program(
-            gpu,
-            &CasterProgramDescriptor {
-                label: "reprojection while rasterising",
-                opaque_wgsl,
-                cutout_wgsl,
-                opaque_fragment: Some("splat"),
-                cutout_fragment: "splat",
-                constants,
-                layout: Some(&self.rasterised_layout),
-                targets: &[],
-                depth_compare: if nearest { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Always },
-                depth_write: nearest,
-                front_faces_of_solids: !nearest,
-                sample_count: 1,
-            },
-        )
     }
 
     /// Clears the maps and scatters all central views into batch `index`.
@@ -290,63 +177,44 @@ impl Scatter {
     ) {
         let program = &*prepared.program;
         let splats = &prepared.batches[index];
-        let held = layers.size();
-        let offsets = |groups: GroupRange| {
-            (groups.first..groups.first + groups.count).map(|group| group * size_of::<ViewGroup>() as u32)
-        };
         let clear = |recorder: &mut Recorder<'_>| {
             recorder.commands(REPROJECT, Span::First, |encoder| encoder.clear_buffer(&targets.buffer, 0, None));
         };
         if let (Program::Surfels(pipeline), Some(list), Some(of_frame)) = (program, &self.list, &prepared.list) {
-            let splats: Vec<_> =
-                splats.iter().map(|splat| (&splat.bind_group, offsets(splat.groups).collect())).collect();
+            let splats: Vec<_> = splats.iter().map(|splat| (&splat.bind_group, splat.offsets().collect())).collect();
             list.record_collect(recorder, of_frame, index == 0, &splats);
             clear(recorder);
             list.record_scatter(recorder, REPROJECT, of_frame, pipeline, &splats);
             return;
         }
         clear(recorder);
-        if let Program::Points(pipeline) = program {
-            recorder.compute(REPROJECT, Span::Last, |pass| {
+        let central = prepared.central.as_ref();
+        match program {
+            Program::Surfels(_) => {}
+            Program::Points(pipeline) => record_points(recorder, pipeline, layers.size(), central, splats),
+            Program::Screen(pipeline) => self.record_screen(recorder, pipeline, central, splats),
+            Program::Raster(program) => record_raster(recorder, program, layers, splats, meshes),
+        }
+    }
+
+    /// Records the scatter by fragments that cover the central maps.
+    fn record_screen(
+        &self,
+        recorder: &mut Recorder<'_>,
+        pipeline: &wgpu::RenderPipeline,
+        central: Option<&wgpu::BindGroup>,
+        splats: &[ViewSplat],
+    ) {
+        let no_depth = self.no_depth.as_ref().expect("`prepare` creates it for this path");
+        for (view, splat) in splats.iter().enumerate() {
+            recorder.render_pass(REPROJECT, span_of(view, splats), &[], no_depth.view(), None, |pass| {
                 pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, prepared.central.as_ref(), &[]);
-                let tiles = held.size.div_ceil(TILE_TEXELS);
-                for splat in splats {
-                    for offset in offsets(splat.groups) {
-                        pass.set_bind_group(2, &splat.bind_group, &[offset]);
-                        pass.dispatch_workgroups(tiles, tiles, held.layers);
-                    }
+                pass.set_bind_group(1, central, &[]);
+                for offset in splat.offsets() {
+                    pass.set_bind_group(2, &splat.bind_group, &[offset]);
+                    pass.draw(0..3, 0..1);
                 }
             });
-            return;
-        }
-        for (view, splat) in splats.iter().enumerate() {
-            let span = if view + 1 == splats.len() { Span::Last } else { Span::Middle };
-            let slice = &layers.depth_slices()[view * held.layers as usize];
-            match program {
-                Program::Points(_) | Program::Surfels(_) => {}
-                Program::Screen(pipeline) => {
-                    let no_depth = self.no_depth.as_ref().expect("`prepare` creates it for this path");
-                    recorder.render_pass(REPROJECT, span, &[], no_depth.view(), None, |pass| {
-                        pass.set_pipeline(pipeline);
-                        pass.set_bind_group(1, prepared.central.as_ref(), &[]);
-                        for offset in offsets(splat.groups) {
-                            pass.set_bind_group(2, &splat.bind_group, &[offset]);
-                            pass.draw(0..3, 0..1);
-                        }
-                    });
-                }
-                Program::Raster(program) => {
-                    let ops = wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH),
-                        store: wgpu::StoreOp::Discard,
-                    };
-                    recorder.render_pass(REPROJECT, span, &[], slice, Some(ops), |pass| {
-                        pass.set_bind_group(2, &splat.bind_group, &[]);
-                        layers.casters().draw_with(program, pass, view as u32, meshes);
-                    });
-                }
-            }
         }
     }
 
@@ -367,25 +235,57 @@ impl Scatter {
     }
 }
 
-impl PipelineKey {
-    fn of(settings: &Settings, views: &Views, is_affine: bool) -> Self {
-        let scattering = match settings.source {
-            Source::LayersByCompute(_) => Scattering::Compute,
-            Source::LayerByFragments => Scattering::Screen,
-            Source::NearestWhileRasterising => Scattering::Raster { nearest: true },
-            Source::AllWhileRasterising => Scattering::Raster { nearest: false },
-        };
-        let is_surfel = matches!(settings.splat, Splat::Surfel(_));
-        Self {
-            scattering,
-            is_surfel,
-            synchronized: settings.synchronized,
-            is_affine,
-            tries_faces: views.central.len() > 1,
-            has_reach: matches!(settings.splat, Splat::NearCentre(_)),
-            brings_together: settings.brings_together,
-        }
+impl ViewSplat {
+    /// Offset of each group's views, bytes.
+    fn offsets(&self) -> impl Iterator<Item = u32> {
+        let GroupRange { first, count } = self.groups;
+        (first..first + count).map(|group| group * size_of::<ViewGroup>() as u32)
     }
+}
+
+/// Records the scatter by a thread per 2 × 2 texels.
+fn record_points(
+    recorder: &mut Recorder<'_>,
+    pipeline: &wgpu::ComputePipeline,
+    size: LayersSize,
+    central: Option<&wgpu::BindGroup>,
+    splats: &[ViewSplat],
+) {
+    recorder.compute(REPROJECT, Span::Last, |pass| {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, central, &[]);
+        let tiles = size.size.div_ceil(TILE_TEXELS);
+        for splat in splats {
+            for offset in splat.offsets() {
+                pass.set_bind_group(2, &splat.bind_group, &[offset]);
+                pass.dispatch_workgroups(tiles, tiles, size.layers);
+            }
+        }
+    });
+}
+
+/// Records the scatter by the fragments of the casters, drawn in the central views.
+fn record_raster(
+    recorder: &mut Recorder<'_>,
+    program: &CasterProgram,
+    layers: &DepthLayers,
+    splats: &[ViewSplat],
+    meshes: &[MeshCaster<'_>],
+) {
+    for (view, splat) in splats.iter().enumerate() {
+        let slice = &layers.depth_slices()[view * layers.size().layers as usize];
+        let ops =
+            wgpu::Operations { load: wgpu::LoadOp::Clear(CasterDepth::CLEAR_DEPTH), store: wgpu::StoreOp::Discard };
+        recorder.render_pass(REPROJECT, span_of(view, splats), &[], slice, Some(ops), |pass| {
+            pass.set_bind_group(2, &splat.bind_group, &[]);
+            layers.casters().draw_with(program, pass, view as u32, meshes);
+        });
+    }
+}
+
+/// Returns the span of a view's pass, after the clear.
+fn span_of(view: usize, splats: &[ViewSplat]) -> Span {
+    if view + 1 == splats.len() { Span::Last } else { Span::Middle }
 }
 
 fn splat_batch(
@@ -426,7 +326,3 @@ fn splat_batch(
         ..views.light_in_central(view, points)
     }
 }
-
-/// Shaders with the depth test before the fragment stage.
-static EARLY_OPAQUE: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_OPAQUE));
-static EARLY_CUTOUT: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::REPROJECTION_SPLAT_CUTOUT));

@@ -6,18 +6,20 @@
 //! A mesh with a [`version`](MeshCaster::version) is built once, and refitted where its vertices changed. A mesh without one is refitted in
 //! each frame: correct after any change, but with the hierarchy of its first frame.
 
-use std::collections::{HashMap, HashSet};
-use std::ops::Range;
-
-use range_alloc::RangeAllocator;
+use std::collections::HashSet;
 
 use super::gpu_types::{Segment, SourceRange};
-use super::tree::{FRAME_VECTORS, Forest, Level, TreePrograms};
+use super::tree::{Forest, Level, TreePrograms};
 use crate::contract::{Error, MeshCaster};
 use crate::gpu::{
     Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipeline, dispatch_threads, shared_constants,
 };
 use crate::shaders;
+
+mod kept;
+
+pub(super) use kept::MeshPlace;
+use kept::{KeptMeshes, MeshKey, Outdated, UsedMesh};
 
 bindings! {
     struct Kept = "kept triangles", COMPUTE, group 0 of [RAY_GATHER, RAY_PLACE, RAY_RECALL] {
@@ -41,65 +43,6 @@ shared_constants! {
     const FIRST_MASK: u32 = 0x1ff_ffff, as in RAY_TRACE;
 }
 
-/// Size of a vector, the unit of nodes and triangles, bytes.
-const VECTOR_BYTES: u64 = 16;
-
-/// Position of a mesh's tree, in vectors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct MeshPlace {
-    /// Its box, then its nodes.
-    pub(super) first_node: u32,
-    pub(super) first_triangle: u32,
-    pub(super) triangle_stride: u32,
-}
-
-/// Identity of a mesh.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-enum MeshKey {
-    /// Mesh with a version, with or without texture coordinates.
-    Versioned { mesh: u64, has_uvs: bool },
-    /// Mesh identified by its buffers.
-    Buffers { positions: wgpu::Buffer, indices: wgpu::Buffer, uvs: Option<wgpu::Buffer>, first: u32, count: u32 },
-}
-
-impl MeshKey {
-    fn of(caster: &MeshCaster<'_>) -> Self {
-        let uvs = caster.opacity.texture().map(|texture| texture.uvs);
-        match caster.version {
-            Some(version) => Self::Versioned { mesh: version.mesh, has_uvs: uvs.is_some() },
-            None => Self::Buffers {
-                positions: caster.positions.clone(),
-                indices: caster.indices.clone(),
-                uvs: uvs.cloned(),
-                first: caster.first_triangle,
-                count: caster.index_count,
-            },
-        }
-    }
-}
-
-#[derive(Debug)]
-struct KeptMesh {
-    nodes: Range<u64>,
-    triangles: Range<u64>,
-    triangle_count: u32,
-    triangle_stride: u32,
-    /// Version of the vertices that the boxes contain.
-    vertices: Option<u64>,
-    /// Last frame that used the mesh.
-    frame: u64,
-}
-
-impl KeptMesh {
-    fn place(&self) -> MeshPlace {
-        MeshPlace {
-            first_node: self.nodes.start as u32,
-            first_triangle: self.triangles.start as u32,
-            triangle_stride: self.triangle_stride,
-        }
-    }
-}
-
 /// Pipelines of the passes over meshes.
 #[derive(Debug)]
 struct Programs {
@@ -114,20 +57,9 @@ struct Programs {
 #[derive(Debug)]
 pub(super) struct Meshes {
     programs: Programs,
-    kept: HashMap<MeshKey, KeptMesh>,
-    frame: u64,
-    nodes: VectorPool,
-    triangles: VectorPool,
+    kept: KeptMeshes,
     made: Option<Work>,
     fitted: Option<Work>,
-}
-
-/// Buffer of vectors, and which of them are allocated.
-#[derive(Debug)]
-struct VectorPool {
-    label: &'static str,
-    buffer: Option<wgpu::Buffer>,
-    ranges: RangeAllocator<u64>,
 }
 
 /// Trees that are built, or refitted, in a frame.
@@ -136,49 +68,6 @@ struct Work {
     forest: Forest,
     kept: wgpu::BindGroup,
     sources: Vec<(wgpu::BindGroup, u32)>,
-}
-
-impl VectorPool {
-    fn new(label: &'static str) -> Self {
-        Self { label, buffer: None, ranges: RangeAllocator::new(0..0) }
-    }
-
-    /// Discards the content and allocates space for `vectors`, at most what a binding can hold.
-    fn renew(&mut self, gpu: &Gpu, vectors: u64) {
-        self.ranges = RangeAllocator::new(0..vectors);
-        self.buffer = Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(self.label),
-            size: VECTOR_BYTES * vectors,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        }));
-    }
-
-    fn buffer(&self) -> &wgpu::Buffer {
-        self.buffer.as_ref().expect("prepare comes before use")
-    }
-}
-
-/// Mesh that a frame uses, and one of its casters.
-struct UsedMesh<'a, 'c> {
-    key: MeshKey,
-    caster: &'a MeshCaster<'c>,
-}
-
-impl UsedMesh<'_, '_> {
-    fn triangle_count(&self) -> u32 {
-        self.caster.index_count / 3
-    }
-
-    fn triangle_stride(&self) -> u32 {
-        if self.caster.opacity.texture().is_some() { 4 } else { 3 }
-    }
-
-    /// Returns the number of vectors for nodes and for triangles.
-    fn vectors(&self) -> [u64; 2] {
-        let count = u64::from(self.triangle_count());
-        [count + u64::from(FRAME_VECTORS), count * u64::from(self.triangle_stride())]
-    }
 }
 
 impl Meshes {
@@ -193,10 +82,7 @@ impl Meshes {
                 kept_layout: kept,
                 source_layout: source,
             },
-            kept: HashMap::new(),
-            frame: 0,
-            nodes: VectorPool::new("antumbra mesh nodes"),
-            triangles: VectorPool::new("antumbra mesh triangles"),
+            kept: KeptMeshes::new(),
             made: None,
             fitted: None,
         }
@@ -211,7 +97,6 @@ impl Meshes {
         technique: &'static str,
         casters: &[&MeshCaster<'_>],
     ) -> Result<Vec<MeshPlace>, Error> {
-        self.frame += 1;
         let keys: Vec<MeshKey> = casters.iter().map(|caster| MeshKey::of(caster)).collect();
         let mut used: Vec<UsedMesh<'_, '_>> = Vec::new();
         let mut is_asked = HashSet::new();
@@ -220,106 +105,10 @@ impl Meshes {
                 used.push(UsedMesh { key: key.clone(), caster });
             }
         }
-        for mesh in &used {
-            if let Some(kept) = self.kept.get_mut(&mesh.key) {
-                // A different size means a different mesh, whatever its version.
-                let is_it = kept.triangle_count == mesh.triangle_count();
-                kept.frame = if is_it { self.frame } else { 0 };
-            }
-        }
-        let frame = self.frame;
-        let is_here = |kept: &HashMap<MeshKey, KeptMesh>, mesh: &UsedMesh<'_, '_>| {
-            kept.get(&mesh.key).is_some_and(|kept| kept.frame == frame)
-        };
-        let mut to_build: Vec<&UsedMesh<'_, '_>> = used.iter().filter(|mesh| !is_here(&self.kept, mesh)).collect();
-        if !(self.nodes.buffer.is_some() && to_build.iter().all(|mesh| self.take(mesh))) {
-            self.renew(stage, technique, &used)?;
-            to_build = used.iter().collect();
-        }
-        let made: HashSet<&MeshKey> = to_build.iter().map(|mesh| &mesh.key).collect();
-        let mut to_fit: Vec<&UsedMesh<'_, '_>> = Vec::new();
-        for mesh in &used {
-            let vertices = mesh.caster.version.map(|version| version.vertices);
-            let kept = self.kept.get_mut(&mesh.key).expect("inserted above");
-            if !made.contains(&mesh.key) && (vertices.is_none() || kept.vertices != vertices) {
-                to_fit.push(mesh);
-            }
-            kept.vertices = vertices;
-        }
+        let Outdated { to_build, to_fit } = self.kept.keep(stage, technique, &used)?;
         self.made = self.work(stage, trees, true, &to_build);
         self.fitted = self.work(stage, trees, false, &to_fit);
-        Ok(keys.iter().map(|key| self.kept[key].place()).collect())
-    }
-
-    /// Allocates space for a mesh, replacing meshes that the frame does not use if necessary. Returns whether there is space.
-    fn take(&mut self, mesh: &UsedMesh<'_, '_>) -> bool {
-        if let Some(old) = self.kept.remove(&mesh.key) {
-            self.give_back(&old);
-        }
-        let taken = self.try_take(mesh).or_else(|| {
-            let frame = self.frame;
-            let gone: Vec<KeptMesh> =
-                self.kept.extract_if(|_, kept| kept.frame != frame).map(|(_, kept)| kept).collect();
-            gone.iter().for_each(|kept| self.give_back(kept));
-            self.try_take(mesh)
-        });
-        let Some([nodes, triangles]) = taken else { return false };
-        let (triangle_count, triangle_stride, frame) = (mesh.triangle_count(), mesh.triangle_stride(), self.frame);
-        let kept = KeptMesh { nodes, triangles, triangle_count, triangle_stride, vertices: None, frame };
-        self.kept.insert(mesh.key.clone(), kept);
-        true
-    }
-
-    fn try_take(&mut self, mesh: &UsedMesh<'_, '_>) -> Option<[Range<u64>; 2]> {
-        let [nodes, triangles] = mesh.vectors();
-        let nodes = self.nodes.ranges.allocate_range(nodes).ok()?;
-        match self.triangles.ranges.allocate_range(triangles) {
-            Ok(triangles) => Some([nodes, triangles]),
-            Err(_) => {
-                self.nodes.ranges.free_range(nodes);
-                None
-            }
-        }
-    }
-
-    fn give_back(&mut self, kept: &KeptMesh) {
-        self.nodes.ranges.free_range(kept.nodes.clone());
-        self.triangles.ranges.free_range(kept.triangles.clone());
-    }
-
-    /// Allocates space for all meshes of a frame if it is too small: exactly at first, with half as much again later.
-    fn renew(&mut self, stage: &Stage<'_>, technique: &'static str, used: &[UsedMesh<'_, '_>]) -> Result<(), Error> {
-        if let Some(mesh) = used.iter().find(|mesh| mesh.triangle_count() > FIRST_MASK) {
-            return Err(Error::Unsupported {
-                technique,
-                needed: format!("a tree over a mesh with {} triangles", mesh.triangle_count()),
-                had: format!("a limit of {FIRST_MASK} per tree"),
-                remedy: "split the mesh",
-            });
-        }
-        let is_first = self.nodes.buffer.is_none();
-        let max_bytes = stage.device.limits().max_storage_buffer_binding_size;
-        let needed =
-            used.iter().map(UsedMesh::vectors).fold([0; 2], |[a, b], [nodes, triangles]| [a + nodes, b + triangles]);
-        for (room, needed) in [&mut self.nodes, &mut self.triangles].into_iter().zip(needed) {
-            if needed * VECTOR_BYTES > max_bytes {
-                let count: u64 = used.iter().map(|mesh| u64::from(mesh.triangle_count())).sum();
-                return Err(Error::Unsupported {
-                    technique,
-                    needed: format!("{} bytes for the trees of {count} triangles", needed * VECTOR_BYTES),
-                    had: format!("at most {max_bytes} bytes per binding"),
-                    remedy: "use fewer or coarser meshes, or request a larger max_storage_buffer_binding_size",
-                });
-            }
-            let with_more = if is_first { needed } else { needed + needed / 2 };
-            room.renew(stage, with_more.min(max_bytes / VECTOR_BYTES).max(u64::from(FRAME_VECTORS)));
-        }
-        self.kept.clear();
-        for mesh in used {
-            let is_taken = self.take(mesh);
-            debug_assert!(is_taken, "there is room for all");
-        }
-        Ok(())
+        Ok(keys.iter().map(|key| self.kept.place(key)).collect())
     }
 
     fn work(
@@ -335,7 +124,7 @@ impl Meshes {
         }
         let mut forest = before.map_or_else(|| Forest::new(stage), |work| work.forest);
         let segment = |mesh: &&UsedMesh<'_, '_>| {
-            let place = self.kept[&mesh.key].place();
+            let place = self.kept.place(&mesh.key);
             Segment {
                 item_count: mesh.triangle_count(),
                 first_node: place.first_node,
@@ -346,15 +135,10 @@ impl Meshes {
             }
         };
         let mut segments: Vec<Segment> = meshes.iter().map(segment).collect();
-        forest.prepare(stage, trees, Level::Triangles, makes, &mut segments, self.nodes.buffer());
+        forest.prepare(stage, trees, Level::Triangles, makes, &mut segments, self.nodes());
         let (shape, table) = forest.shape();
-        let kept = Kept {
-            shape,
-            segments: table,
-            items: forest.items(),
-            order: forest.order(),
-            triangles: self.triangles.buffer(),
-        };
+        let kept =
+            Kept { shape, segments: table, items: forest.items(), order: forest.order(), triangles: self.triangles() };
         let kept = kept.group(stage, &self.programs.kept_layout);
         let mut sources = Vec::new();
         let mut first_item = 0;
@@ -402,12 +186,12 @@ impl Meshes {
 
     /// `array<vec4u>`: see `tree/nodes.wesl`.
     pub(super) fn nodes(&self) -> &wgpu::Buffer {
-        self.nodes.buffer()
+        self.kept.nodes.buffer()
     }
 
     /// `array<vec4u>`: see `mesh/source.wesl`.
     pub(super) fn triangles(&self) -> &wgpu::Buffer {
-        self.triangles.buffer()
+        self.kept.triangles.buffer()
     }
 
     /// Whether no tree was built or refitted in the last frame.
@@ -418,7 +202,7 @@ impl Meshes {
 
     /// Size of the trees without the buffers for building them, bytes.
     pub(super) fn kept_bytes(&self) -> u64 {
-        [&self.nodes, &self.triangles].into_iter().filter_map(|room| room.buffer.as_ref()).map(wgpu::Buffer::size).sum()
+        self.kept.bytes()
     }
 
     pub(super) fn memory_bytes(&self) -> u64 {

@@ -15,48 +15,14 @@
 //! would need one workgroup to see another's writes of the same dispatch. If items move and keep their order, only the pyramid and the
 //! boxes are recomputed: this is how deformed meshes are refitted.
 
-use crate::gpu::{
-    Bindings, Gpu, Recorder, Stage, bindings, compute_pipeline, dispatch_threads, shared_constants, sized_buffer,
-};
-use crate::primitives::prefix_scan::PrefixScan;
-use crate::shaders;
-
 use super::gpu_types::{Segment, TreeShape};
+use crate::gpu::{Gpu, Recorder, Stage, dispatch_threads, shared_constants};
+use crate::primitives::prefix_scan::PrefixScan;
 
-bindings! {
-    struct Boxes = "tree boxes", COMPUTE,
-        group 0 of [TREE_NUMBER, TREE_PYRAMID, TREE_FRAMES, TREE_CODES, TREE_FIT]
-    {
-        0 shape: Uniform,
-        1 segments: Storage,
-        2 items: ReadWrite,
-        3 order: ReadWrite,
-        4 pyramid: ReadWrite,
-        5 keys: ReadWrite,
-        6 nodes: ReadWrite,
-    }
+mod programs;
 
-    struct Sorted = "tree sort", COMPUTE, group 0 of [TREE_SORT_COUNT, TREE_SORT_SCATTER] {
-        0 shape: Uniform,
-        1 segments: Storage,
-        2 keys_in: Storage,
-        3 order_in: Storage,
-        4 keys_out: ReadWrite,
-        5 order_out: ReadWrite,
-        6 counts: ReadWrite,
-    }
-
-    struct Links = "tree links", COMPUTE, group 0 of [TREE_HIERARCHY, TREE_TALLY, TREE_MARK, TREE_WORDS] {
-        0 shape: Uniform,
-        1 segments: Storage,
-        2 keys: Storage,
-        3 ends: ReadWrite,
-        4 parents: ReadWrite,
-        5 tallies: ReadWrite,
-        6 starts: ReadWrite,
-        7 nodes: ReadWrite,
-    }
-}
+pub(super) use programs::TreePrograms;
+use programs::{ForestGroups, Scratch, here};
 
 shared_constants! {
     /// Number of items that a workgroup sorts.
@@ -75,44 +41,6 @@ const CODE_DIGITS: u32 = 8;
 /// Number of vectors of a tree before its nodes: its own box.
 pub(super) const FRAME_VECTORS: u32 = 2;
 
-/// Pipelines of the passes.
-#[derive(Debug)]
-pub(super) struct TreePrograms {
-    boxes_layout: wgpu::BindGroupLayout,
-    sort_layout: wgpu::BindGroupLayout,
-    links_layout: wgpu::BindGroupLayout,
-    number: wgpu::ComputePipeline,
-    pyramid: wgpu::ComputePipeline,
-    frames: wgpu::ComputePipeline,
-    codes: wgpu::ComputePipeline,
-    count: wgpu::ComputePipeline,
-    scatter: wgpu::ComputePipeline,
-    links: [wgpu::ComputePipeline; 3],
-    words: wgpu::ComputePipeline,
-    fit: wgpu::ComputePipeline,
-}
-
-impl TreePrograms {
-    pub(super) fn new(gpu: &Gpu) -> Self {
-        let (boxes, sort, links) = (Boxes::layout(gpu), Sorted::layout(gpu), Links::layout(gpu));
-        let program = |wgsl, layout| compute_pipeline(gpu, "tree", wgsl, &[layout]);
-        Self {
-            number: program(shaders::TREE_NUMBER, &boxes),
-            pyramid: program(shaders::TREE_PYRAMID, &boxes),
-            frames: program(shaders::TREE_FRAMES, &boxes),
-            codes: program(shaders::TREE_CODES, &boxes),
-            count: program(shaders::TREE_SORT_COUNT, &sort),
-            scatter: program(shaders::TREE_SORT_SCATTER, &sort),
-            links: [shaders::TREE_HIERARCHY, shaders::TREE_TALLY, shaders::TREE_MARK].map(|wgsl| program(wgsl, &links)),
-            words: program(shaders::TREE_WORDS, &links),
-            fit: program(shaders::TREE_FIT, &boxes),
-            boxes_layout: boxes,
-            sort_layout: sort,
-            links_layout: links,
-        }
-    }
-}
-
 /// Kind of the trees' items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Level {
@@ -129,19 +57,6 @@ pub(super) struct Forest {
     count_scan: PrefixScan,
     start_scan: PrefixScan,
     prepared: Option<Prepared>,
-}
-
-#[derive(Debug, Default)]
-struct Scratch {
-    items: Option<wgpu::Buffer>,
-    orders: [Option<wgpu::Buffer>; 2],
-    keys: [Option<wgpu::Buffer>; 2],
-    pyramid: Option<wgpu::Buffer>,
-    counts: Option<wgpu::Buffer>,
-    ends: Option<wgpu::Buffer>,
-    parents: Option<wgpu::Buffer>,
-    tallies: Option<wgpu::Buffer>,
-    starts: Option<wgpu::Buffer>,
 }
 
 #[derive(Debug)]
@@ -186,12 +101,7 @@ impl Forest {
         segments: &mut [Segment],
         nodes: &wgpu::Buffer,
     ) {
-        let (mut item_count, mut block_count) = (0, 0);
-        for segment in &mut *segments {
-            (segment.first_item, segment.first_block) = (item_count, block_count);
-            item_count += segment.item_count;
-            block_count += segment.item_count.div_ceil(BLOCK_ITEMS);
-        }
+        let (item_count, block_count) = number_items(segments);
         let shape = TreeShape {
             item_count,
             segment_count: segments.len() as u32,
@@ -199,68 +109,31 @@ impl Forest {
             is_top: (level == Level::Instances).into(),
             ..TreeShape::default()
         };
-        let shape_of = |step| stage.uniform("antumbra tree shape", &TreeShape { step, ..shape });
-        let shape_buffer = shape_of(0);
-        let segment_buffer = stage.storage("antumbra tree segments", segments);
         let level_counts = level_counts(item_count);
         self.scratch.allocate(stage, &shape, makes, level_counts.iter().sum());
-        let scratch = &self.scratch;
-        let boxes_of = |shape: &wgpu::Buffer| {
-            let boxes = Boxes {
-                shape,
-                segments: &segment_buffer,
-                items: here(&scratch.items),
-                order: here(&scratch.orders[0]),
-                pyramid: here(&scratch.pyramid),
-                keys: here(&scratch.keys[0]),
-                nodes,
-            };
-            boxes.group(stage, &programs.boxes_layout)
-        };
-        let levels = (1..).zip(&level_counts).map(|(level, count)| (boxes_of(&shape_of(level)), *count)).collect();
-        let made = makes.then(|| {
-            let digit = |step: u32| {
-                let (from, to) = ((step % 2) as usize, 1 - (step % 2) as usize);
-                let sorted = Sorted {
-                    shape: &shape_of(step),
-                    segments: &segment_buffer,
-                    keys_in: here(&scratch.keys[from]),
-                    order_in: here(&scratch.orders[from]),
-                    keys_out: here(&scratch.keys[to]),
-                    order_out: here(&scratch.orders[to]),
-                    counts: here(&scratch.counts),
-                };
-                sorted.group(stage, &programs.sort_layout)
-            };
-            let links = Links {
-                shape: &shape_buffer,
-                segments: &segment_buffer,
-                keys: here(&scratch.keys[0]),
-                ends: here(&scratch.ends),
-                parents: here(&scratch.parents),
-                tallies: here(&scratch.tallies),
-                starts: here(&scratch.starts),
-                nodes,
-            };
-            BuildGroups {
-                digits: (0..CODE_DIGITS).map(digit).collect(),
-                links: links.group(stage, &programs.links_layout),
-            }
+        let segments = stage.storage("antumbra tree segments", segments);
+        let groups = ForestGroups { stage, programs, scratch: &self.scratch, shape, segments: &segments, nodes };
+        let shape = groups.step_shape(0);
+        let levels =
+            (1..).zip(&level_counts).map(|(level, count)| (groups.boxes(&groups.step_shape(level)), *count)).collect();
+        let made = makes.then(|| BuildGroups {
+            digits: (0..CODE_DIGITS).map(|step| groups.digit(step)).collect(),
+            links: groups.links(&shape),
         });
         if makes {
-            self.count_scan.prepare(stage, here(&scratch.counts), DIGITS * block_count);
-            self.start_scan.prepare(stage, here(&scratch.starts), item_count + 1);
+            self.count_scan.prepare(stage, here(&self.scratch.counts), DIGITS * block_count);
+            self.start_scan.prepare(stage, here(&self.scratch.starts), item_count + 1);
         }
         self.prepared = Some(Prepared {
             item_count,
-            segment_count: shape.segment_count,
+            segment_count: groups.shape.segment_count,
             block_count,
             node_room: item_count * if level == Level::Instances { 2 } else { 1 },
-            boxes: boxes_of(&shape_buffer),
+            boxes: groups.boxes(&shape),
             levels,
             made,
-            shape: shape_buffer,
-            segments: segment_buffer,
+            shape,
+            segments,
         });
     }
 
@@ -347,34 +220,15 @@ impl Prepared {
     }
 }
 
-impl Scratch {
-    fn allocate(&mut self, stage: &Stage<'_>, shape: &TreeShape, makes: bool, pyramid_boxes: u32) {
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
-        let words = |slot: &mut Option<wgpu::Buffer>, label, count: u32| {
-            sized_buffer(stage, slot, label, 4 * u64::from(count), usage);
-        };
-        let items = shape.item_count;
-        // Two vectors per box.
-        words(&mut self.items, "antumbra tree items", 8 * items);
-        words(&mut self.pyramid, "antumbra tree pyramid", 8 * pyramid_boxes);
-        words(&mut self.orders[0], "antumbra tree order", items);
-        words(&mut self.keys[0], "antumbra tree keys", items);
-        if makes {
-            words(&mut self.orders[1], "antumbra tree order", items);
-            words(&mut self.keys[1], "antumbra tree keys", items);
-            words(&mut self.counts, "antumbra tree counts", DIGITS * shape.block_count);
-            words(&mut self.ends, "antumbra tree ends", items);
-            words(&mut self.parents, "antumbra tree parents", 2 * items);
-            words(&mut self.tallies, "antumbra tree tallies", LEAF_SIZES * shape.segment_count);
-            words(&mut self.starts, "antumbra tree starts", items + 1);
-        }
+/// Numbers items and blocks of the segments. Returns how many of each there are.
+fn number_items(segments: &mut [Segment]) -> (u32, u32) {
+    let (mut item_count, mut block_count) = (0, 0);
+    for segment in segments {
+        (segment.first_item, segment.first_block) = (item_count, block_count);
+        item_count += segment.item_count;
+        block_count += segment.item_count.div_ceil(BLOCK_ITEMS);
     }
-
-    fn memory_bytes(&self) -> u64 {
-        let Self { items, orders, keys, pyramid, counts, ends, parents, tallies, starts } = self;
-        let all = [items, &orders[0], &orders[1], &keys[0], &keys[1], pyramid, counts, ends, parents, tallies, starts];
-        all.into_iter().flatten().map(wgpu::Buffer::size).sum()
-    }
+    (item_count, block_count)
 }
 
 /// Returns the number of boxes of each level of the pyramid, up to the single one.
@@ -384,10 +238,6 @@ fn level_counts(item_count: u32) -> Vec<u32> {
         counts.push(count.div_ceil(GROUP));
     }
     counts
-}
-
-fn here(buffer: &Option<wgpu::Buffer>) -> &wgpu::Buffer {
-    buffer.as_ref().expect("prepare allocates it")
 }
 
 fn over(pass: &mut wgpu::ComputePass<'_>, program: &wgpu::ComputePipeline, threads: u32) {

@@ -22,10 +22,14 @@ use crate::shaders;
 
 #[cfg(test)]
 mod cpu;
+mod design;
+mod doubling;
 pub(crate) mod gpu_types;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use design::{Scan, Source, Sums, TableDesign, Tiling};
+use doubling::Doubling;
 use gpu_types::{DoublingUniform, TableUniform};
 
 shared_constants! {
@@ -44,78 +48,6 @@ shared_constants! {
 
 /// Threads of a workgroup that carries sums from block to block.
 const CARRY_THREADS: u32 = 64;
-
-/// Number format of sums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sums {
-    /// `Rgba32Float`.
-    Float,
-    /// `Rgba32Uint`, wrapping.
-    Integer,
-}
-
-impl Sums {
-    /// Returns the format of source and table.
-    pub(crate) fn format(self) -> wgpu::TextureFormat {
-        match self {
-            Self::Float => wgpu::TextureFormat::Rgba32Float,
-            Self::Integer => wgpu::TextureFormat::Rgba32Uint,
-        }
-    }
-
-    /// Converts the type of a binding that is declared for integers to this number format.
-    pub(crate) fn adapt(self, ty: &mut wgpu::BindingType) {
-        if self == Self::Integer {
-            return;
-        }
-        match ty {
-            wgpu::BindingType::Texture { sample_type, .. } if *sample_type == texels::UINT => {
-                *sample_type = texels::FLOAT;
-            }
-            wgpu::BindingType::StorageTexture { format, .. } if *format == Self::Integer.format() => {
-                *format = self.format();
-            }
-            _ => {}
-        }
-    }
-}
-
-/// Division of a table into tiles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Tiling {
-    /// One tile for the whole table.
-    Whole,
-    /// Tiles with a power-of-two side, from 16 to [`MAX_TILE`] texels.
-    Tiles,
-    /// Tiles with the largest power-of-two side, from 16 to [`MAX_TILE`], in which every sum stays below 2³²; found on the GPU
-    /// from integer values (Shen et al. 2013, section 6.1). With values below 2²⁴ a tile of 16 always fits.
-    Chosen,
-}
-
-/// Algorithm that sums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scan {
-    /// Block scan: work is proportional to the number of texels.
-    Blocks,
-    /// Recursive doubling: the number of passes is proportional to the tile's logarithm.
-    Doubling,
-}
-
-/// Key of a table's pipelines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct TableDesign {
-    pub(crate) sums: Sums,
-    pub(crate) scan: Scan,
-    pub(crate) tiling: Tiling,
-}
-
-/// Source of the values.
-pub(crate) enum Source<'a> {
-    /// A texture of [`Sums::format`], given to `prepare`.
-    Texture,
-    /// Shader that encodes the values, with bind groups 0 to 2 of its own. Not for doubling.
-    Encoded { wgsl: &'static str, constants: &'a [(&'a str, f64)], layouts: [&'a wgpu::BindGroupLayout; 3] },
-}
 
 bindings! {
     /// Bindings of every pass, declared for integers; see [`Sums::adapt`].
@@ -210,6 +142,43 @@ struct ConditionalSteps {
     /// Index of the first late step.
     first: usize,
     group: wgpu::BindGroup,
+}
+
+impl SizedResources {
+    /// Number of blocks along each side.
+    fn blocks(&self) -> UVec2 {
+        self.size.map(|n| n.div_ceil(BLOCK))
+    }
+
+    /// Dispatches the passes that choose a tile.
+    fn choose_tile(&self, pass: &mut wgpu::ComputePass<'_>, [total_blocks, choose]: &[wgpu::ComputePipeline; 2]) {
+        pass.set_pipeline(total_blocks);
+        pass.dispatch_workgroups(self.size.x.div_ceil(PANEL), self.blocks().y, 1);
+        pass.set_pipeline(choose);
+        pass.dispatch_workgroups((self.memory.largest.size() / 4) as u32, 1, 1);
+    }
+
+    /// Dispatches the steps of doubling, after the choice of a tile if there is one.
+    fn double(&self, pass: &mut wgpu::ComputePass<'_>, choose: Option<&ChooseSteps>, step: &wgpu::ComputePipeline) {
+        if let Some(ChooseSteps { choose, late: count_late, .. }) = choose {
+            self.choose_tile(pass, choose);
+            if let Some(late) = &self.late {
+                pass.set_pipeline(count_late);
+                pass.set_bind_group(0, &self.steps[late.first], &[]);
+                pass.set_bind_group(1, &late.group, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
+            }
+        }
+        let blocks = self.blocks();
+        pass.set_pipeline(step);
+        for (i, bind_group) in self.steps.iter().enumerate() {
+            pass.set_bind_group(0, bind_group, &[]);
+            match (&self.late, &self.memory.late_dispatch) {
+                (Some(late), Some(dispatch)) if i >= late.first => pass.dispatch_workgroups_indirect(dispatch, 0),
+                _ => pass.dispatch_workgroups(blocks.x, blocks.y, 1),
+            }
+        }
+    }
 }
 
 impl SummedAreaTable {
@@ -359,16 +328,10 @@ impl SummedAreaTable {
         bind: impl FnOnce(&mut wgpu::ComputePass<'_>),
     ) {
         let Some(made) = &self.made else { return };
-        let blocks = made.size.map(|n| n.div_ceil(BLOCK));
+        let blocks = made.blocks();
         if self.design.tiling == Tiling::Chosen {
             recorder.clear_buffer(&made.memory.largest);
         }
-        let choose_tile = |pass: &mut wgpu::ComputePass<'_>, [total_blocks, choose]: &[wgpu::ComputePipeline; 2]| {
-            pass.set_pipeline(total_blocks);
-            pass.dispatch_workgroups(made.size.x.div_ceil(PANEL), blocks.y, 1);
-            pass.set_pipeline(choose);
-            pass.dispatch_workgroups((made.memory.largest.size() / 4) as u32, 1, 1);
-        };
         recorder.compute(label, Span::Only, |pass| {
             bind(pass);
             pass.set_bind_group(if self.is_encoded { 3 } else { 0 }, &made.bind_group, &[]);
@@ -383,35 +346,15 @@ impl SummedAreaTable {
                     pass.set_pipeline(finish);
                     pass.dispatch_workgroups(blocks.x, blocks.y, 1);
                 }
-                Pipelines::Tiles { choose: pipelines, sum_tiles } => {
-                    if let Some(pipelines) = pipelines {
-                        choose_tile(pass, pipelines);
+                Pipelines::Tiles { choose, sum_tiles } => {
+                    if let Some(choose) = choose {
+                        made.choose_tile(pass, choose);
                     }
                     pass.set_pipeline(sum_tiles);
                     let regions = made.size.map(|n| n.div_ceil(made.side.max(PANEL)));
                     pass.dispatch_workgroups(regions.x, regions.y, 1);
                 }
-                Pipelines::Doubling { choose: steps, step } => {
-                    if let Some(ChooseSteps { choose: pipelines, late: count_late, .. }) = steps {
-                        choose_tile(pass, pipelines);
-                        if let Some(late) = &made.late {
-                            pass.set_pipeline(count_late);
-                            pass.set_bind_group(0, &made.steps[late.first], &[]);
-                            pass.set_bind_group(1, &late.group, &[]);
-                            pass.dispatch_workgroups(1, 1, 1);
-                        }
-                    }
-                    pass.set_pipeline(step);
-                    for (i, bind_group) in made.steps.iter().enumerate() {
-                        pass.set_bind_group(0, bind_group, &[]);
-                        match (&made.late, &made.memory.late_dispatch) {
-                            (Some(late), Some(dispatch)) if i >= late.first => {
-                                pass.dispatch_workgroups_indirect(dispatch, 0)
-                            }
-                            _ => pass.dispatch_workgroups(blocks.x, blocks.y, 1),
-                        }
-                    }
-                }
+                Pipelines::Doubling { choose, step } => made.double(pass, choose.as_ref(), step),
             }
         });
     }
@@ -426,40 +369,3 @@ impl SummedAreaTable {
         self.made.as_ref().map(|made| &*made.memory.largest)
     }
 }
-
-/// Steps of recursive doubling.
-#[derive(Debug, PartialEq)]
-struct Doubling {
-    /// Distances between the sums that a step adds up.
-    strides: Vec<UVec2>,
-    /// Number of last steps that run only if the tile is larger than their stride.
-    late_count: usize,
-}
-
-impl Doubling {
-    /// Returns the steps for a table of tiles of `side`, or if that is 0 for the tile that will be chosen: 2 ⌈log₈ side⌉ steps,
-    /// as many passes as Shen et al. 2013 have (section 6.1, table 2).
-    ///
-    /// There is at least one step, so that a single texel is copied. Steps along x and along y commute. Steps that a chosen
-    /// tile may skip come last, in pairs, so that the sums stay in the same texture.
-    fn of(size: UVec2, side: u32) -> Self {
-        let strides_below = |length: u32| {
-            std::iter::successors(Some(1), |stride: &u32| Some(stride * DOUBLING_READS))
-                .take_while(move |stride| *stride < length)
-        };
-        // Every tile that may be chosen needs the strides below the smallest.
-        let least = if side == 0 { BLOCK } else { side };
-        let mut strides: Vec<UVec2> = strides_below(size.x.min(least)).map(|x| UVec2::new(x, 0)).collect();
-        strides.extend(strides_below(size.y.min(least)).map(|y| UVec2::new(0, y)));
-        if strides.is_empty() {
-            strides.push(UVec2::new(1, 0));
-        }
-        let late = strides_below(size.max_element().min(MAX_TILE)).filter(|stride| side == 0 && *stride >= BLOCK);
-        let early_count = strides.len();
-        strides.extend(late.flat_map(|stride| [UVec2::new(stride, 0), UVec2::new(0, stride)]));
-        Self { late_count: strides.len() - early_count, strides }
-    }
-}
-
-// One dispatch count serves all late steps: every tile that may be chosen runs either all or none of them.
-const _: () = assert!(MAX_TILE <= DOUBLING_READS * DOUBLING_READS * DOUBLING_READS && BLOCK > DOUBLING_READS);
