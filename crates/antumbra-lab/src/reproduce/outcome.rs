@@ -126,7 +126,7 @@ impl fmt::Display for Outcome {
             Self::NotReady(scene) => {
                 write!(f, "not ready: set {SCENES_VARIABLE} to a folder that holds {scene} ({SCENES_HINT})")
             }
-            Self::TooDear => write!(f, "too dear for a software renderer unless asked for by --dear"),
+            Self::TooDear => write!(f, "too dear for a software renderer unless asked for by --dear; a GPU runs it"),
             Self::Skipped(reason) => write!(f, "not possible on this device: {reason}"),
             Self::Failed(reason) => write!(f, "failed: {reason}"),
         }
