@@ -108,14 +108,13 @@ const MULTIPLIED_LEAVES: &str = "each fragment counts in two levels, w in one an
                                  passes an opaque one: up to a quarter (as published on `tree`, 128 × 72, one and two fragments \
                                  leave .35 and .21 of the light, with `level_accumulation=add` .22 and .05).";
 
-const OURS_SIX: &str = "it errs less (.0138 and .0233, 128 × 72), but the noise that both have is of texels that a surface covers in part: with \
-                        `msaa=1` MIP-maps have .0003 and Y-maps .0005. Texels of wide filters are not seen in either: ours looks levels up for the \
-                        width that they have, and for each quarter of the light.";
-const OURS_TWELVE: &str = "each fragment counts in two levels, w in one and 1 − w in the other, and (1 − w)(1 − (1 − w)) of the light passes an opaque \
-                           one: up to a quarter (ours on `tree`, 128 × 72, one and two fragments leave .29 and .19 of the light, with \
-                           `level_accumulation=add` .12 and .04).";
-const OURS_SEVENTEEN: &str = "levels are multiplied, too, and a fragment in two of them lets (1 − w) w of the light pass: lists alone multiplied \
-                              (`level_accumulation` by default) have .046 where this has .070 (128 × 72).";
+const OURS_SIX: &str = "it errs less (.0138 and .0233, 128 × 72), but the noise that both have is of texels that a surface covers in \
+                        part: with `msaa=1` MIP-maps have .0003 and Y-maps .0005.";
+const OURS_TWELVE: &str = "each fragment counts in two levels, w in one and 1 − w in the other, and (1 − w)(1 − (1 − w)) of the light \
+                           passes an opaque one: up to a quarter (ours on `tree`, 128 × 72, one and two fragments leave .29 and .19 of \
+                           the light, with `level_accumulation=add` .12 and .04).";
+const OURS_SEVENTEEN: &str = "levels are multiplied, too, and a fragment in two of them lets (1 − w) w of the light pass: lists alone \
+                              multiplied (`level_accumulation` by default) have .046 where this has .070 (128 × 72).";
 
 /// Settings with a number of fragments per list, accumulated by multiplication.
 macro_rules! multiplied {
@@ -250,12 +249,13 @@ pub const PAPER: Paper = Paper {
                 ],
             )
             .if_too_close(
-                "more pixels: noise is judged where the truth changes by less than a fiftieth a pixel, as penumbrae do in large images. At \
-                 640 × 360 trilinear has .0028 and bilinear .0112",
+                "more pixels: noise is judged where the truth changes by less than a fiftieth a pixel, as penumbrae do in large images. \
+                 At 640 × 360 trilinear has .0028 and bilinear .0112",
             )
             .because_ours(
-                "noise is judged where the truth changes by less than a fiftieth a pixel, and penumbrae of so small an image change by more: \
-                 what is left is of edges, alike in both. At 640 × 360 trilinear has .0034 and bilinear .0065.",
+                "noise is judged where the truth changes by less than a fiftieth a pixel, and penumbrae of so small an image change by \
+                 more. What is left there is of the plank's contacts, alike in both (.0079; with `faces=back` .0038 and .0039). At 640 × \
+                 360 trilinear has .0034 and bilinear .0065.",
             )],
             note: "",
         },
@@ -279,8 +279,9 @@ pub const PAPER: Paper = Paper {
                 &[Rule::AtMost(Rmse, "close: multi-layer", 0.05), Rule::AtMost(Rmse, "distant: multi-layer", 0.05)],
             )
             .because(
-                "a level's bilinear lookup blurs by √(w² + 2 s²) where its texels, s apart, merge w: penumbrae come out too wide \
-                 (with `filter_widths=effective` the distant one has .053 where this has .068, 128 × 72).",
+                "the fence's wires are narrower than a texel (`map_size=2048`: the close light has .048 where this has .053, 128 × 72), \
+                 and a level's bilinear lookup blurs by √(w² + 2 s²) where its texels, s apart, merge w: penumbrae come out too wide \
+                 (`filter_widths=effective`: the distant one has .053 where this has .068, and .038 with both).",
             )],
             note: "",
         },
@@ -379,8 +380,8 @@ pub const PAPER: Paper = Paper {
                     ],
                 )
                 .because_ours(
-                    "its rmse is a fifth, but what noise there is at 128 × 72 is of edges, alike in both (.0079 and .0087); at 640 × 360 addition has \
-                     .0034 and multiplication .0048.",
+                    "its rmse is a fifth, but what noise there is at 128 × 72 is of the plank's contacts, alike in both (.0079 and \
+                     .0087; with `faces=back` .0038 and .0048). At 640 × 360 addition has .0034 and multiplication .0048.",
                 ),
                 claim(
                     "ESSM misses contact shadows that additive accumulation captures.",
@@ -584,11 +585,11 @@ pub const PAPER: Paper = Paper {
                 &[Rule::AtMost(Rmse, "multi-layer", 0.05)],
             )
             .because(
-                "three departures from the truth have a third of .111 (128 × 72): the whole light is looked up at once (`light_parts=4` .093), \
-                 occluders are narrower than a texel (`map_size=2048` .096), and fragments are held against one depth (`planes=true` .105); \
-                 all three .071, and with `filter_widths=effective` .068. Of what is left no other \
-                 switch has more than .002 (`map_shape=fitted` .066, `msaa=4` with `list_accumulation=overlap` .070), and maps of 3072² hold \
-                 more fragments than a storage buffer.",
+                "three departures from the truth have a third of .111 (128 × 72): the whole light is looked up at once (`light_parts=4` \
+                 .093), occluders are narrower than a texel (`map_size=2048` .096), and fragments are held against one depth \
+                 (`planes=true` .105); all three .071, and with `filter_widths=effective` .068. Of what is left no other switch has more \
+                 than .002 (`map_shape=fitted` .066, `msaa=4` with `list_accumulation=overlap` .070), and maps of 3072² hold more \
+                 fragments than a storage buffer.",
             )
             .because_ours(
                 "many of the street's occluders are narrower than a texel: at 128 × 72 .089, .059 and .051 with `map_size` 512, 1024 and 1408; \

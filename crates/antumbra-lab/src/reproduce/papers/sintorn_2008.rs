@@ -47,9 +47,10 @@ const fn factored(what: &'static str, light_scale: f32) -> Row {
 const ATRIUM: &str = "sponza-atrium";
 
 /// Figure 7 with more light points.
-const FIGURE_7_IF_TOO_CLOSE: &str = "more light points and pixels: by `--samples 1024` errors are .0012 after 32 frames and .0045 without jittering \
-                                     (128 × 72). Noise is judged where the truth changes by less than a fiftieth a pixel, as penumbrae do in larger \
-                                     images: at 256 × 256 it is .0001 and .0003, which is a third, and still hardly more than an image shows";
+const FIGURE_7_IF_TOO_CLOSE: &str = "\
+    more light points and pixels: by `--samples 1024` errors are .0012 after 32 frames and .0045 without jittering (128 × 72). Noise \
+    is judged where the truth changes by less than a fiftieth a pixel, as penumbrae do in larger images: at 256 × 256 it is .0001 and \
+    .0003, which is a third, and still hardly more than an image shows";
 
 /// Factor of a light too small for any penumbra, the reference of hard shadows.
 const POINT: f32 = 1e-4;
@@ -332,8 +333,8 @@ pub const PAPER: Paper = Paper {
                     ],
                 ),
                 claim("Soft shadows of a hairball are accurate.", &[Rule::AtMost(Rmse, "sample-based, 256", 0.02)]).because_both(
-                    "it is the reference's noise: a hair hides single light points. At 128 × 72 against 64 of them the error is .025, against \
-                     1024 (`--samples 1024`) .0098, and .0048 with `samples=1024`, too. With that alone it is .024.",
+                    "it is the reference's noise: a hair hides single light points. At 128 × 72 against 64 of them the error is .025, \
+                     against 1024 (`--samples 1024`) .0098, and .0048 with `samples=1024`, too. With that alone it is .024.",
                 ),
             ],
             note: "",
