@@ -184,7 +184,7 @@ fn what_is_too_close_says_what_would_show_it() {
     const CLAIMS: &[Claim] = &[
         claim("", &[Rule::RatioAtMost(Figure::Rmse, "a", "b", 0.75)]),
         claim("", &[Rule::RatioAtMost(Figure::Noise, "a", "b", 0.75)]),
-        claim("", &[Rule::RatioAtMost(Figure::Noise, "a", "b", 0.75)]).if_too_close("of a larger run."),
+        claim("", &[Rule::RatioAtMost(Figure::Noise, "a", "b", 0.75)]).if_too_close("as a larger run shows"),
     ];
     let exhibit = Exhibit { claims: CLAIMS, ..EXHIBIT };
     let one = |rmse: f64, noise: f64| {
@@ -198,7 +198,7 @@ fn what_is_too_close_says_what_would_show_it() {
     // A reference of 64 samples has noise of .008: up to all of both errors.
     let found = why(one(0.0080, 0.0001), one(0.0090, 0.0001));
     assert!(found[0].contains("(--samples)") && found[1].contains("below what an image shows"), "{found:?}");
-    assert!(found[2].ends_with("too close to tell: of a larger run."), "{found:?}");
+    assert!(found[2].ends_with("too close to tell: as a larger run shows."), "{found:?}");
     let found = why(one(0.0751, 0.0150), one(0.1, 0.02));
     assert!(found[0].contains("(--size)") && found[1].contains("(--size)"), "{found:?}");
 }
