@@ -158,7 +158,7 @@ params! {
         subdivisions: 3, ours "5 × 5 parts.";
         table: EssmTable::TileGrid, ours "Every tile has a plane of its own, before which its exponentials are taken.";
         scan: EssmScan::Doubling, ours "Tables take one pass over the map.";
-        exponent: CONSISTENT_EXPONENT, ours "0.1 a texel's width; the printed 80 does not go with the printed 20 bits (see below).";
+        exponent: CONSISTENT_EXPONENT, ours "0.1 a texel's width; the published 80 does not go with the published 20 bits (see below).";
         kernel: EssmKernel::Ellipse, ours "A rectangle's kernel is a parallelogram.";
         search: EssmSearch::Window, ours "Blockers are searched at four scales, and count where they hide a point of the light.";
         blocker_mean: EssmBlockerMean::Depth, ours "The mean is of g = 1 / z − 1 / z_receiver, which a penumbra's width is proportional to.";
