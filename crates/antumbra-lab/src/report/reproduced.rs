@@ -332,7 +332,7 @@ fn verdicts_markdown(results: &Results<'_>, info: &ReproductionInfo) -> String {
 mod tests {
     use super::*;
     use crate::reproduce::{
-        Claim, Exhibit, Figure, Measure, Outcomes, PictureFiles, Reported, Row, Rule, Settings, judge,
+        Claim, Exhibit, Figure, Measure, Outcomes, PAPERS, PictureFiles, Reported, Row, Rule, Settings, judge,
     };
 
     const NONE: Settings = &[("key", "<value>")];
@@ -380,6 +380,7 @@ mod tests {
             on_any_adapter: false,
             because: "",
             because_ours: "",
+            if_too_close: "",
             needs: "",
         }],
         note: "",
@@ -464,5 +465,54 @@ mod tests {
         assert!(page(None, false).contains("--bandwidth") && !page(None, false).contains("at equal bandwidth</small>"));
         // Times of a CPU are not compared with those of a graphics card.
         assert!(!page(Some(50.0), true).contains("at equal bandwidth</small>"));
+    }
+    /// Returns results as if each row had run: errors that differ, and times where a row has them.
+    fn all_measured(paper: &'static Paper, exhibit: &'static Exhibit) -> ExhibitResult {
+        let runs = exhibit.rows.iter().flat_map(|row| row.forms(paper).iter().map(move |form| (row, *form)));
+        let rows = runs.enumerate().map(|(i, (row, form))| {
+            let at = 1.0 + i as f64;
+            let ms = (row.is_timed_too || row.measure.is_timed()).then_some(at);
+            let rmse = row.measure.is_error().then_some(0.01 * at);
+            let outcome = Outcome::Measured(Measured { ms, rmse, size_px: [64, 36], ..Measured::default() });
+            RowResult { row, form, outcome, pictures: None, cut_short_s: None }
+        });
+        let name = format!("{}/{}", paper.id, exhibit.id);
+        ExhibitResult { name, paper, exhibit, rows: rows.collect(), judged: Vec::new() }
+    }
+
+    /// Exhibits with rows that are timed beside their error, or that differ in a parameter, have their plots on the paper's page, with
+    /// every row's name; others have none.
+    #[test]
+    fn pages_of_papers_with_plots_have_them() {
+        let info = ReproductionInfo {
+            adapter: AdapterInfo::default(),
+            bandwidth_gb_s: None,
+            commit: "c0ffee".into(),
+            date: "today".into(),
+            arguments: String::new(),
+        };
+        let mut plots_of_papers = Vec::new();
+        for paper in &PAPERS {
+            let results: Vec<ExhibitResult> =
+                paper.exhibits.iter().map(|exhibit| all_measured(paper, exhibit)).collect();
+            let page = paper_page(paper, &results, &info);
+            let has = |is_asked: &dyn Fn(&Row) -> bool| {
+                paper.exhibits.iter().filter(|exhibit| exhibit.rows.iter().any(is_asked)).count()
+            };
+            let asked = [has(&|row| row.is_timed_too), has(&|row| row.plotted.is_some())];
+            let shown =
+                ["Error over time", "Error over what the rows differ in"].map(|text| page.matches(text).count());
+            assert_eq!(shown, asked, "{}", paper.id);
+            assert!(page.matches("<svg").count() >= asked[0] + asked[1], "{}", paper.id);
+            for result in &results {
+                let html = section(result, &info);
+                for row in result.exhibit.rows.iter().filter_map(|row| row.plotted) {
+                    assert!(html.contains(&escape(row.axis)) && html.contains(&escape(row.line)), "{}", result.name);
+                }
+            }
+            plots_of_papers.push(asked[0] + asked[1]);
+        }
+        // Every paper has a plot.
+        assert!(plots_of_papers.iter().all(|count| *count > 0), "{plots_of_papers:?}");
     }
 }

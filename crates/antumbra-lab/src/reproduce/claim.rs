@@ -18,6 +18,8 @@ pub struct Claim {
     pub because: &'static str,
     /// Known reason of a contradiction in our form; empty if unknown.
     pub because_ours: &'static str,
+    /// What would decide the claim where its figures are too close to tell, found by a larger run; empty if that was not tried.
+    pub if_too_close: &'static str,
     /// Reason why nothing here can show the claim, and what would; empty if there are rules.
     pub needs: &'static str,
 }
@@ -42,11 +44,16 @@ impl Claim {
     pub(super) const fn because_ours(self, because_ours: &'static str) -> Self {
         Self { because_ours, ..self }
     }
+
+    /// Sets what would decide the claim where its figures are too close to tell.
+    pub(super) const fn if_too_close(self, if_too_close: &'static str) -> Self {
+        Self { if_too_close, ..self }
+    }
 }
 
 /// Creates a claim that holds if all `rules` do.
 pub(super) const fn claim(says: &'static str, rules: &'static [Rule]) -> Claim {
-    Claim { says, rules, on_any_adapter: false, because: "", because_ours: "", needs: "" }
+    Claim { says, rules, on_any_adapter: false, because: "", because_ours: "", if_too_close: "", needs: "" }
 }
 
 /// Creates a claim that nothing here can show, with the reason and what would show it.

@@ -126,7 +126,7 @@ impl fmt::Display for Outcome {
             Self::NotReady(scene) => {
                 write!(f, "not ready: set {SCENES_VARIABLE} to a folder that contains {scene} ({SCENES_HINT})")
             }
-            Self::TooSlow => write!(f, "too slow for a software renderer; use --dear to run it anyway"),
+            Self::TooSlow => write!(f, "too slow for a software renderer; use --dear or a GPU to run it"),
             Self::Skipped(reason) => write!(f, "not possible on this device: {reason}"),
             Self::Failed(reason) => write!(f, "failed: {reason}"),
         }

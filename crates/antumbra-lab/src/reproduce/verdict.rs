@@ -144,16 +144,23 @@ impl Bench<'_> {
 
     fn rule_on(&self, claim: &Claim, form: Form) -> Ruling {
         let found: Vec<(String, RuleOutcome)> = claim.rules.iter().map(|rule| self.look(claim, rule, form)).collect();
-        let unknown = found.iter().find_map(|(_, met)| match met {
-            RuleOutcome::Unknown(why) => Some(why.clone()),
-            _ => None,
-        });
-        let verdict = match unknown {
-            _ if !claim.needs.is_empty() => Verdict::Undecided(claim.needs.to_owned()),
+        let mut unknown: Vec<&str> = Vec::new();
+        for (_, met) in &found {
+            if let RuleOutcome::Unknown(why) = met
+                && !unknown.contains(&why.as_str())
+            {
+                unknown.push(why);
+            }
+        }
+        let verdict = if !claim.needs.is_empty() {
+            Verdict::Undecided(claim.needs.to_owned())
+        } else if found.iter().any(|(_, met)| *met == RuleOutcome::No) {
             // A single rule that is not met contradicts the claim.
-            _ if found.iter().any(|(_, met)| *met == RuleOutcome::No) => Verdict::Contradicted,
-            Some(why) => Verdict::Undecided(why),
-            None => Verdict::Holds,
+            Verdict::Contradicted
+        } else if unknown.is_empty() {
+            Verdict::Holds
+        } else {
+            Verdict::Undecided(unknown.join("; "))
         };
         let because = match form {
             Form::Published => claim.because,
@@ -165,7 +172,7 @@ impl Bench<'_> {
     /// Judges a rule by the measured values.
     fn look(&self, claim: &Claim, rule: &Rule, form: Form) -> (String, RuleOutcome) {
         let values: Result<Vec<f64>, String> =
-            rule.rows().iter().map(|row| self.value(rule.figure(), row, form)).collect();
+            rule.rows().iter().map(|row| self.value(claim, rule.figure(), row, form)).collect();
         let values = match values {
             Ok(values) => values,
             Err(why) => return (rule.text(), RuleOutcome::Unknown(why)),
@@ -183,12 +190,30 @@ impl Bench<'_> {
         }
         let ranges: Vec<Range> =
             rule.rows().iter().zip(&values).map(|(row, v)| self.range(rule.figure(), row, *v, form)).collect();
-        let met = met(rule, &ranges);
-        let met = met.map_or_else(
-            || RuleOutcome::Unknown(too_close(rule.figure())),
-            |is_met| if is_met { RuleOutcome::Yes } else { RuleOutcome::No },
-        );
+        let met = match met(rule, &ranges) {
+            Some(true) => RuleOutcome::Yes,
+            Some(false) => RuleOutcome::No,
+            None => RuleOutcome::Unknown(self.too_close(claim, rule, &values)),
+        };
         (format!("{}: here {here}", rule.text()), met)
+    }
+
+    /// Returns the reason why figures lie too close to a rule to decide it, and what would show it.
+    fn too_close(&self, claim: &Claim, rule: &Rule, values: &[f64]) -> String {
+        let figure = rule.figure();
+        let without_noise: Vec<Range> = values.iter().map(|v| Range::of(figure, *v, None, self.is_software)).collect();
+        let would_show = match figure {
+            Figure::Ms => "more frames (--frames) on a machine with nothing else to do would show it",
+            _ if !claim.if_too_close.is_empty() => claim.if_too_close,
+            Figure::Rmse if met(rule, &without_noise).is_some() => {
+                "the reference's noise may be a large part of these errors: more light points (--samples) would show it"
+            }
+            _ if values.iter().all(|v| *v <= UNSEEN) => {
+                "all are below what an image shows: a size (--size) at which one is above it would show it"
+            }
+            _ => "they differ by less than their uncertainty: a size (--size) at which they differ more would show it",
+        };
+        format!("it is too close to tell: {would_show}")
     }
 
     /// Returns the reason why a software renderer's times do not decide a rule, and what would; `None` if they do, or for other figures.
@@ -246,7 +271,9 @@ impl Bench<'_> {
         Range::of(figure, value, samples, self.is_software)
     }
 
-    fn value(&self, figure: Figure, row: &str, form: Form) -> Result<f64, String> {
+    fn value(&self, claim: &Claim, figure: Figure, row: &str, form: Form) -> Result<f64, String> {
+        let is_for_gpus = figure == Figure::Ms && self.is_software && !claim.on_any_adapter;
+        let is_of_frames = figure == Figure::Ms && self.is_software && claim.on_any_adapter;
         match self.outcome(row, form) {
             None => Err(format!("‘{row}’ was not run")),
             Some(Outcome::Measured(measured)) => match measured.figure(figure) {
@@ -256,6 +283,19 @@ impl Bench<'_> {
                 }
                 found => found.ok_or_else(|| format!("‘{row}’ has no {figure} here; try another size (--size)")),
             },
+            Some(Outcome::TooSlow) if is_for_gpus => Err(format!(
+                "‘{row}’ is too slow for a software renderer: the same command on a GPU, which runs it, would show it"
+            )),
+            Some(Outcome::TooSlow) => Err(format!(
+                "‘{row}’ is too slow for a software renderer: --dear, or the same command on a GPU, would show it"
+            )),
+            Some(other @ Outcome::NotReady(_)) if is_for_gpus => {
+                Err(format!("‘{row}’ is {other}; with it, the same command on a GPU would show it"))
+            }
+            Some(other @ Outcome::NotReady(_)) if is_of_frames => Err(format!(
+                "‘{row}’ is {other}; with it, {MIN_FRAMES} frames or more (--frames) on an idle processor would show it"
+            )),
+            Some(other @ Outcome::NotReady(_)) => Err(format!("‘{row}’ is {other}; that would show it")),
             Some(other) => Err(format!("‘{row}’ is {other}")),
         }
     }
@@ -348,13 +388,6 @@ fn met(rule: &Rule, of: &[Range]) -> Option<bool> {
         Rule::RatioWithin(.., [low, high]) => all([at_most(*low * of[1], of[0]), at_most(of[0], *high * of[1])]),
         Rule::Rising(..) => all(of.windows(2).map(|pair| at_most(pair[0], pair[1]))),
         Rule::Alike(.., bound) => all(of.iter().flat_map(|a| of.iter().map(|b| at_most(*a, *bound * *b)))),
-    }
-}
-
-fn too_close(figure: Figure) -> String {
-    match figure {
-        Figure::Ms => "the values are too close; use more frames (--frames) on an idle machine to decide".to_owned(),
-        _ => "the values are too close; use more pixels and light samples (--size, --samples) to decide".to_owned(),
     }
 }
 

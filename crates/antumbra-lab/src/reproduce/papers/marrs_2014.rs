@@ -105,7 +105,12 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[claim(
                 "Reprojection computes the depth maps ten times as fast (4.85 ms and 0.48 ms).",
-                &[Rule::RatioAtLeast(Ms, "depth maps by brute force", "depth maps by synchronised reprojection", 10.0)],
+                &[Rule::RatioWithin(
+                    Ms,
+                    "depth maps by brute force",
+                    "depth maps by synchronised reprojection",
+                    [10.0, 13.0],
+                )],
             )],
             note: "",
         },
@@ -352,8 +357,10 @@ pub const PAPER: Paper = Paper {
                     &[Rule::RatioWithin(Rmse, "shanty town: reprojection", "shanty town: PCSS", [1.0, 2.0])],
                 )
                 .because_both(
-                    "light does leak, twice as much as with PCSS (.027 and .014 of the umbra at 256 × 144), but PCSS has more \
-                     error in the penumbrae of our town, which is only similar to the paper's.",
+                    "light leaks, twice as much as with PCSS (.026 and .013 of the umbra), but brute force with maps of 512² errs here, \
+                     too, and reprojection shares that error, which this difference leaves out: against rays brute force has .085, \
+                     reprojection .114 (ours .090) and PCSS .087, so that reprojection errs 1.3 times as much (`antumbra compare \
+                     builtin:shanty` with these settings, 128 × 72, 64 points).",
                 ),
                 claim(
                     "In a scene of high depth complexity, it has more error than PCSS, because light leaks.",

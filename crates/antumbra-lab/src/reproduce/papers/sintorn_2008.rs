@@ -46,8 +46,17 @@ const fn factored(what: &'static str, light_scale: f32) -> Row {
 /// Atrium seen from above its floor, along it: the paper's figure 9.
 const ATRIUM: &str = "sponza-atrium";
 
+/// Figure 7 with more light points.
+const FIGURE_7_IF_TOO_CLOSE: &str = "\
+    more light points and pixels: by `--samples 1024` errors are .0012 after 32 frames and .0045 without jittering (128 × 72). Noise \
+    is judged where the truth changes by less than a fiftieth a pixel, as penumbrae do in larger images: at 256 × 256 it is .0001 and \
+    .0003, which is a third, and still hardly more than an image shows";
+
 /// Factor of a light too small for any penumbra, the reference of hard shadows.
 const POINT: f32 = 1e-4;
+
+/// "About an order of magnitude": ten times at the least, and nearer to ten than to a hundred, by their logarithms.
+const AN_ORDER: [f64; 2] = [10.0, 32.0];
 
 /// Even maps without this library's additions, as the paper compares with.
 const MAPS_128: Settings = &[("samples", "128"), ("window", "plain"), ("compare", "gather")];
@@ -142,7 +151,8 @@ pub const PAPER: Paper = Paper {
                     Rule::RatioAtMost(Noise, "jittering, 32 frames", "no jittering", 0.75),
                     Rule::RatioAtMost(Rmse, "jittering, 32 frames", "no jittering", 0.75),
                 ],
-            )],
+            )
+            .if_too_close(FIGURE_7_IF_TOO_CLOSE)],
             note: "",
         },
         Exhibit {
@@ -185,7 +195,7 @@ pub const PAPER: Paper = Paper {
             ],
             claims: &[claim(
                 "Sample-based visibility is about an order of magnitude faster than the same number of shadow maps.",
-                &[Rule::RatioAtLeast(Ms, "shadow maps, 256", "sample-based, 256", 10.0)],
+                &[Rule::RatioWithin(Ms, "shadow maps, 256", "sample-based, 256", AN_ORDER)],
             )],
             note: "",
         },
@@ -296,8 +306,8 @@ pub const PAPER: Paper = Paper {
                 claim(
                     "Sample-based visibility is about an order of magnitude faster than the same number of shadow maps.",
                     &[
-                        Rule::RatioAtLeast(Ms, "shadow maps, 256", "sample-based, 256", 10.0),
-                        Rule::RatioAtLeast(Ms, "shadow maps, 1024", "sample-based, 1024", 10.0),
+                        Rule::RatioWithin(Ms, "shadow maps, 256", "sample-based, 256", AN_ORDER),
+                        Rule::RatioWithin(Ms, "shadow maps, 1024", "sample-based, 1024", AN_ORDER),
                     ],
                 ),
             ],
@@ -325,9 +335,8 @@ pub const PAPER: Paper = Paper {
                     ],
                 ),
                 claim("Soft shadows of a hairball are accurate.", &[Rule::AtMost(Rmse, "sample-based, 256", 0.02)]).because_both(
-                    "the bits equal those of the ray tracer for the same light samples; the remaining error is sampling noise, \
-                     because a hair hides single samples, of the technique's 256 and of the reference's (64 at the smallest \
-                     sizes).",
+                    "it is the reference's noise: a hair hides single light points. At 128 × 72 against 64 of them the error is .025, \
+                     against 1024 (`--samples 1024`) .0098, and .0048 with `samples=1024`, too. With that alone it is .024.",
                 ),
             ],
             note: "",
