@@ -3,17 +3,19 @@
 use super::GpuStruct;
 use crate::shaders;
 
-/// Asserts that at least one linked shader has a struct of this name, and that its layout is the same in each of them.
+/// Asserts that at least one linked shader has this struct, and that its layout is the same in each of them. A struct of the same name
+/// that shares no member is another one.
 pub(crate) fn assert_same_layout<T: GpuStruct>() {
     let mut is_found = false;
     for (path, wgsl) in shaders::ALL.iter().filter(|(_, wgsl)| wgsl.lines().any(is_struct::<T>)) {
-        is_found = true;
         let module = naga::front::wgsl::parse_str(wgsl).unwrap_or_else(|error| panic!("{path}: {error}"));
         let structs = module.types.iter().filter_map(|(_, ty)| match (&ty.name, &ty.inner) {
             (Some(name), naga::TypeInner::Struct { members, span }) if is_named::<T>(name) => Some((members, *span)),
             _ => None,
         });
-        for (members, span) in structs {
+        let is_shared = |name: &Option<String>| T::FIELDS.iter().any(|field| name.as_deref() == Some(field.name));
+        for (members, span) in structs.filter(|(members, _)| members.iter().any(|m| is_shared(&m.name))) {
+            is_found = true;
             let size_of_type = |ty| module.types[ty].inner.size(module.to_ctx()) as usize;
             let in_shader: Vec<_> = members
                 .iter()
