@@ -324,7 +324,7 @@ impl ShadowTechnique {
 
     /// Whether coloured casters cast coloured shadows; otherwise they count as opaque from half coverage on.
     pub(crate) fn knows_color(self) -> bool {
-        matches!(self, Self::AliasFree | Self::MultiLayer | Self::MultiView | Self::RayTraced | Self::SampleBased)
+        self.kind().facts().translucent
     }
 }
 

@@ -47,7 +47,7 @@ Development commands of Antumbra. They install missing programs where possible, 
         compiler or a driver may be missing.
 
     cargo xtask shaders
-        Links the library's shaders. Run it after an edit to a .wesl file or to the list in src/shaders.rs.
+        Links the library's shaders. Run it after an edit to a .wesl file.
 
     cargo xtask docs
         Writes the generated parts of the book and the README. Run it after an edit to a technique's declaration.

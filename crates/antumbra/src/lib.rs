@@ -106,28 +106,24 @@ pub use gpu::{
 pub use light_set::{Budget, LightId, LightSet, LightSetFrame, MaskState, PreparedLights, RangedLight};
 pub use receivers::split_receivers::SplitReceivers;
 pub use shadow::{AnyShadow, Casters, Frame, PointFrame, Prepared, Shadow, WarmUp, WarmUpSteps};
-pub use technique_kind::{TechniqueFacts, TechniqueKind};
+pub use technique_kind::{OccluderModel, TechniqueFacts, TechniqueKind};
 pub use techniques::Technique;
 /// Crates whose types appear in this one's interface.
 pub use {glam, wgpu};
 
-/// Linked shaders, embedded as text.
+/// Linked shaders, embedded as text. Each `.wesl` file with an entry point is one, named by its folder and its file.
 pub(crate) mod shaders {
     macro_rules! shaders {
-        ($(
-            $(#[doc = $doc:literal])* $(#[cfg($only:ident)])?
-            $name:ident = $path:literal $(with $features:literal)?;
-        )+) => {
-            $( $(#[doc = $doc])* $(#[cfg($only)])? pub(crate) const $name: &str =
-                include_str!(concat!("../linked/", linked_file!($($only)? $path $(with $features)?))); )+
+        ($( $(#[$only:meta])? $name:ident = $linked:literal; )+) => {
+            $( $(#[$only])? pub(crate) const $name: &str = include_str!(concat!("../linked/", $linked, ".wgsl")); )+
 
-            /// Every shader with its path.
+            /// Every shader with its path under `linked/`.
             #[cfg(test)]
-            pub(crate) const ALL: &[(&str, &str)] = &[$( (concat!($path, $(" with ", $features)?), $name), )+];
+            pub(crate) const ALL: &[(&str, &str)] = &[$( ($linked, $name), )+];
         };
     }
 
-    include!("shaders.rs");
+    include!("../linked/shaders.rs");
 
     #[cfg(feature = "mutants")]
     pub(crate) use crate::gpu::mutants::text_of;

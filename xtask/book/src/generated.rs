@@ -1,4 +1,4 @@
-//! Text generated from declarations: techniques, their worst cases, departures from papers and names; built-in scenes.
+//! Text generated from declarations: techniques, their families, worst cases, departures from papers and names; built-in scenes.
 
 use antumbra::{Quality, TechniqueKind};
 use antumbra_scene::builtin;
@@ -33,11 +33,12 @@ fn part(what: &str) -> Result<String, String> {
             let kinds: Result<Vec<_>, _> = names.split(' ').map(kind).collect();
             departures(&kinds?)
         }
+        _ if what == "families" => Ok(families()),
         _ if what == "worst cases" => Ok(worst_cases()),
         _ if what == "names" => Ok(names()),
         _ if what == "scenes" => Ok(scenes()),
         _ => Err(format!(
-            "there is no generated part `{what}`; expected `techniques NAME...`, `departures NAME...`, `worst cases`, `names` or `scenes`"
+            "there is no generated part `{what}`; expected `techniques NAME...`, `departures NAME...`, `families`, `worst cases`, `names` or `scenes`"
         )),
     }
 }
@@ -57,6 +58,24 @@ fn techniques(kinds: &[TechniqueKind]) -> String {
     });
     let head = "| name | technique | penumbra | shadow maps | good for | fails where |\n|---|---|---|---|---|---|\n";
     head.to_owned() + &rows.collect::<String>()
+}
+
+/// Returns the families, in the order of their first techniques, with their techniques.
+pub fn by_family() -> Vec<(&'static str, Vec<&'static str>)> {
+    let mut families: Vec<(&str, Vec<&str>)> = Vec::new();
+    for facts in TechniqueKind::ALL.iter().map(|kind| kind.facts()) {
+        match families.iter_mut().find(|(family, _)| *family == facts.family) {
+            Some((_, names)) => names.push(facts.name),
+            None => families.push((facts.family, vec![facts.name])),
+        }
+    }
+    families
+}
+
+/// Returns the table of features that compile the families.
+fn families() -> String {
+    let row = |(family, names): (&str, Vec<&str>)| format!("| `{family}` | `{}` |\n", names.join("`, `"));
+    format!("| feature | techniques |\n|---|---|\n{}", by_family().into_iter().map(row).collect::<String>())
 }
 
 /// Returns each technique's worst case: a heading, from which `cargo xtask figures` reads name and scene, and three full-size images.

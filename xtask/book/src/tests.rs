@@ -7,7 +7,7 @@ use antumbra::TechniqueKind;
 use antumbra_scene::builtin;
 use antumbra_testing::book::{Page, blocks, book_pages, page, prose, root};
 
-use crate::generated::renewed;
+use crate::generated::{by_family, renewed};
 
 /// Pages outside the book whose links are checked, too.
 const OTHERS: [&str; 8] = [
@@ -57,6 +57,24 @@ fn every_technique_is_on_each_page_once() {
         assert_eq!(rows("docs/limits.md", &format!("\n### `{kind}` on `builtin:")), 1, "{kind}");
         assert!(rows("README.md", &format!("`{kind}`")) >= 1, "{kind}");
     }
+}
+
+/// The table of families in ARCHITECTURE.md has each family's techniques in any order, or `itself` for a family of one.
+#[test]
+fn every_technique_is_in_its_familys_row() {
+    let text = page("ARCHITECTURE.md").text;
+    for (family, mut names) in by_family() {
+        let row = text.lines().find_map(|line| line.strip_prefix(&format!("| `{family}` | ")));
+        let (cell, _) = row.and_then(|row| row.split_once(" | ")).unwrap_or_else(|| panic!("a row of `{family}`"));
+        let mut cells: Vec<_> = if cell == "itself" { vec![family] } else { cell.split(' ').map(unquoted).collect() };
+        cells.sort_unstable();
+        names.sort_unstable();
+        assert_eq!(cells, names, "ARCHITECTURE.md, techniques of `{family}`");
+    }
+}
+
+fn unquoted(name: &str) -> &str {
+    name.trim_matches('`')
 }
 
 /// Returns the text of a page without code blocks and code spans, in which brackets are not links.

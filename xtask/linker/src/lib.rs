@@ -1,8 +1,8 @@
-//! Links each WESL shader listed in `crates/antumbra/src/shaders.rs` to plain WGSL in `crates/antumbra/linked`:
+//! Links each WESL shader of `crates/antumbra/src` to plain WGSL in `crates/antumbra/linked`, and lists them there for the library:
 //! `cargo xtask shaders`.
 //!
-//! The linked text is committed and embedded unchanged, so that building the library needs no linker. A test here fails if the text
-//! differs from what the sources link to.
+//! List and linked text are committed and embedded unchanged, so that building the library needs no linker. A test here fails if they
+//! differ from what the sources link to.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -11,42 +11,22 @@ use std::path::{Path, PathBuf};
 use wesl::syntax::GlobalDeclaration;
 use wesl::{CompileResult, Mangler, ModulePath, SourceMap, Wesl};
 
+pub use shaders::{Shader, shaders};
+
+mod shaders;
+
 /// Command that relinks, for headers and messages.
 const COMMAND: &str = "cargo xtask shaders";
 
-/// Entry of the library's list of shaders.
-#[derive(Debug)]
-pub struct Shader {
-    /// Path of the `.wesl` file under `src/`, without extension.
-    pub path: &'static str,
-    /// Features of its conditional parts, joined by `+`; empty without features.
-    pub features: &'static str,
-    /// Path of the linked text under `linked/`.
-    pub file: &'static str,
-}
-
-macro_rules! shaders {
-    ($(
-        $(#[doc = $doc:literal])* $(#[cfg($only:ident)])?
-        $name:ident = $path:literal $(with $features:literal)?;
-    )+) => {
-        /// Shaders of the library.
-        pub const SHADERS: &[Shader] = &[$( Shader {
-            path: $path,
-            features: concat!($($features)?),
-            file: linked_file!($($only)? $path $(with $features)?),
-        } ),+];
-    };
-}
-
-include!("../../../crates/antumbra/src/shaders.rs");
+/// File of the library's list of shaders, under `linked/`.
+const LIST: &str = "shaders.rs";
 
 /// Returns the library's folder.
 pub fn library() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../crates/antumbra")
 }
 
-/// Relinks all shaders into `linked/`. Unchanged files are not written, because cargo would rebuild.
+/// Relinks all shaders into `linked/`, and lists them there. Unchanged files are not written, because cargo would rebuild.
 ///
 /// # Errors
 /// The first shader that does not link, or file that cannot be read or written.
@@ -71,13 +51,32 @@ pub fn relink(library: &Path) -> Result<(), String> {
         println!("removed {file}");
         removed += 1;
     }
-    println!("{} shaders: {written} written, {removed} removed", linked.len());
+    println!("{} shaders: {written} files written, {removed} removed", linked.len() - 1);
     Ok(())
 }
 
-/// Returns every shader's linked text, by its path under `linked/`.
+/// Returns every shader's linked text and the library's list of them, by their paths under `linked/`.
 fn link_all(sources: &Path) -> Result<BTreeMap<String, String>, String> {
-    SHADERS.iter().map(|shader| Ok((shader.file.to_owned(), link(sources, shader)?))).collect()
+    let shaders = shaders(sources)?;
+    let mut files = BTreeMap::from([(LIST.to_owned(), shaders::list(&shaders))]);
+    let mut plain = String::new();
+    for shader in &shaders {
+        let text = link(sources, shader)?;
+        // A variant follows its file's plain shader.
+        if shader.features.is_empty() {
+            body(&text).clone_into(&mut plain);
+        } else if body(&text) == plain {
+            let Shader { path, features, .. } = shader;
+            return Err(format!("src/{path}.wesl: the variant `{features}` changes nothing: is it misspelt?"));
+        }
+        files.insert(format!("{}.wgsl", shader.linked()), text);
+    }
+    Ok(files)
+}
+
+/// Returns a linked text without its first line, which names the variant.
+fn body(text: &str) -> &str {
+    text.split_once('\n').map_or("", |(_, body)| body)
 }
 
 /// Returns a shader's text, linked from the modules under `sources`.
@@ -94,7 +93,7 @@ pub fn link(sources: &Path, shader: &Shader) -> Result<String, String> {
     }
     let module: ModulePath = format!("package::{}", path.replace('/', "::"))
         .parse()
-        .map_err(|error| format!("src/shaders.rs: `{path}` is not the path of a shader: {error}"))?;
+        .map_err(|error| format!("src/{path}.wesl: its path is not a module path: {error}"))?;
     let mut linked = compiler.compile(&module).map_err(|error| format!("src/{path}.wesl does not link:\n{error}"))?;
     order(&mut linked);
     if let Some(name) = first_twice(&linked) {
@@ -185,7 +184,7 @@ fn faults(linked: &BTreeMap<String, String>, committed: &BTreeMap<String, String
         Some(_) => None,
     });
     let stale = committed.keys().filter(|file| !linked.contains_key(*file));
-    outdated.chain(stale.map(|file| fault(file, "is not listed in src/shaders.rs"))).collect()
+    outdated.chain(stale.map(|file| fault(file, "belongs to no shader of src"))).collect()
 }
 
 #[cfg(test)]
@@ -200,13 +199,6 @@ mod tests {
         assert!(faults.is_empty(), "{}", faults.join("\n"));
     }
 
-    /// Two entries with one file would leave one of them with the wrong text.
-    #[test]
-    fn each_shader_has_a_file_of_its_own() {
-        let files: std::collections::BTreeSet<_> = SHADERS.iter().map(|shader| shader.file).collect();
-        assert_eq!(files.len(), SHADERS.len());
-    }
-
     #[test]
     fn old_missing_and_stale_files_are_named_with_the_command() {
         let texts = |files: &[(&str, &str)]| {
@@ -217,7 +209,7 @@ mod tests {
         let expected = [
             "crates/antumbra/linked/a.wgsl is out of date: run `cargo xtask shaders`",
             "crates/antumbra/linked/c.wgsl is missing: run `cargo xtask shaders`",
-            "crates/antumbra/linked/d.wgsl is not listed in src/shaders.rs: run `cargo xtask shaders`",
+            "crates/antumbra/linked/d.wgsl belongs to no shader of src: run `cargo xtask shaders`",
         ];
         assert_eq!(faults(&linked, &committed), expected);
     }

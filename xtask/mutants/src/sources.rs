@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use antumbra_linker::{SHADERS, Shader, library, link};
+use antumbra_linker::{Shader, library, link, shaders};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use crate::places::Change;
@@ -12,7 +12,9 @@ use crate::places::Change;
 pub struct Sources {
     /// Text by path under `src/`.
     pub texts: BTreeMap<String, String>,
-    /// Current linked text of each shader, by its index in [`SHADERS`].
+    /// Shaders of the library.
+    shaders: Vec<Shader>,
+    /// Current linked text of each shader.
     linked: Vec<String>,
     /// Sources that each shader is linked from.
     parts: Vec<BTreeSet<String>>,
@@ -46,9 +48,10 @@ impl Sources {
                 }
             }
         }
-        let linked = SHADERS.iter().map(|shader| link(&root, shader)).collect::<Result<_, _>>()?;
-        let parts = SHADERS.iter().map(|shader| parts_of(&texts, &format!("{}.wesl", shader.path))).collect();
-        Ok(Self { texts, linked, parts })
+        let shaders = shaders(&root)?;
+        let linked = shaders.iter().map(|shader| link(&root, shader)).collect::<Result<_, _>>()?;
+        let parts = shaders.iter().map(|shader| parts_of(&texts, &format!("{}.wesl", shader.path))).collect();
+        Ok(Self { texts, shaders, linked, parts })
     }
 
     /// Applies a change to a source in a separate folder with all sources, and links the shaders that depend on it.
@@ -66,7 +69,7 @@ impl Sources {
 
     fn link_changed(&self, folder: &Folder, file: &str) -> MutationEffect {
         let mut shaders = BTreeMap::new();
-        for (i, shader) in SHADERS.iter().enumerate().filter(|(i, _)| self.parts[*i].contains(file)) {
+        for (i, shader) in self.shaders.iter().enumerate().filter(|(i, _)| self.parts[*i].contains(file)) {
             let Ok(text) = link(&folder.sources, shader) else { return MutationEffect::Nothing("does not link") };
             if text == self.linked[i] {
                 continue;
@@ -149,7 +152,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), String> {
 
 /// Returns the name of a shader in the library's feature `mutants` (`gpu/mutants.rs`): its path and its features.
 pub fn changed_name(shader: &Shader) -> String {
-    shader.file.strip_prefix("test/").unwrap_or(shader.file).to_owned()
+    format!("{}.wgsl", shader.name())
 }
 
 /// Returns a source and everything that it imports, by the paths after `package::`.

@@ -2,59 +2,23 @@
 
 use std::fmt;
 
-use antumbra::TechniqueKind;
+use antumbra::{OccluderModel, TechniqueKind};
 use serde::{Serialize, Serializer};
 
 use super::simplify::Setting;
 use super::{Advice, Config};
 use crate::scene_facts::{DEFAULT_MAP_TEXELS, PenumbraFacts, percent};
 
-/// Assumption of a technique about the blockers between a receiver and the light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Assumes {
-    /// Blockers cast no penumbra.
-    NoWidth,
-    /// All penumbrae are as wide as the kernel.
-    OneWidth,
-    /// Blockers have one mean depth.
-    OneDepth,
-    /// Blockers have a few depths.
-    SeveralDepths,
-    /// No assumption: light samples are tested one by one.
-    Nothing,
-}
-
-impl Assumes {
-    /// Returns the assumption of a configuration; `None` for a technique that is not listed here, which gets no reasons of this kind.
-    fn of(config: &Config) -> Option<Self> {
-        use TechniqueKind as Kind;
-        let has = |key: &str, value: &str| config.settings.iter().any(|(set, to)| *set == key && to == value);
-        Some(match config.kind {
-            Kind::Hard | Kind::AliasFree => Self::NoWidth,
-            Kind::Pcf | Kind::Vsm | Kind::Lvsm | Kind::Evsm | Kind::Esm | Kind::Convolution | Kind::Moment => {
-                Self::OneWidth
-            }
-            Kind::Pcss if has("layers", "1") || has("attach_contacts", "false") => Self::OneDepth,
-            Kind::Pcss | Kind::MultiLayer => Self::SeveralDepths,
-            Kind::Smrt
-            | Kind::Bitmask
-            | Kind::Backprojection
-            | Kind::MultiView
-            | Kind::Reprojection
-            | Kind::ReprojectionLayered
-            | Kind::RayTraced
-            | Kind::SampleBased => Self::Nothing,
-            Kind::PcssAnisotropic | Kind::Essm | Kind::Savsm | Kind::Vssm | Kind::Cssm | Kind::Evssm | Kind::Mssm => {
-                Self::OneDepth
-            }
-            _ => return None,
-        })
-    }
+/// Returns the assumption of a configuration about occluders: the technique's, except where a setting changes it.
+fn assumed(config: &Config) -> OccluderModel {
+    let has = |key: &str, value: &str| config.settings.iter().any(|(set, to)| *set == key && to == value);
+    let is_plain_pcss = config.kind == TechniqueKind::Pcss && (has("layers", "1") || has("attach_contacts", "false"));
+    if is_plain_pcss { OccluderModel::OneDepth } else { config.kind.facts().occluders }
 }
 
 /// Returns whether a technique looks up blockers in texels of a shadow map.
 fn looks_into_a_map(kind: TechniqueKind) -> bool {
-    !matches!(kind, TechniqueKind::RayTraced | TechniqueKind::AliasFree | TechniqueKind::SampleBased)
+    kind.facts().light_maps != "none"
 }
 
 /// Share of the penumbra above which several depths count as a feature of the scene.
@@ -193,8 +157,8 @@ pub(super) fn reasons(advice: &Advice, settings: &[Setting]) -> Vec<Reason> {
     if !advice.keeps_budget {
         reasons.push(Reason::OverBudget);
     }
-    if let Some((penumbra, assumes)) = worst_penumbra(advice).zip(Assumes::of(&best.config)) {
-        reasons.extend(of_penumbra(assumes, looks_into_a_map(best.config.kind), &penumbra));
+    if let Some(penumbra) = worst_penumbra(advice) {
+        reasons.extend(of_penumbra(assumed(&best.config), looks_into_a_map(best.config.kind), &penumbra));
     }
     let next_best = |name: &str, errs: f64, best_errs: f64| {
         // Errors that print alike are no reason.
@@ -215,25 +179,24 @@ pub(super) fn reasons(advice: &Advice, settings: &[Setting]) -> Vec<Reason> {
 }
 
 /// Returns the reasons that follow from the penumbra and the technique's assumption.
-fn of_penumbra(assumes: Assumes, looks_into_a_map: bool, penumbra: &PenumbraFacts) -> Vec<Reason> {
+fn of_penumbra(assumes: OccluderModel, looks_into_a_map: bool, penumbra: &PenumbraFacts) -> Vec<Reason> {
     let several = penumbra.two_depths + penumbra.more_depths;
     let (median_px, p90_px) = (penumbra.width_px.median, penumbra.width_px.p90);
     let (is_narrow, varies) = (p90_px < NARROW_PX, p90_px >= VARIES * median_px);
     let mut reasons = vec![match assumes {
-        Assumes::NoWidth if is_narrow => Reason::SharpFits { p90_px },
-        Assumes::NoWidth => Reason::SharpAnyway { median_px, p90_px },
-        Assumes::OneWidth if is_narrow || !varies => Reason::OneWidthFits { median_px, p90_px },
-        Assumes::OneWidth => Reason::OneWidthAnyway { median_px, p90_px },
-        Assumes::OneDepth | Assumes::SeveralDepths if several <= MANY => {
+        OccluderModel::NoPenumbra if is_narrow => Reason::SharpFits { p90_px },
+        OccluderModel::NoPenumbra => Reason::SharpAnyway { median_px, p90_px },
+        OccluderModel::OneWidth if is_narrow || !varies => Reason::OneWidthFits { median_px, p90_px },
+        OccluderModel::OneWidth => Reason::OneWidthAnyway { median_px, p90_px },
+        OccluderModel::OneDepth | OccluderModel::SeveralDepths if several <= MANY => {
             Reason::OneDepthIsEnough { one: penumbra.one_depth }
         }
-        Assumes::OneDepth => Reason::OneDepthMisses { several },
-        Assumes::SeveralDepths => Reason::SeveralDepths { several },
-        Assumes::Nothing if several > MANY => Reason::PointsForDepths { several },
-        Assumes::Nothing => Reason::Points,
+        OccluderModel::OneDepth => Reason::OneDepthMisses { several },
+        OccluderModel::SeveralDepths => Reason::SeveralDepths { several },
+        OccluderModel::Any if several > MANY => Reason::PointsForDepths { several },
+        OccluderModel::Any => Reason::Points,
     }];
-    let follows = !matches!(assumes, Assumes::NoWidth | Assumes::OneWidth);
-    if follows && varies && !is_narrow {
+    if !assumes.has_fixed_width() && varies && !is_narrow {
         reasons.push(Reason::WidthsAreFollowed { median_px, p90_px });
     }
     if looks_into_a_map && penumbra.thin > MANY {
@@ -265,26 +228,25 @@ mod tests {
     use super::*;
     use crate::scene_facts::Spread;
 
-    /// The assumptions listed here agree with the techniques' declared facts.
+    /// Declared assumptions agree with the texts beside them.
     #[test]
-    fn what_is_assumed_is_what_techniques_declare() {
+    fn what_is_assumed_is_what_techniques_describe() {
         for kind in TechniqueKind::ALL.iter().copied() {
-            let declared = match kind.facts().penumbra {
-                "none" => Some(Assumes::NoWidth),
-                "constant width" => Some(Assumes::OneWidth),
+            let described = match kind.facts().penumbra {
+                "none" => Some(OccluderModel::NoPenumbra),
+                "constant width" => Some(OccluderModel::OneWidth),
                 _ => None,
             };
             for config in QUALITIES.map(|quality| Config::of_quality(kind, quality)) {
-                let assumes = Assumes::of(&config).unwrap_or_else(|| panic!("{kind} has no assumption in the list"));
-                let is_fixed = matches!(assumes, Assumes::NoWidth | Assumes::OneWidth);
-                assert_eq!(is_fixed.then_some(assumes), declared, "{config}: {}", kind.facts().penumbra);
+                let assumes = assumed(&config);
+                let fixed = assumes.has_fixed_width().then_some(assumes);
+                assert_eq!(fixed, described, "{config}: {}", kind.facts().penumbra);
             }
-            let is_exact = kind.facts().light_maps == "none" || looks_into_a_map(kind);
-            assert!(is_exact, "{kind}: {}", kind.facts().light_maps);
         }
         let pcss = Config::default_of(TechniqueKind::Pcss);
-        assert_eq!(Assumes::of(&pcss), Some(Assumes::SeveralDepths));
-        assert_eq!(Assumes::of(&pcss.with("attach_contacts", "false")), Some(Assumes::OneDepth));
+        assert_eq!(assumed(&pcss), OccluderModel::SeveralDepths);
+        assert_eq!(assumed(&pcss.with("attach_contacts", "false")), OccluderModel::OneDepth);
+        assert!(looks_into_a_map(TechniqueKind::Pcss) && !looks_into_a_map(TechniqueKind::SampleBased));
     }
 
     fn penumbra(median: f64, p90: f64, several: f64) -> PenumbraFacts {
@@ -292,8 +254,13 @@ mod tests {
         PenumbraFacts { width_px, one_depth, two_depths: several, thin: 0.5, ..PenumbraFacts::default() }
     }
 
-    const ALL: [Assumes; 5] =
-        [Assumes::NoWidth, Assumes::OneWidth, Assumes::OneDepth, Assumes::SeveralDepths, Assumes::Nothing];
+    const ALL: [OccluderModel; 5] = [
+        OccluderModel::NoPenumbra,
+        OccluderModel::OneWidth,
+        OccluderModel::OneDepth,
+        OccluderModel::SeveralDepths,
+        OccluderModel::Any,
+    ];
 
     /// Reasons match technique and scene: no technique is credited with something it does not do.
     #[test]
@@ -304,20 +271,20 @@ mod tests {
                 for assumes in ALL {
                     for reason in of_penumbra(assumes, true, &penumbra) {
                         let fits = match &reason {
-                            Reason::SharpFits { p90_px } => assumes == Assumes::NoWidth && *p90_px < NARROW_PX,
-                            Reason::SharpAnyway { .. } => assumes == Assumes::NoWidth && p90 >= NARROW_PX,
-                            Reason::OneWidthFits { .. } => assumes == Assumes::OneWidth && p90 < 3.0 * median,
-                            Reason::OneWidthAnyway { .. } => assumes == Assumes::OneWidth && p90 == 3.0 * median,
-                            Reason::WidthsAreFollowed { .. } => {
-                                p90 == 3.0 * median && !matches!(assumes, Assumes::NoWidth | Assumes::OneWidth)
-                            }
+                            Reason::SharpFits { p90_px } => assumes == OccluderModel::NoPenumbra && *p90_px < NARROW_PX,
+                            Reason::SharpAnyway { .. } => assumes == OccluderModel::NoPenumbra && p90 >= NARROW_PX,
+                            Reason::OneWidthFits { .. } => assumes == OccluderModel::OneWidth && p90 < 3.0 * median,
+                            Reason::OneWidthAnyway { .. } => assumes == OccluderModel::OneWidth && p90 == 3.0 * median,
+                            Reason::WidthsAreFollowed { .. } => p90 == 3.0 * median && !assumes.has_fixed_width(),
                             Reason::OneDepthIsEnough { one } => {
-                                *one == 1.0 && matches!(assumes, Assumes::OneDepth | Assumes::SeveralDepths)
+                                *one == 1.0 && matches!(assumes, OccluderModel::OneDepth | OccluderModel::SeveralDepths)
                             }
-                            Reason::OneDepthMisses { several } => assumes == Assumes::OneDepth && *several == 0.5,
-                            Reason::SeveralDepths { several } => assumes == Assumes::SeveralDepths && *several == 0.5,
-                            Reason::PointsForDepths { several } => assumes == Assumes::Nothing && *several == 0.5,
-                            Reason::Points => assumes == Assumes::Nothing && several == 0.0,
+                            Reason::OneDepthMisses { several } => assumes == OccluderModel::OneDepth && *several == 0.5,
+                            Reason::SeveralDepths { several } => {
+                                assumes == OccluderModel::SeveralDepths && *several == 0.5
+                            }
+                            Reason::PointsForDepths { several } => assumes == OccluderModel::Any && *several == 0.5,
+                            Reason::Points => assumes == OccluderModel::Any && several == 0.0,
                             Reason::Thin { share } => *share == 0.5,
                             _ => false,
                         };
@@ -326,7 +293,7 @@ mod tests {
                 }
             }
         }
-        let lists = of_penumbra(Assumes::Nothing, false, &penumbra(4.0, 5.0, 0.0));
+        let lists = of_penumbra(OccluderModel::Any, false, &penumbra(4.0, 5.0, 0.0));
         assert_eq!(lists, [Reason::Points], "lists of receivers have no texels");
     }
 

@@ -75,7 +75,7 @@ fn masks_of_a_foreign_renderer_are_as_good_as_the_laboratory_s() {
                 "{who}: rmse {ours:.4}, and the laboratory's {of_lab:.4}, over {judged} pixels, {others} not judged; \
                  the first frame's {before:.4}"
             );
-            let bound = usual_bound(kind);
+            let bound = usual_bound(kind).expect("a bound of every technique");
             assert!(judged > 500 && others < 10, "{who}: {judged} pixels, and {others} not judged");
             assert!(ours <= f64::from(bound), "{who}: rmse {ours} against {bound}");
             assert!(ours <= of_lab + ROUNDING, "{who}: rmse {ours} against the laboratory's {of_lab}");

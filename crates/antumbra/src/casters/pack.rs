@@ -47,7 +47,7 @@ gpu_structs! {
 }
 
 bindings! {
-    struct PackedMesh = "pack mesh", COMPUTE, group 0 of [PACK_MESH] {
+    struct PackedMesh = "pack mesh", COMPUTE, group 0 of [CASTERS_PACK] {
         0 pack: Uniform,
         1 host_positions: StoragePart,
         2 host_uvs: StoragePart,
@@ -57,7 +57,7 @@ bindings! {
         6 indices: ReadWrite,
     }
 
-    struct PackedInstances = "pack instances", COMPUTE, group 0 of [PACK_INSTANCES] {
+    struct PackedInstances = "pack instances", COMPUTE, group 0 of [CASTERS_PACK_INSTANCES] {
         0 pack: Uniform,
         1 host_instances: StoragePart,
         2 instances: ReadWrite,
@@ -66,15 +66,15 @@ bindings! {
 
 shared_constants! {
     /// Formats of positions and texture coordinates.
-    const FLOAT_32: u32 = 0, as in PACK_MESH;
-    const SNORM_16: u32 = 1, as in PACK_MESH;
-    const UNORM_16: u32 = 2, as in PACK_MESH;
-    const FLOAT_16: u32 = 3, as in PACK_MESH;
+    const FLOAT_32: u32 = 0, as in CASTERS_PACK;
+    const SNORM_16: u32 = 1, as in CASTERS_PACK;
+    const UNORM_16: u32 = 2, as in CASTERS_PACK;
+    const FLOAT_16: u32 = 3, as in CASTERS_PACK;
     /// Value of `uv_format` for meshes without texture coordinates.
-    const NO_UVS: u32 = 4, as in PACK_MESH;
+    const NO_UVS: u32 = 4, as in CASTERS_PACK;
     /// Formats of indices.
-    const NO_INDICES: u32 = 0, as in PACK_MESH;
-    const INDICES_16: u32 = 1, as in PACK_MESH;
+    const NO_INDICES: u32 = 0, as in CASTERS_PACK;
+    const INDICES_16: u32 = 1, as in CASTERS_PACK;
 }
 
 /// Format of 32-bit indices; the shader does not compare with it.
@@ -293,9 +293,9 @@ impl Packer {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let (mesh_layout, instances_layout) = (PackedMesh::layout(gpu), PackedInstances::layout(gpu));
         Self {
-            mesh: compute_pipeline(gpu, "pack mesh", shaders::PACK_MESH, &[&mesh_layout]),
+            mesh: compute_pipeline(gpu, "pack mesh", shaders::CASTERS_PACK, &[&mesh_layout]),
             mesh_layout,
-            instances: compute_pipeline(gpu, "pack instances", shaders::PACK_INSTANCES, &[&instances_layout]),
+            instances: compute_pipeline(gpu, "pack instances", shaders::CASTERS_PACK_INSTANCES, &[&instances_layout]),
             instances_layout,
         }
     }

@@ -66,12 +66,13 @@ fn create_layout(gpu: &Gpu, label: &str, entries: &[wgpu::BindGroupLayoutEntry])
 /// - `0 view: Uniform in VERTEX`: a binding with its own stages.
 /// - `, group 1 of [SHADER]` after the stages: group index and shaders. A test named after the struct compares the
 ///   declaration with them.
+/// - `, group 1 of all with maps`: the same for all shaders in whose group 1 a binding is named `maps`.
 /// - `, with batch: BatchBindings`: includes the bindings of another group first.
 macro_rules! bindings {
     ($(
         $(#[$outer:meta])*
         $visibility:vis struct $name:ident = $label:literal, $($stages:ident)|+
-            $(, group $group:literal of [$($shader:ident),+])?
+            $(, group $group:literal of $([$($shader:ident),+])? $(all with $member:ident)?)?
             $(, with $base:ident: $base_ty:ident)?
         {
             $( $(#[$inner:meta])* $binding:literal $field:ident: $kind:ident $(($($argument:expr),+))? $(in $($own:ident)|+)?, )+
@@ -122,7 +123,8 @@ macro_rules! bindings {
             #[test]
             #[allow(non_snake_case, reason = "the test is named after the function it tests")]
             fn $name() {
-                let shaders = [$( (stringify!($shader), $crate::shaders::$shader) ),+];
+                $( let shaders = [$( (stringify!($shader), $crate::shaders::$shader) ),+]; )?
+                $( let shaders = $crate::gpu::bindings::tests::shaders_with($group, stringify!($member)); )?
                 $crate::gpu::bindings::tests::assert_as_declared::<$name<'_>>($group, &shaders);
             }
         )?

@@ -4,6 +4,9 @@ use std::sync::Arc;
 
 use super::{DrawPipeline, Gpu, Stage, TableKey, overrides};
 
+#[cfg(test)]
+pub(crate) mod tests;
+
 /// Layout of a member of a [`GpuStruct`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GpuField {
@@ -26,7 +29,7 @@ pub trait GpuStruct: bytemuck::Pod {
     const FIELDS: &'static [GpuField];
 }
 
-/// Declares structs that Rust and the shaders share.
+/// Declares structs that Rust and the shaders share. A test named after each compares it with the shaders.
 macro_rules! gpu_structs {
     ($( $(#[$outer:meta])* pub(crate) struct $name:ident { $( $(#[$inner:meta])* $field:ident: $ty:ty, )+ } )+) => { $(
         $(#[$outer])*
@@ -41,6 +44,13 @@ macro_rules! gpu_structs {
                 offset: std::mem::offset_of!($name, $field),
                 size: size_of::<$ty>(),
             }, )+];
+        }
+
+        #[cfg(test)]
+        #[test]
+        #[allow(non_snake_case, reason = "named as what it tests")]
+        fn $name() {
+            $crate::gpu::buffers::tests::assert_same_layout::<$name>();
         }
     )+ };
 }

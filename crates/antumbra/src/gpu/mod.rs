@@ -3,7 +3,7 @@
 
 pub(crate) mod bindings;
 mod budget;
-mod buffers;
+pub(crate) mod buffers;
 mod cached;
 mod commands;
 mod constant_branches;

@@ -1,6 +1,6 @@
 //! Constants that Rust and shaders share, each compared with the linked shaders by a test.
 
-/// Declares constants that have the same name and value in a linked shader, `as in SHADER` (listed in `shaders.rs`). Use
+/// Declares constants that have the same name and value in a linked shader, `as in SHADER`, a constant of `shaders`. Use
 /// it at most once per module; its test is `in_shaders::constants_are_the_same`.
 macro_rules! shared_constants {
     ($( $(#[$outer:meta])* $visibility:vis const $name:ident: $ty:ty = $value:expr, as in $shader:ident; )+) => {

@@ -8,7 +8,7 @@ use crate::gpu::shared_constants;
 shared_constants! {
     pub(crate) const COVERAGE_WHOLE: u32 = 0, as in CASTER_DEPTH_CUTOUT;
     pub(crate) const COVERAGE_ALPHA: u32 = 1, as in CASTER_DEPTH_CUTOUT;
-    pub(crate) const COVERAGE_CUTOFF: u32 = 2, as in VIEW_SAMPLES_EVALUATE;
+    pub(crate) const COVERAGE_CUTOFF: u32 = 2, as in EVALUATION_EVALUATE;
 }
 
 /// Values of a surface that is not opaque, without its texture.

@@ -83,7 +83,7 @@ bindings! {
     }
 
     /// Bind group 1: the map, its depth pyramid, and the layers behind it.
-    struct LayersBindings = "light map with layers behind it", COMPUTE, group 1 of [PCSS_RESOLVE, SMRT_RESOLVE, BITMASK_RESOLVE, BACKPROJECTION_RESOLVE],
+    struct LayersBindings = "light map with layers behind it", COMPUTE, group 1 of all with further_layers,
         with searched: PyramidBindings
     {
         4 further_layers: TextureArray(texels::DEPTH),

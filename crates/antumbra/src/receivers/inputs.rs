@@ -86,7 +86,7 @@ bindings! {
     }
 
     /// Bindings of entry points that write the pixels that interpolation left missing.
-    struct MissingInputs = "frame inputs of missing pixels", COMPUTE, group 0 of [PCSS_RESOLVE, VIEW_SAMPLES_MARK_MISSING], with inputs: Inputs {
+    struct MissingInputs = "frame inputs of missing pixels", COMPUTE, group 0 of [PCSS_RESOLVE, LISTS_MARK_MISSING], with inputs: Inputs {
         /// Number of missing pixels, then each as x | y << 16.
         7 missing: Storage,
     }

@@ -10,6 +10,7 @@ use crate::casters::tests::{set_of, update};
 use crate::casters::{CasterSet, Surface};
 use crate::contract::{Mask, MaskChannels, MeshCaster, Receivers, SurfaceCoverage};
 use crate::gpu::{Gpu, Recorder};
+use crate::technique_kind::each_technique;
 use crate::testing::{Case, Mesh, SIZE, View, gpu, instances_at, read_texture, run};
 
 const RECTANGLE: LightShape = LightShape::Rectangle { size_m: Vec2::new(1.0, 0.6) };
@@ -49,49 +50,17 @@ macro_rules! properties {
 /// Declares one test per technique. Each checks all properties, because most of its time is spent compiling the technique's
 /// shaders, which every process repeats: a test per technique and property takes more than twice as long.
 macro_rules! techniques {
-    ($($technique:ident: $kind:ident),* $(,)?) => {
+    ($($technique:ident: $kind:ident,)*) => {
         mod frames_under_a_rectangle {
             $(#[test]
             fn $technique() {
                 super::under_a_rectangle(super::TechniqueKind::$kind);
             })*
         }
-
-        #[test]
-        fn no_technique_is_left_out() {
-            assert_eq!([$(TechniqueKind::$kind),*].as_slice(), TechniqueKind::ALL);
-        }
     };
 }
 
-techniques! {
-    hard: Hard,
-    pcf: Pcf,
-    pcss: Pcss,
-    smrt: Smrt,
-    bitmask: Bitmask,
-    backprojection: Backprojection,
-    multi_view: MultiView,
-    vsm: Vsm,
-    lvsm: Lvsm,
-    evsm: Evsm,
-    esm: Esm,
-    convolution: Convolution,
-    moment: Moment,
-    pcss_anisotropic: PcssAnisotropic,
-    essm: Essm,
-    savsm: Savsm,
-    vssm: Vssm,
-    cssm: Cssm,
-    evssm: Evssm,
-    mssm: Mssm,
-    multi_layer: MultiLayer,
-    reprojection: Reprojection,
-    reprojection_layered: ReprojectionLayered,
-    ray_traced: RayTraced,
-    alias_free: AliasFree,
-    sample_based: SampleBased,
-}
+each_technique!(techniques);
 
 fn holds(gpu: &Gpu, case: &Case, kind: TechniqueKind, properties: &[Property]) {
     for (name, property) in properties {

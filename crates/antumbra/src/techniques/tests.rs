@@ -16,25 +16,115 @@ use crate::testing::{
     read_texture, rmse, run, test_ground, texture_of, view_of,
 };
 
+type Settings = &'static [(&'static str, &'static str)];
+/// Bound on the error with some settings.
+type Bound = (Settings, f32);
+
+/// A technique's bounds under a half-plane: none for lights that it does not model.
+#[derive(Default)]
+struct ClosedForms {
+    rectangle: &'static [Bound],
+    two_points: &'static [Bound],
+    disk: &'static [Bound],
+    sphere: &'static [Bound],
+    sun: &'static [Bound],
+}
+
+const DEFAULTS: Settings = &[];
+const SAMPLES: Settings = &[("samples", "256")];
+const SEARCH: Settings = &[("samples", "256"), ("search_samples", "256")];
+/// What the rays converge to. Means over pixels have tests of their own: a quarter of the rays, nearer to the truth.
+const RAYS: Settings = &[("samples", "256"), ("smooth", "false")];
+
+/// A new technique follows its light, and gets bounds here, or says why not.
+fn closed_forms(kind: TechniqueKind) -> ClosedForms {
+    match kind {
+        TechniqueKind::Pcss => ClosedForms {
+            rectangle: &[(SEARCH, 0.003)],
+            two_points: &[(DEFAULTS, 0.025)],
+            disk: &[(SEARCH, 0.004)],
+            sphere: &[(SEARCH, 0.004)],
+            sun: &[(&[("samples", "256"), ("search_samples", "256"), ("map_size", "2048")], 0.003)],
+        },
+        TechniqueKind::Smrt => ClosedForms {
+            // By default a quarter of the rays in the same penumbra, and means of them.
+            rectangle: &[(RAYS, 0.002), (SAMPLES, 0.004)],
+            two_points: &[(DEFAULTS, 0.025)],
+            disk: &[(RAYS, 0.003)],
+            sphere: &[(RAYS, 0.003)],
+            sun: &[(&[("samples", "256"), ("map_size", "2048")], 0.003)],
+        },
+        TechniqueKind::Bitmask => ClosedForms {
+            rectangle: &[(SAMPLES, 0.003)],
+            two_points: &[(DEFAULTS, 0.025)],
+            disk: &[(SAMPLES, 0.004)],
+            sphere: &[(SAMPLES, 0.004)],
+            sun: &[(&[("samples", "256"), ("map_size", "2048")], 0.003)],
+        },
+        TechniqueKind::Backprojection => ClosedForms {
+            rectangle: &[(DEFAULTS, 0.005)],
+            two_points: &[(DEFAULTS, 0.025)],
+            disk: &[(&[("squares", "64")], 0.004)],
+            sphere: &[(&[("squares", "64")], 0.004)],
+            sun: &[(&[("squares", "64"), ("map_size", "2048")], 0.003)],
+        },
+        TechniqueKind::MultiLayer => ClosedForms { rectangle: &[(DEFAULTS, 0.02)], ..ClosedForms::default() },
+        TechniqueKind::MultiView => ClosedForms {
+            rectangle: &[
+                (&[("samples", "64")], 0.007),
+                (&[("samples", "256"), ("sample_set", "stratified")], 0.004),
+                (&[("samples", "64"), ("compare", "hardware")], 0.007),
+            ],
+            two_points: &[(DEFAULTS, 0.025)],
+            disk: &[(SAMPLES, 0.004)],
+            // Views are shared by receivers on all sides of the sphere: points within it are less even than those of one disc.
+            sphere: &[(SAMPLES, 0.0045)],
+            sun: &[(&[("samples", "256"), ("view_size", "2048")], 0.003)],
+        },
+        TechniqueKind::RayTraced => ClosedForms {
+            rectangle: &[(SAMPLES, 0.003)],
+            two_points: &[(DEFAULTS, 0.025)],
+            disk: &[(SAMPLES, 0.004)],
+            sphere: &[(SAMPLES, 0.004)],
+            sun: &[(SAMPLES, 0.003)],
+        },
+        // Without penumbra, or with one of one width.
+        TechniqueKind::Hard
+        | TechniqueKind::AliasFree
+        | TechniqueKind::Pcf
+        | TechniqueKind::Vsm
+        | TechniqueKind::Lvsm
+        | TechniqueKind::Evsm
+        | TechniqueKind::Esm
+        | TechniqueKind::Convolution
+        | TechniqueKind::Moment
+        // Bounded by `masks_stay_in_range_and_larger_occluders_never_brighten` and by tests of their own.
+        | TechniqueKind::PcssAnisotropic
+        | TechniqueKind::Essm
+        | TechniqueKind::Savsm
+        | TechniqueKind::Vssm
+        | TechniqueKind::Cssm
+        | TechniqueKind::Evssm
+        | TechniqueKind::Mssm
+        | TechniqueKind::Reprojection
+        | TechniqueKind::ReprojectionLayered
+        | TechniqueKind::SampleBased => ClosedForms::default(),
+    }
+}
+
+/// Every technique's bounds under one closed form.
+fn bounds(of: fn(ClosedForms) -> &'static [Bound]) -> Vec<(TechniqueKind, Settings, f32)> {
+    let bounds = TechniqueKind::ALL.iter().map(|kind| (*kind, of(closed_forms(*kind))));
+    bounds.flat_map(|(kind, bounds)| bounds.iter().map(move |(settings, bound)| (kind, *settings, *bound))).collect()
+}
+
 #[test]
 fn half_plane_under_a_rectangle_light() {
     let Some(gpu) = gpu() else { return };
     let case = Case::half_plane(gpu, RECTANGLE);
     // What the camera sees of the ground below the occluder is part of the closed form too.
     let pixels = case.ground_pixels(test_ground);
-    for (kind, settings, bound) in [
-        (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..], 0.003),
-        (TechniqueKind::Smrt, &[("samples", "256"), ("smooth", "false")][..], 0.002),
-        // A quarter of the rays in the same penumbra, and means of them.
-        (TechniqueKind::Smrt, &[("samples", "256")][..], 0.004),
-        (TechniqueKind::Bitmask, &[("samples", "256")][..], 0.003),
-        (TechniqueKind::Backprojection, &[], 0.005),
-        (TechniqueKind::MultiLayer, &[], 0.02),
-        (TechniqueKind::MultiView, &[("samples", "64")][..], 0.007),
-        (TechniqueKind::MultiView, &[("samples", "256"), ("sample_set", "stratified")][..], 0.004),
-        (TechniqueKind::MultiView, &[("samples", "64"), ("compare", "hardware")][..], 0.007),
-        (TechniqueKind::RayTraced, &[("samples", "256")][..], 0.003),
-    ] {
+    for (kind, settings, bound) in bounds(|forms| forms.rectangle) {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), |p| half_plane_visibility(p.x, 1.0));
         println!("{kind} {settings:?}: rmse {error:.4}");
         assert!(error < bound, "{kind} {settings:?}: rmse {error} against {bound}");
@@ -83,43 +173,23 @@ fn every_flat_shape_gives_the_same_edge_as_its_closed_form() {
         let first_visible = -p.x * (1.0 - 0.375) / 0.375;
         0.5 * f32::from(u8::from(-0.5 > first_visible) + u8::from(0.5 > first_visible))
     };
-    let kinds = [
-        TechniqueKind::MultiView,
-        TechniqueKind::Pcss,
-        TechniqueKind::Smrt,
-        TechniqueKind::Bitmask,
-        TechniqueKind::Backprojection,
-        TechniqueKind::RayTraced,
-    ];
-    for kind in kinds {
-        let error = rmse(&pixels, &case.run(gpu, kind, &[]), truth);
+    for (kind, settings, bound) in bounds(|forms| forms.two_points) {
+        let error = rmse(&pixels, &case.run(gpu, kind, settings), truth);
         println!("{kind}, points: rmse {error:.4}");
-        assert!(error < 0.025, "{kind}: {error}");
+        assert!(error < bound, "{kind}: {error} against {bound}");
     }
     // A disk and a sphere straight above have nearly the same penumbra: V is the disk's segment beyond the chord.
     let disk = |p: Vec3| {
         let c = (-p.x * (1.0 - 0.375) / 0.375 / 0.5).clamp(-1.0, 1.0);
         (c.acos() - c * (1.0 - c * c).sqrt()) / std::f32::consts::PI
     };
-    for shape in [LightShape::Disk { radius_m: 0.5 }, LightShape::Sphere { radius_m: 0.5 }] {
+    let on_disk = (LightShape::Disk { radius_m: 0.5 }, bounds(|forms| forms.disk));
+    let on_sphere = (LightShape::Sphere { radius_m: 0.5 }, bounds(|forms| forms.sphere));
+    for (shape, bounds) in [on_disk, on_sphere] {
         let case = Case::half_plane(gpu, shape.clone());
-        for (kind, settings) in [
-            (TechniqueKind::MultiView, &[("samples", "256")][..]),
-            (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256")][..]),
-            // What the rays converge to. Means over pixels have tests of their own: a quarter of the rays, nearer to the truth.
-            (TechniqueKind::Smrt, &[("samples", "256"), ("smooth", "false")][..]),
-            (TechniqueKind::Bitmask, &[("samples", "256")][..]),
-            (TechniqueKind::Backprojection, &[("squares", "64")][..]),
-            (TechniqueKind::RayTraced, &[("samples", "256")][..]),
-        ] {
+        for (kind, settings, bound) in bounds {
             let error = rmse(&pixels, &case.run(gpu, kind, settings), disk);
             println!("{kind}, {shape:?}: rmse {error:.4}");
-            let bound = match (kind, &shape) {
-                (TechniqueKind::Smrt, _) => 0.003,
-                // Views are shared by receivers on all sides of the sphere: points within it are less even than those of one disc.
-                (TechniqueKind::MultiView, LightShape::Sphere { .. }) => 0.0045,
-                _ => 0.004,
-            };
             assert!(error < bound, "{kind} {shape:?}: {error} against {bound}");
         }
     }
@@ -137,17 +207,10 @@ fn a_sun_s_penumbra_grows_with_distance_alone() {
         (c.acos() - c * (1.0 - c * c).sqrt()) / std::f32::consts::PI
     };
     let pixels = case.ground_pixels(test_ground);
-    for (kind, settings) in [
-        (TechniqueKind::MultiView, &[("samples", "256"), ("view_size", "2048")][..]),
-        (TechniqueKind::Pcss, &[("samples", "256"), ("search_samples", "256"), ("map_size", "2048")][..]),
-        (TechniqueKind::Smrt, &[("samples", "256"), ("map_size", "2048")][..]),
-        (TechniqueKind::Bitmask, &[("samples", "256"), ("map_size", "2048")][..]),
-        (TechniqueKind::Backprojection, &[("squares", "64"), ("map_size", "2048")][..]),
-        (TechniqueKind::RayTraced, &[("samples", "256")][..]),
-    ] {
+    for (kind, settings, bound) in bounds(|forms| forms.sun) {
         let error = rmse(&pixels, &case.run(gpu, kind, settings), truth);
         println!("{kind}, sun: rmse {error:.4}");
-        assert!(error < 0.003, "{kind}: {error}");
+        assert!(error < bound, "{kind}: {error} against {bound}");
     }
 }
 
@@ -188,7 +251,7 @@ fn masks_stay_in_range_and_larger_occluders_never_brighten() {
         // penumbra than this one.
         let error = rmse(&pixels, &a, |p| half_plane_visibility(p.x, 1.0));
         println!("{kind}: rmse {error:.4}");
-        let bound = if HAS_ONE_WIDTH.contains(kind) { 0.133 } else { 0.0214 };
+        let bound = if kind.facts().occluders.has_fixed_width() { 0.133 } else { 0.0214 };
         assert!(error < bound, "{kind}: rmse {error} against {bound}");
         for (i, p) in &pixels {
             // Chebyshev's bound widens a penumbra by what it takes for blockers: Yang et al. 2010 do not claim monotony.
@@ -197,19 +260,6 @@ fn masks_stay_in_range_and_larger_occluders_never_brighten() {
         }
     }
 }
-
-/// Techniques whose edges are as wide wherever their occluder is.
-const HAS_ONE_WIDTH: [TechniqueKind; 9] = [
-    TechniqueKind::Hard,
-    TechniqueKind::Pcf,
-    TechniqueKind::Vsm,
-    TechniqueKind::Lvsm,
-    TechniqueKind::Evsm,
-    TechniqueKind::Esm,
-    TechniqueKind::Convolution,
-    TechniqueKind::Moment,
-    TechniqueKind::AliasFree,
-];
 
 /// What the dearest technique does without: a finer central map changes its silhouettes by half a texel.
 const QUICK: (&str, &str) = ("central_scale", "1");
@@ -287,28 +337,40 @@ fn a_host_s_depth_map_gives_what_our_own_gives() {
         clip_from_world: view.clip_from_world(),
         depth_convention: DepthConvention::Reversed,
     });
-    let takes_depth = [
-        TechniqueKind::Hard,
-        TechniqueKind::Pcf,
-        TechniqueKind::Pcss,
-        TechniqueKind::Smrt,
-        TechniqueKind::Vsm,
-        TechniqueKind::Lvsm,
-        TechniqueKind::Evsm,
-        TechniqueKind::Esm,
-        TechniqueKind::Convolution,
-        TechniqueKind::Moment,
-    ];
-    for kind in takes_depth {
+    for kind in taking_a_depth_map() {
         // Kernels counted in texels reach beyond what is seen: our own map is wider by them.
         let settings = of_those(kind, &[("kernel_size", "1"), ("mips", "false")]);
         let own = case.run(gpu, kind, &settings);
-        let hosts = case.run_with(gpu, kind, &settings, given).expect("a good map");
+        let hosts =
+            case.run_with(gpu, kind, &settings, given).unwrap_or_else(|error| panic!("{error}: {IF_IT_HAS_TO}"));
         let differing = own.iter().zip(&hosts).filter(|(a, b)| (*a - *b).abs() > 0.02).count();
         assert!(differing < 20, "{kind}: {differing} pixels differ");
     }
+    for kind in REFUSING_A_DEPTH_MAP {
+        let error = case.run_with(gpu, kind, &[], given).unwrap_err().to_string();
+        println!("{error}");
+        assert!(error.starts_with(kind.name()) && !error.contains('\n'), "{kind}: {error}");
+    }
     let error = case.run_with(gpu, TechniqueKind::MultiView, &[], given).unwrap_err();
     assert!(error.to_string().contains("each light point has its own view"));
+}
+
+const IF_IT_HAS_TO: &str = "a technique that has to refuse a host's depth map is listed in `REFUSING_A_DEPTH_MAP`";
+
+/// Techniques that need the casters' triangles, and refuse a host's depth map.
+const REFUSING_A_DEPTH_MAP: [TechniqueKind; 7] = [
+    TechniqueKind::MultiView,
+    TechniqueKind::MultiLayer,
+    TechniqueKind::Reprojection,
+    TechniqueKind::ReprojectionLayered,
+    TechniqueKind::RayTraced,
+    TechniqueKind::AliasFree,
+    TechniqueKind::SampleBased,
+];
+
+/// All others.
+fn taking_a_depth_map() -> Vec<TechniqueKind> {
+    TechniqueKind::ALL.iter().copied().filter(|kind| !REFUSING_A_DEPTH_MAP.contains(kind)).collect()
 }
 
 /// How deep a host's map reaches is no matter: what lies behind the receivers, and texels in which there is nothing, shade none.
@@ -327,9 +389,7 @@ fn a_host_s_depth_map_may_be_infinitely_deep() {
     let size_px = UVec2::splat(512);
     let fov_y = 2.0 * 1.2f32.atan();
     let near_m = 0.3;
-    let take_depth = "hard pcf pcss smrt bitmask backprojection pcss_anisotropic vsm lvsm evsm esm convolution moment essm savsm vssm cssm evssm mssm";
-    for name in take_depth.split(' ') {
-        let kind = TechniqueKind::from_name(name).expect("a technique");
+    for kind in taking_a_depth_map() {
         let masks = [
             // Near and far change places: reversed.
             proj::directx::perspective(fov_y, 1.0, 12.0, near_m),
@@ -344,7 +404,8 @@ fn a_host_s_depth_map_may_be_infinitely_deep() {
             case.with_frame(given, |frame| {
                 let receivers = Receivers { bounds, ..frame.receivers };
                 let mut technique = kind.create(gpu).expect("what every device has");
-                run(gpu, &mut technique, &Frame { receivers, ..*frame }).expect("a good map")
+                let mask = run(gpu, &mut technique, &Frame { receivers, ..*frame });
+                mask.unwrap_or_else(|error| panic!("{error}: {IF_IT_HAS_TO}"))
             })
         });
         for deep in &masks[1..] {

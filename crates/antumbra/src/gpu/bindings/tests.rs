@@ -6,6 +6,18 @@ use super::Bindings;
 use crate::gpu::overrides::is_linked_name;
 use crate::gpu::uniforms;
 
+/// Every linked shader with a binding of this name in a group.
+pub(crate) fn shaders_with(group: u32, name: &str) -> Vec<(&'static str, &'static str)> {
+    let has_it = |(_, wgsl): &(&str, &str)| {
+        let module = naga::front::wgsl::parse_str(wgsl).expect("valid");
+        let is_it = |linked: &Option<String>| linked.as_deref().is_some_and(|linked| is_linked_name(linked, name));
+        let mut variables = module.global_variables.iter();
+        variables.any(|(_, it)| it.binding.is_some_and(|place| place.group == group) && is_it(&it.name))
+    };
+    // Few shaders have to be parsed.
+    crate::shaders::ALL.iter().copied().filter(|(_, wgsl)| wgsl.contains(name)).filter(has_it).collect()
+}
+
 /// Asserts that group `group` of named shaders is as declared: each shader binding is declared with the same name and
 /// kind, and each declared binding occurs in a shader.
 pub(crate) fn assert_as_declared<G: Bindings>(group: u32, shaders: &[(&str, &str)]) {

@@ -33,8 +33,8 @@ impl LayersBehind {
             gpu,
             &CasterProgramDescriptor {
                 label: "antumbra layer behind",
-                opaque_wgsl: shaders::DEPTH_LAYERS_OPAQUE,
-                cutout_wgsl: shaders::DEPTH_LAYERS_CUTOUT,
+                opaque_wgsl: shaders::DEPTH_LAYERS_LAYER_OPAQUE,
+                cutout_wgsl: shaders::DEPTH_LAYERS_LAYER_CUTOUT,
                 opaque_fragment: Some("next_depth"),
                 cutout_fragment: "next_depth",
                 constants: &[],

@@ -21,7 +21,7 @@ mod tests;
 
 bindings! {
     /// Input of a layer's pass: the layer before it.
-    struct NearerLayer = "nearer layer", FRAGMENT, group 2 of [DEPTH_LAYERS_OPAQUE, DEPTH_LAYERS_CUTOUT] {
+    struct NearerLayer = "nearer layer", FRAGMENT, group 2 of [DEPTH_LAYERS_LAYER_OPAQUE, DEPTH_LAYERS_LAYER_CUTOUT] {
         0 nearer_layer: Texture(texels::DEPTH),
     }
 }
@@ -212,8 +212,8 @@ impl Programs {
                 gpu,
                 &CasterProgramDescriptor {
                     label: "antumbra depth layer",
-                    opaque_wgsl: shaders::DEPTH_LAYERS_OPAQUE,
-                    cutout_wgsl: shaders::DEPTH_LAYERS_CUTOUT,
+                    opaque_wgsl: shaders::DEPTH_LAYERS_LAYER_OPAQUE,
+                    cutout_wgsl: shaders::DEPTH_LAYERS_LAYER_CUTOUT,
                     opaque_fragment: Some(entry_point),
                     cutout_fragment: entry_point,
                     constants: &[],

@@ -13,7 +13,7 @@ mod tests;
 const ALL_LAYERS: u32 = 3;
 
 bindings! {
-    struct WideMask = "narrow mask", VERTEX_FRAGMENT, group 0 of [MASK_FORMAT_DRAW] {
+    struct WideMask = "narrow mask", VERTEX_FRAGMENT, group 0 of [FORMAT_DRAW] {
         0 wide: TextureArray(texels::FLOAT),
     }
 }
@@ -100,7 +100,7 @@ fn write_mask(mask: &Mask) -> wgpu::ColorWrites {
 
 fn pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mask: &Mask) -> wgpu::RenderPipeline {
     let target = wgpu::ColorTargetState { format: mask.texture().format(), blend: None, write_mask: write_mask(mask) };
-    color_pipeline(gpu, "antumbra narrow mask", shaders::MASK_FORMAT_DRAW, layout, &[Some(target)])
+    color_pipeline(gpu, "antumbra narrow mask", shaders::FORMAT_DRAW, layout, &[Some(target)])
 }
 
 /// Returns the layers to draw to, and the instance that draws each.

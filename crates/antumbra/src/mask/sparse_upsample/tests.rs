@@ -38,7 +38,9 @@ fn upsampling_keeps_known_pixels_and_interpolates_others() {
     let pixels = case.ground_pixels(test_ground);
     let from_truth = |mask: &[f32]| rmse_of(&pixels, mask, |p| half_plane_visibility(p.x, 1.0));
     let has_sub = |kind: &TechniqueKind| kind.param_specs().iter().any(|spec| spec.key == "sub");
-    assert_eq!(TechniqueKind::ALL.iter().filter(|kind| has_sub(kind)).count(), 10);
+    let of_a_new_shader =
+        "a technique has a parameter `sub`, or has lost it: add it to `kinds`, if its shader is none of theirs";
+    assert_eq!(TechniqueKind::ALL.iter().filter(|kind| has_sub(kind)).count(), 10, "{of_a_new_shader}");
     // One of each shader; `sample_based` has a test of its own.
     let kinds = [TechniqueKind::Pcss, TechniqueKind::PcssAnisotropic, TechniqueKind::Essm, TechniqueKind::MultiLayer];
     for kind in kinds {

@@ -11,7 +11,7 @@ use crate::gpu::{
 use crate::shaders;
 
 bindings! {
-    struct Halve = "packed mips", COMPUTE, group 0 of [PACKED_HALVE, PACKED_HALVE_SEVERAL] {
+    struct Halve = "packed mips", COMPUTE, group 0 of [PACKED_MAP_HALVE, PACKED_MAP_HALVE_SEVERAL] {
         0 mips: Uniform,
         1 first_level: TextureArray(texels::UINT),
         2 further_levels: ReadWriteArray(PackedMap::FORMAT),
@@ -89,8 +89,8 @@ impl MipPipelines {
         let constants = packing.constants();
         let make = |label, wgsl| compute_pipeline_without_zeroing(gpu, label, wgsl, &constants, &[layout]);
         Self {
-            halve: make("packed mips", shaders::PACKED_HALVE),
-            halve_several: make("several packed mips", shaders::PACKED_HALVE_SEVERAL),
+            halve: make("packed mips", shaders::PACKED_MAP_HALVE),
+            halve_several: make("several packed mips", shaders::PACKED_MAP_HALVE_SEVERAL),
         }
     }
 }

@@ -91,7 +91,7 @@ gpu_structs! {
 }
 
 bindings! {
-    struct Blur = "packed blur", COMPUTE, group 0 of [PACKED_BLUR] {
+    struct Blur = "packed blur", COMPUTE, group 0 of [PACKED_MAP_BLUR] {
         0 blur: Uniform,
         1 weights: Storage,
         2 source: TextureArray(texels::UINT),
@@ -158,7 +158,7 @@ impl Pipelines {
     fn new(gpu: &Gpu, blur: &wgpu::BindGroupLayout, mips: &wgpu::BindGroupLayout, packing: Packing) -> Self {
         let constants = packing.constants();
         Self {
-            blur: compute_pipeline_without_zeroing(gpu, "packed blur", shaders::PACKED_BLUR, &constants, &[blur]),
+            blur: compute_pipeline_without_zeroing(gpu, "packed blur", shaders::PACKED_MAP_BLUR, &constants, &[blur]),
             mips: MipPipelines::new(gpu, mips, packing),
         }
     }

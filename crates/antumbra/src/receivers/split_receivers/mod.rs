@@ -33,7 +33,7 @@ gpu_structs! {
 }
 
 bindings! {
-    struct Samples = "split receivers", FRAGMENT, group 0 of [SPLIT_RECEIVERS_DRAW] {
+    struct Samples = "split receivers", FRAGMENT, group 0 of [SPLIT_RECEIVERS_SPLIT] {
         0 split: Uniform,
         1 depths: MultisampledTexture(texels::FLOAT),
         2 normals: MultisampledTexture(texels::FLOAT),
@@ -267,5 +267,5 @@ fn pipeline(gpu: &Gpu, layout: &wgpu::BindGroupLayout, normal_format: wgpu::Text
     let label = "antumbra split receivers";
     let targets = [DEPTH_FORMAT, normal_format]
         .map(|format| Some(wgpu::ColorTargetState { format, blend: None, write_mask: wgpu::ColorWrites::ALL }));
-    color_pipeline(gpu, label, shaders::SPLIT_RECEIVERS_DRAW, layout, &targets)
+    color_pipeline(gpu, label, shaders::SPLIT_RECEIVERS_SPLIT, layout, &targets)
 }

@@ -9,12 +9,22 @@ use crate::TechniqueKind;
 use crate::contract::Mask;
 use crate::gpu::{Gpu, Recorder, ShaderFunction};
 use crate::receivers::points::tests::{Places, SIZE, Scene, create, lights};
+use crate::shaders;
 use crate::shadow::{AnyShadow, Casters, Frame};
 use crate::testing::{gpu_with, read_texture, view_of};
 
-/// Techniques under test: as many as a shader has bind groups besides the host's own.
-const KINDS: [TechniqueKind; 3] = [TechniqueKind::Hard, TechniqueKind::Pcf, TechniqueKind::Pcss];
+/// Prefixes of as many functions as a shader has bind groups besides the host's own.
 const PREFIXES: [&str; 3] = ["first_", "second_", "third_"];
+
+/// Every technique with a `shader_function.wesl` in its folder, in groups for one host's shader; the first ones again, if the last
+/// group is short.
+fn groups() -> Vec<[TechniqueKind; 3]> {
+    let folders = shaders::ALL.iter().filter_map(|(path, _)| path.strip_suffix("/shader_function")?.rsplit('/').next());
+    let kind = |name| TechniqueKind::from_name(name).unwrap_or_else(|| panic!("there is no technique {name}"));
+    let kinds: Vec<_> = folders.map(kind).collect();
+    let group = |first| [0, 1, 2].map(|i| kinds[(first + i) % kinds.len()]);
+    (0..kinds.len()).step_by(3).map(group).collect()
+}
 
 /// Host's shader with the functions of three shadows; visibility is 1 where there is no surface, as in a mask.
 const HOST: &str = "
@@ -161,10 +171,12 @@ fn a_host_s_shader_gets_what_the_mask_has() {
     let scene = Scene::new(gpu);
     let places = scene.places(gpu);
     let casters = scene.casters();
-    for (name, light) in &lights()[..2] {
+    let lights = &lights()[..2];
+    for (kinds, (name, light)) in groups().into_iter().flat_map(|kinds| lights.iter().map(move |light| (kinds, light)))
+    {
         let mut functions = Vec::new();
         let mut masks: Vec<Vec<f32>> = Vec::new();
-        let mut shadows = KINDS.map(|kind| create(gpu, kind, &[("samples", "32")]));
+        let mut shadows = kinds.map(|kind| create(gpu, kind, &[("samples", "32")]));
         for ((group, prefix), shadow) in (1..).zip(PREFIXES).zip(&mut shadows) {
             let mask = Mask::new(gpu.device(), SIZE);
             let mut last = None;
@@ -193,7 +205,7 @@ fn a_host_s_shader_gets_what_the_mask_has() {
             masks.push(bytemuck::pod_collect_to_vec(&read_texture(gpu, mask.texture(), 0, SIZE)));
         }
         let asked = ask(gpu, &functions, &places);
-        for ((kind, mask), asked) in KINDS.iter().zip(&masks).zip(&asked) {
+        for ((kind, mask), asked) in kinds.iter().zip(&masks).zip(&asked) {
             let differing = mask.iter().zip(asked).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
             let [lit, dark] = [mask.iter().filter(|v| **v > 0.9).count(), mask.iter().filter(|v| **v < 0.1).count()];
             println!("{kind}, {name}: {differing} of {} differ; {lit} lit, {dark} dark", mask.len());

@@ -74,11 +74,11 @@ gpu_structs! {
 
 shared_constants! {
     /// Number of vectors per instance.
-    pub(crate) const INSTANCE_VECTORS: u32 = 7, as in RAY_TRACE;
+    pub(crate) const INSTANCE_VECTORS: u32 = 7, as in RAY_TRACED_TRACE;
     /// Number of vectors per caster in the table.
-    pub(crate) const CASTER_VECTORS: u32 = 3, as in RAY_TRACE;
+    pub(crate) const CASTER_VECTORS: u32 = 3, as in RAY_TRACED_TRACE;
     /// Flag: the triangles bound a solid.
-    pub(crate) const FLAG_CLOSED: u32 = 1, as in RAY_TRACE;
+    pub(crate) const FLAG_CLOSED: u32 = 1, as in RAY_TRACED_TRACE;
     /// Flag: light may pass the caster.
-    pub(crate) const FLAG_OPEN: u32 = 2, as in RAY_TRACE;
+    pub(crate) const FLAG_OPEN: u32 = 2, as in RAY_TRACED_TRACE;
 }

@@ -68,7 +68,7 @@ use top::Top;
 use tree::TreePrograms;
 
 bindings! {
-    struct Traced = "ray_traced", COMPUTE, group 1 of [RAY_TRACE] {
+    struct Traced = "ray_traced", COMPUTE, group 1 of [RAY_TRACED_TRACE] {
         0 rays: Uniform,
         1 tables: Storage,
         2 top_nodes: Storage,
@@ -135,7 +135,7 @@ impl Technique for RayTraced {
         let (layout, surfaces_layout) = (Traced::layout(gpu), textures::layout(gpu));
         let layouts = [&inputs.layout, &layout, &surfaces_layout];
         Ok(Self {
-            program: compute_pipeline(gpu, "ray_traced", shaders::RAY_TRACE, &layouts),
+            program: compute_pipeline(gpu, "ray_traced", shaders::RAY_TRACED_TRACE, &layouts),
             trees: TreePrograms::new(gpu),
             meshes: Meshes::new(gpu),
             top: Top::new(gpu),

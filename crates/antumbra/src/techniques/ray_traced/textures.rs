@@ -5,11 +5,11 @@ use crate::gpu::{Bindings, Gpu, Stage, bindings, samples, shared_constants, texe
 
 shared_constants! {
     /// Number of textures per pass.
-    pub(super) const MAX_TEXTURES: u32 = 12, as in RAY_TRACE;
+    pub(super) const MAX_TEXTURES: u32 = 12, as in RAY_TRACED_TRACE;
 }
 
 bindings! {
-    struct Surfaces = "ray_traced surfaces", COMPUTE, group 2 of [RAY_TRACE] {
+    struct Surfaces = "ray_traced surfaces", COMPUTE, group 2 of [RAY_TRACED_TRACE] {
         0 surface_0: Texture(texels::FILTERED),
         1 sampler_0: Sampler(samples::FILTERS),
         2 surface_1: Texture(texels::FILTERED),

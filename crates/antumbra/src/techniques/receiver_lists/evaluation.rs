@@ -21,10 +21,10 @@ use crate::receivers::inputs::FrameInputs;
 
 shared_constants! {
     /// Largest number of triangles that are tested together.
-    const MAX_WAITING: u32 = 128, as in VIEW_SAMPLES_EVALUATE;
+    const MAX_WAITING: u32 = 128, as in EVALUATION_EVALUATE;
 
     /// Largest number of rows of cells in a shadow whose light points are tested one by one.
-    const MAX_ROWS: u32 = 4, as in VIEW_SAMPLES_EVALUATE;
+    const MAX_ROWS: u32 = 4, as in EVALUATION_EVALUATE;
 }
 
 #[derive(Debug)]

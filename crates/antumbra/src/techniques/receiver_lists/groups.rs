@@ -8,12 +8,12 @@ use crate::light_map::caster_triangles::runs::RunBindings;
 pub(super) const TABLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 bindings! {
-    struct Cleared = "view-sample clear", COMPUTE, group 0 of [VIEW_SAMPLES_CLEAR] {
+    struct Cleared = "view-sample clear", COMPUTE, group 0 of [RECEIVER_LISTS_CLEAR] {
         0 items: ReadWrite,
     }
 
     struct Lists = "view-sample lists", COMPUTE,
-        group 1 of [VIEW_SAMPLES_BOUNDS, VIEW_SAMPLES_COUNT, VIEW_SAMPLES_CHOOSE, VIEW_SAMPLES_SCATTER]
+        group 1 of [LISTS_BOUNDS, LISTS_COUNT, LISTS_CHOOSE, LISTS_SCATTER]
     {
         0 settings: Uniform,
         1 state: ReadWrite,
@@ -27,21 +27,21 @@ bindings! {
         14 snapped_texels: Uniform,
     }
 
-    struct Arguments = "view-sample arguments", COMPUTE, group 0 of [VIEW_SAMPLES_ARGUMENTS] {
+    struct Arguments = "view-sample arguments", COMPUTE, group 0 of [LISTS_ARGUMENTS] {
         0 settings: Uniform,
         1 counts: Storage,
         2 cells: Storage,
         3 totals: ReadWrite,
     }
 
-    struct Passes = "view-sample passes", COMPUTE, group 0 of [VIEW_SAMPLES_BEGIN, VIEW_SAMPLES_ADVANCE] {
+    struct Passes = "view-sample passes", COMPUTE, group 0 of [EVALUATION_BEGIN, EVALUATION_ADVANCE] {
         0 totals: ReadWrite,
         1 dispatches: ReadWrite,
         2 work: ReadWrite,
     }
 
     struct SortedCasters = "view-sample casters", COMPUTE,
-        group 0 of [VIEW_SAMPLES_TRIANGLE_COUNT, VIEW_SAMPLES_TRIANGLE_SCATTER, VIEW_SAMPLES_EDGE_FACES]
+        group 0 of [TRIANGLES_COUNT, TRIANGLES_SCATTER, TRIANGLES_EDGE_FACES]
     {
         0 settings: Uniform,
         1 shaft: Uniform,
@@ -53,14 +53,14 @@ bindings! {
 
     /// Runs of triangles in the same buffers.
     pub(super) struct Meshes = "view-sample mesh", COMPUTE,
-        group 1 of [VIEW_SAMPLES_TRIANGLE_COUNT, VIEW_SAMPLES_TRIANGLE_SCATTER, VIEW_SAMPLES_EDGE_FACES],
+        group 1 of [TRIANGLES_COUNT, TRIANGLES_SCATTER, TRIANGLES_EDGE_FACES],
         with runs: RunBindings
     {
         5 mesh_uvs: Storage,
     }
 
     struct Boxes = "view-sample boxes", COMPUTE,
-        group 0 of [VIEW_SAMPLES_CLUSTER_BOXES, VIEW_SAMPLES_SUPER_BOXES]
+        group 0 of [TRIANGLES_CLUSTER_BOXES, TRIANGLES_SUPER_BOXES]
     {
         0 settings: Uniform,
         1 totals: Storage,
@@ -69,7 +69,7 @@ bindings! {
     }
 
     pub(super) struct Evaluated = "view-sample evaluate", COMPUTE,
-        group 1 of [VIEW_SAMPLES_EVALUATE, VIEW_SAMPLES_RASTER_BEFORE, VIEW_SAMPLES_RASTER_AFTER]
+        group 1 of [EVALUATION_EVALUATE, RASTER_OPEN_POINTS, RASTER_SUM_VISIBLE]
     {
         0 settings: Uniform,
         1 list: Storage,
@@ -86,21 +86,21 @@ bindings! {
 
     /// Surface of a batch, also for rasterised triangles.
     pub(super) struct Surface = "view-sample surface", COMPUTE | FRAGMENT,
-        group 2 of [VIEW_SAMPLES_EVALUATE, VIEW_SAMPLES_RASTER, VIEW_SAMPLES_RASTER_LIGHT_PLANES]
+        group 2 of [EVALUATION_EVALUATE, RASTER_DRAW, RASTER_DRAW_BY_LIGHT_PLANES]
     {
         0 surface: Uniform,
         1 surface_texture: Texture(texels::FILTERED),
         2 surface_sampler: Sampler(samples::FILTERS),
     }
 
-    pub(super) struct MadeTable = "view-sample table", COMPUTE, group 0 of [VIEW_SAMPLES_MAKE_LOOKUP] {
+    pub(super) struct MadeTable = "view-sample table", COMPUTE, group 0 of [LIGHT_BITS_MAKE_LOOKUP] {
         0 settings: Uniform,
         1 light_words: Uniform,
         2 table: WrittenTexture3d(TABLE_FORMAT),
     }
 
     pub(super) struct DrawArguments = "view-sample raster arguments", COMPUTE,
-        group 0 of [VIEW_SAMPLES_RASTER_ARGUMENTS]
+        group 0 of [RASTER_ARGUMENTS]
     {
         0 settings: Uniform,
         1 state: Storage,
@@ -108,7 +108,7 @@ bindings! {
         3 draw: ReadWrite,
     }
 
-    pub(super) struct RegionHulls = "view-sample region hulls", COMPUTE, group 1 of [VIEW_SAMPLES_REGION_HULLS] {
+    pub(super) struct RegionHulls = "view-sample region hulls", COMPUTE, group 1 of [RASTER_HULLS] {
         0 settings: Uniform,
         2 triangles: Storage,
         3 state: Storage,
@@ -120,7 +120,7 @@ bindings! {
 
     pub(super) struct Window = "view-sample raster", FRAGMENT,
         group 1 of [
-            VIEW_SAMPLES_RASTER, VIEW_SAMPLES_RASTER_LIGHT_PLANES, VIEW_SAMPLES_RASTER_SILHOUETTES, VIEW_SAMPLES_RASTER_STENCIL
+            RASTER_DRAW, RASTER_DRAW_BY_LIGHT_PLANES, RASTER_SILHOUETTES, RASTER_STENCIL
         ]
     {
         0 settings: Uniform in VERTEX_FRAGMENT,

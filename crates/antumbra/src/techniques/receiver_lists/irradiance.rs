@@ -9,7 +9,7 @@ use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::shaders;
 
 bindings! {
-    struct Weighed = "view-sample irradiance", COMPUTE, group 1 of [VIEW_SAMPLES_IRRADIANCE] {
+    struct Weighed = "view-sample irradiance", COMPUTE, group 1 of [LIGHT_BITS_IRRADIANCE] {
         0 settings: Uniform,
         1 bits: Storage,
         2 places: Storage,
@@ -37,7 +37,7 @@ impl Irradiance {
     pub(super) fn new(gpu: &Gpu, inputs: &FrameInputs) -> Self {
         let layout = Weighed::layout(gpu);
         let layouts = [&inputs.layout, &layout];
-        let pipeline = compute_pipeline(gpu, "view-sample irradiance", shaders::VIEW_SAMPLES_IRRADIANCE, &layouts);
+        let pipeline = compute_pipeline(gpu, "view-sample irradiance", shaders::LIGHT_BITS_IRRADIANCE, &layouts);
         Self { layout, pipeline, emitters: None }
     }
 

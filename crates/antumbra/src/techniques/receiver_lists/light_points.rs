@@ -15,9 +15,9 @@ pub(crate) const MAX_SINGLED_OUT: u32 = 20;
 
 shared_constants! {
     /// Number of vectors before the points in [`packed_words`].
-    const FIRST_POINT: u32 = 2 + 2 * MAX_WORDS as u32, as in VIEW_SAMPLES_EVALUATE;
+    const FIRST_POINT: u32 = 2 + 2 * MAX_WORDS as u32, as in EVALUATION_EVALUATE;
     /// Number of vectors of [`packed_words`], independent of the number of points.
-    const LIGHT_WORDS_LENGTH: u32 = FIRST_POINT + (MAX_WORDS * WORD) as u32, as in VIEW_SAMPLES_EVALUATE;
+    const LIGHT_WORDS_LENGTH: u32 = FIRST_POINT + (MAX_WORDS * WORD) as u32, as in EVALUATION_EVALUATE;
 }
 
 /// Point in the light's frame about its centre: right, up, axis, metres (tangents for a sun), and its weight.

@@ -78,7 +78,7 @@ impl Evaluator {
         compute_entry(
             gpu,
             "view-sample evaluate",
-            shaders::VIEW_SAMPLES_EVALUATE,
+            shaders::EVALUATION_EVALUATE,
             None,
             &self.constants(),
             &[&inputs.layout, &layouts.evaluate, &layouts.surface],
@@ -107,24 +107,24 @@ impl Pipelines {
             [&layouts.clear, &layouts.arguments, &layouts.passes, &layouts.boxes, &layouts.make_lookup]
                 .map(|layout| [layout]);
         Self {
-            clear: pipeline("view-sample clear", shaders::VIEW_SAMPLES_CLEAR, &clear),
-            bounds: pipeline("view-sample bounds", shaders::VIEW_SAMPLES_BOUNDS, &lists),
-            count: pipeline("view-sample count", shaders::VIEW_SAMPLES_COUNT, &lists),
-            scatter: pipeline("view-sample scatter", shaders::VIEW_SAMPLES_SCATTER, &lists),
+            clear: pipeline("view-sample clear", shaders::RECEIVER_LISTS_CLEAR, &clear),
+            bounds: pipeline("view-sample bounds", shaders::LISTS_BOUNDS, &lists),
+            count: pipeline("view-sample count", shaders::LISTS_COUNT, &lists),
+            scatter: pipeline("view-sample scatter", shaders::LISTS_SCATTER, &lists),
             storing_scatter: None,
             choice: None,
-            arguments: pipeline("view-sample arguments", shaders::VIEW_SAMPLES_ARGUMENTS, &arguments),
+            arguments: pipeline("view-sample arguments", shaders::LISTS_ARGUMENTS, &arguments),
             begin: WorkCondition::ALL.map(|condition| {
                 let constants = [("WAY", f64::from(condition as u32))];
-                compute_entry(gpu, "view-sample begin", shaders::VIEW_SAMPLES_BEGIN, None, &constants, &passes)
+                compute_entry(gpu, "view-sample begin", shaders::EVALUATION_BEGIN, None, &constants, &passes)
             }),
-            advance: pipeline("view-sample advance", shaders::VIEW_SAMPLES_ADVANCE, &passes),
-            edge_faces: pipeline("edge faces", shaders::VIEW_SAMPLES_EDGE_FACES, &casters),
-            triangle_count: pipeline("triangle count", shaders::VIEW_SAMPLES_TRIANGLE_COUNT, &casters),
-            triangle_scatter: pipeline("triangle scatter", shaders::VIEW_SAMPLES_TRIANGLE_SCATTER, &casters),
-            cluster_boxes: pipeline("cluster boxes", shaders::VIEW_SAMPLES_CLUSTER_BOXES, &boxes),
-            super_boxes: pipeline("super boxes", shaders::VIEW_SAMPLES_SUPER_BOXES, &boxes),
-            make_lookup: pipeline("view-sample table", shaders::VIEW_SAMPLES_MAKE_LOOKUP, &table),
+            advance: pipeline("view-sample advance", shaders::EVALUATION_ADVANCE, &passes),
+            edge_faces: pipeline("edge faces", shaders::TRIANGLES_EDGE_FACES, &casters),
+            triangle_count: pipeline("triangle count", shaders::TRIANGLES_COUNT, &casters),
+            triangle_scatter: pipeline("triangle scatter", shaders::TRIANGLES_SCATTER, &casters),
+            cluster_boxes: pipeline("cluster boxes", shaders::TRIANGLES_CLUSTER_BOXES, &boxes),
+            super_boxes: pipeline("super boxes", shaders::TRIANGLES_SUPER_BOXES, &boxes),
+            make_lookup: pipeline("view-sample table", shaders::LIGHT_BITS_MAKE_LOOKUP, &table),
         }
     }
 
@@ -137,11 +137,11 @@ impl Pipelines {
     pub(super) fn prepare_choice(&mut self, gpu: &Gpu, inputs: &FrameInputs, layouts: &Layouts) {
         let lists = [&inputs.layout, &layouts.lists];
         self.choice.get_or_insert_with(|| Choice {
-            choose: compute_pipeline(gpu, "view-sample choice", shaders::VIEW_SAMPLES_CHOOSE, &lists),
+            choose: compute_pipeline(gpu, "view-sample choice", shaders::LISTS_CHOOSE, &lists),
             count_again: compute_entry(
                 gpu,
                 "view-sample count by cells",
-                shaders::VIEW_SAMPLES_COUNT,
+                shaders::LISTS_COUNT,
                 None,
                 &[("IS_AGAIN", 1.0)],
                 &lists,
@@ -155,7 +155,7 @@ impl Pipelines {
             compute_entry(
                 gpu,
                 "view-sample scatter of positions",
-                shaders::VIEW_SAMPLES_SCATTER,
+                shaders::LISTS_SCATTER,
                 None,
                 &[("STORED_POSITIONS", 1.0)],
                 &[&inputs.layout, &layouts.lists],

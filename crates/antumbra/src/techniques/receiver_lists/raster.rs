@@ -123,11 +123,11 @@ impl Raster {
             arguments: compute_pipeline(
                 gpu,
                 "view-sample raster arguments",
-                shaders::VIEW_SAMPLES_RASTER_ARGUMENTS,
+                shaders::RASTER_ARGUMENTS,
                 &[&arguments_layout],
             ),
-            before: compute_pipeline(gpu, "view-sample before", shaders::VIEW_SAMPLES_RASTER_BEFORE, &over_receivers),
-            after: compute_pipeline(gpu, "view-sample after", shaders::VIEW_SAMPLES_RASTER_AFTER, &over_receivers),
+            before: compute_pipeline(gpu, "view-sample before", shaders::RASTER_OPEN_POINTS, &over_receivers),
+            after: compute_pipeline(gpu, "view-sample after", shaders::RASTER_SUM_VISIBLE, &over_receivers),
             arguments_layout,
             pipelines: HashMap::new(),
             silhouettes: None,
@@ -174,7 +174,7 @@ impl Raster {
         let make = || {
             DrawPipeline {
                 label: "view-sample silhouettes",
-                wgsl: shaders::VIEW_SAMPLES_RASTER_SILHOUETTES,
+                wgsl: shaders::RASTER_SILHOUETTES,
                 layouts: &[Some(&inputs.layout), Some(layout)],
                 primitive: STRIP,
                 depth: Some(NoDepth::state()),
@@ -191,7 +191,7 @@ impl Raster {
         let make = || {
             DrawPipeline {
                 label: "view-sample stencil",
-                wgsl: shaders::VIEW_SAMPLES_RASTER_STENCIL,
+                wgsl: shaders::RASTER_STENCIL,
                 layouts: &[None, Some(layout)],
                 depth: Some(depth_state(StencilMap::FORMAT, wgpu::CompareFunction::Always, true)),
                 ..DrawPipeline::default()
@@ -205,7 +205,7 @@ impl Raster {
     pub(super) fn hulls(&mut self, gpu: &Gpu, inputs: &FrameInputs) -> &(wgpu::BindGroupLayout, wgpu::ComputePipeline) {
         self.hulls.get_or_insert_with(|| {
             let layout = RegionHulls::layout(gpu);
-            let wgsl = shaders::VIEW_SAMPLES_REGION_HULLS;
+            let wgsl = shaders::RASTER_HULLS;
             let pipeline = compute_pipeline(gpu, "view-sample region hulls", wgsl, &[&inputs.layout, &layout]);
             (layout, pipeline)
         })
@@ -282,9 +282,9 @@ fn pipeline(
 ) -> wgpu::RenderPipeline {
     let is_early = drawn.stencil && gpu.has(wgpu::Features::SHADER_EARLY_DEPTH_TEST);
     let wgsl = match (drawn.light_planes, is_early) {
-        (false, false) => shaders::VIEW_SAMPLES_RASTER,
+        (false, false) => shaders::RASTER_DRAW,
         (false, true) => &EARLY_RASTER,
-        (true, false) => shaders::VIEW_SAMPLES_RASTER_LIGHT_PLANES,
+        (true, false) => shaders::RASTER_DRAW_BY_LIGHT_PLANES,
         (true, true) => &EARLY_LIGHT_PLANES,
     };
     let has = |name: &str| match name {
@@ -312,6 +312,6 @@ fn pipeline(
 }
 
 /// Shaders with the depth test before the fragment stage.
-static EARLY_RASTER: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::VIEW_SAMPLES_RASTER));
+static EARLY_RASTER: LazyLock<String> = LazyLock::new(|| with_early_depth_test(shaders::RASTER_DRAW));
 static EARLY_LIGHT_PLANES: LazyLock<String> =
-    LazyLock::new(|| with_early_depth_test(shaders::VIEW_SAMPLES_RASTER_LIGHT_PLANES));
+    LazyLock::new(|| with_early_depth_test(shaders::RASTER_DRAW_BY_LIGHT_PLANES));

@@ -15,9 +15,9 @@ pub(crate) enum Region {
 }
 
 shared_constants! {
-    const SIX_VERTICES: u32 = 6, as in VIEW_SAMPLES_RASTER;
+    const SIX_VERTICES: u32 = 6, as in RASTER_DRAW;
     /// Largest number of corners of a hull of hexagons.
-    const HULL_CORNERS: u32 = 22, as in VIEW_SAMPLES_REGION_HULLS;
+    const HULL_CORNERS: u32 = 22, as in RASTER_HULLS;
 }
 
 /// Size of a triangle's hull, bytes.

@@ -9,7 +9,7 @@ use crate::receivers::inputs::{FrameInputs, PreparedInputs};
 use crate::shaders;
 
 bindings! {
-    struct Marked = "view-sample missing", COMPUTE, group 1 of [VIEW_SAMPLES_MARK_MISSING] {
+    struct Marked = "view-sample missing", COMPUTE, group 1 of [LISTS_MARK_MISSING] {
         /// List and position of each pixel, as in the lists' passes.
         3 places: ReadWrite,
     }
@@ -37,7 +37,7 @@ impl Subset {
     pub(super) fn new(gpu: &Gpu, inputs: &FrameInputs) -> Self {
         let layout = Marked::layout(gpu);
         let layouts = [&FrameInputs::missing_layout(gpu), &layout];
-        let mark = compute_pipeline(gpu, "view-sample missing", shaders::VIEW_SAMPLES_MARK_MISSING, &layouts);
+        let mark = compute_pipeline(gpu, "view-sample missing", shaders::LISTS_MARK_MISSING, &layouts);
         Self { upsample: SparseUpsample::new(gpu, inputs), layout, mark }
     }
 

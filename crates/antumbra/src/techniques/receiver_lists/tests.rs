@@ -128,7 +128,7 @@ impl TriangleCase {
 }
 
 bindings! {
-    struct TriangleProbe = "triangle probe", COMPUTE, group 0 of [VIEW_SAMPLES_TRIANGLE_PROBE] {
+    struct TriangleProbe = "triangle probe", COMPUTE, group 0 of [LIGHT_BITS_TRIANGLE_PROBE] {
         0 cases: Storage,
         1 answers: ReadWrite,
     }
@@ -150,7 +150,7 @@ fn probe(gpu: &Gpu, cases: &[TriangleCase]) -> Vec<[f32; 4]> {
     let (input, output) = (vectors(gpu, packed.len()), vectors(gpu, cases.len()));
     gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&packed));
     let layout = TriangleProbe::layout(gpu);
-    let pipeline = compute_pipeline(gpu, "test triangles", shaders::VIEW_SAMPLES_TRIANGLE_PROBE, &[&layout]);
+    let pipeline = compute_pipeline(gpu, "test triangles", shaders::LIGHT_BITS_TRIANGLE_PROBE, &[&layout]);
     let group = TriangleProbe { cases: &input, answers: &output }.cached_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
@@ -273,7 +273,7 @@ impl RegionCase {
 }
 
 bindings! {
-    struct RegionProbe = "region probe", COMPUTE, group 0 of [VIEW_SAMPLES_REGION_PROBE] {
+    struct RegionProbe = "region probe", COMPUTE, group 0 of [RASTER_PROBE] {
         0 cases: Storage,
         1 answers: ReadWrite,
     }
@@ -293,7 +293,7 @@ fn probe_region(gpu: &Gpu, case: &RegionCase) -> ProbedRegion {
     let (input, output) = (vectors(gpu, packed.len()), vectors(gpu, 6));
     gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&packed));
     let layout = RegionProbe::layout(gpu);
-    let pipeline = compute_pipeline(gpu, "test regions", shaders::VIEW_SAMPLES_REGION_PROBE, &[&layout]);
+    let pipeline = compute_pipeline(gpu, "test regions", shaders::RASTER_PROBE, &[&layout]);
     let group = RegionProbe { cases: &input, answers: &output }.cached_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {

@@ -12,17 +12,17 @@ use crate::techniques::summed::summed_area_table::Sums;
 
 bindings! {
     /// Target of the encode pass, declared for integers; see [`Sums::adapt`].
-    struct BasisBindings = "depth basis", COMPUTE, group 3 of [SOFT_ENCODE] {
+    struct BasisBindings = "depth basis", COMPUTE, group 3 of [SUMMED_ENCODE] {
         0 basis: WrittenTexture(wgpu::TextureFormat::Rgba32Uint),
     }
 
     /// Targets of the encode pass for tiles with planes of their own.
-    struct TileBasisBindings = "depth basis of tiles", COMPUTE, group 3 of [SOFT_ENCODE_TILES] {
+    struct TileBasisBindings = "depth basis of tiles", COMPUTE, group 3 of [SUMMED_ENCODE_TILES] {
         0 basis: WrittenTexture(wgpu::TextureFormat::Rgba32Uint),
         7 tiles: WrittenTexture(wgpu::TextureFormat::Rgba32Float),
     }
 
-    struct HalveBindings = "mips of depth basis", COMPUTE, group 0 of [SOFT_HALVE] {
+    struct HalveBindings = "mips of depth basis", COMPUTE, group 0 of [SUMMED_HALVE] {
         0 previous: Texture(texels::FLOAT),
         1 level: WrittenTexture(wgpu::TextureFormat::Rgba32Float),
     }
@@ -57,9 +57,9 @@ impl BasisPass {
         let sums = design.sums();
         let adapt = |ty: &mut wgpu::BindingType| sums.adapt(ty);
         let (layout, wgsl) = match (design.basis, sums) {
-            (Basis::Tiles, _) => (TileBasisBindings::layout_with(gpu, adapt), shaders::SOFT_ENCODE_TILES),
-            (_, Sums::Integer) => (BasisBindings::layout_with(gpu, adapt), shaders::SOFT_ENCODE),
-            (_, Sums::Float) => (BasisBindings::layout_with(gpu, adapt), shaders::SOFT_ENCODE_FLOAT),
+            (Basis::Tiles, _) => (TileBasisBindings::layout_with(gpu, adapt), shaders::SUMMED_ENCODE_TILES),
+            (_, Sums::Integer) => (BasisBindings::layout_with(gpu, adapt), shaders::SUMMED_ENCODE),
+            (_, Sums::Float) => (BasisBindings::layout_with(gpu, adapt), shaders::SUMMED_ENCODE_FLOAT),
         };
         let basis = [("BASIS", f64::from(design.basis as u32))];
         let constants = if design.basis == Basis::Tiles { &[][..] } else { &basis };
@@ -67,7 +67,7 @@ impl BasisPass {
         let encode = compute_entry(gpu, "depth basis", wgsl, None, constants, &[a, b, c, &layout]);
         let halve = (design.filter == Filter::Mips).then(|| {
             let layout = HalveBindings::layout(gpu);
-            let pipeline = compute_pipeline(gpu, "mips of depth basis", shaders::SOFT_HALVE, &[&layout]);
+            let pipeline = compute_pipeline(gpu, "mips of depth basis", shaders::SUMMED_HALVE, &[&layout]);
             (layout, pipeline)
         });
         Self { sums, layout, encode, halve }

@@ -22,12 +22,12 @@ use crate::shaders;
 use crate::techniques::summed::summed_area_table::{Scan, Source, SummedAreaTable, Sums, Tiling};
 
 bindings! {
-    struct SoftBindings = "soft parameters", COMPUTE, group 2 of [SOFT_RESOLVE] {
+    struct SoftBindings = "soft parameters", COMPUTE, group 2 of [SUMMED_RESOLVE] {
         0 soft: Uniform,
     }
 
     /// Summed-area tables and tile planes of the resolve pass, declared for integers; [`Sums::adapt`] converts them for floats.
-    struct SoftTables = "soft tables", COMPUTE, group 3 of [SOFT_RESOLVE] {
+    struct SoftTables = "soft tables", COMPUTE, group 3 of [SUMMED_RESOLVE] {
         0 table: Texture(texels::UINT),
         1 tiles: Texture(texels::FLOAT),
         2 largest: Storage,
@@ -126,7 +126,11 @@ impl SoftFilter {
         let basis = f64::from(design.basis as u32);
         let tables = match design.filter {
             Filter::Table(table) if table.scan == Scan::Blocks => {
-                let wgsl = if sums == Sums::Float { shaders::SOFT_TABLE_FLOAT } else { shaders::SOFT_TABLE };
+                let wgsl = if sums == Sums::Float {
+                    shaders::SUMMED_AREA_TABLE_ENCODED_FLOAT
+                } else {
+                    shaders::SUMMED_AREA_TABLE_ENCODED
+                };
                 let parts = if design.basis == Basis::Convolution { CONVOLUTION_TABLES } else { 1 };
                 let of_part = |part| {
                     let constants = [("BASIS", basis), ("PART", f64::from(part))];
@@ -156,7 +160,7 @@ impl SoftFilter {
     ) -> PreparedResolve {
         let specialisation = Specialisation::of(design, settings);
         let edge_goes_on = specialisation.edge_goes_on && may_be_covered(frame);
-        let wgsl = if design.sums() == Sums::Float { shaders::SOFT_RESOLVE_FLOAT } else { shaders::SOFT_RESOLVE };
+        let wgsl = if design.sums() == Sums::Float { shaders::SUMMED_RESOLVE_FLOAT } else { shaders::SUMMED_RESOLVE };
         #[cfg(test)]
         let wgsl = self.test_shader.unwrap_or(wgsl);
         let mut constants = vec![

@@ -8,7 +8,7 @@ use crate::techniques::summed::summed_area_table::{BLOCK, MAX_TILE, Sums, Tiling
 
 shared_constants! {
     /// Factor by which the search extends beyond the light's rim.
-    pub(super) const RIM: f32 = 1.25, as in SOFT_RESOLVE;
+    pub(super) const RIM: f32 = 1.25, as in SUMMED_RESOLVE;
 }
 
 /// Smallest tile with a plane of its own, texels: smaller ones would cut most pieces.

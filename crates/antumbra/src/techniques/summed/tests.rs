@@ -111,7 +111,7 @@ impl Counted {
 
 impl Counter {
     fn new<P: SoftParams>(gpu: &Gpu) -> Self {
-        Self { plain: filter_of::<P>(gpu, None), counting: filter_of::<P>(gpu, Some(shaders::SOFT_RESOLVE_COUNT)) }
+        Self { plain: filter_of::<P>(gpu, None), counting: filter_of::<P>(gpu, Some(shaders::SUMMED_RESOLVE_COUNT)) }
     }
 
     fn count(&mut self, gpu: &Gpu, staged: &Staged, light: &Light, params: &impl SoftParams) -> Counted {
@@ -248,12 +248,12 @@ fn rows_of_an_ellipse_have_its_spread_and_its_penumbra() {
 }
 
 shared_constants! {
-    const ROW_SPREAD: f32 = 1.2, as in SOFT_RESOLVE;
-    const ROW_SHORTER: f32 = 0.75, as in SOFT_RESOLVE;
-    const ROW_WIDER: f32 = 0.38, as in SOFT_RESOLVE;
-    const ROW_SHORTEST: f32 = 0.866_025_4, as in SOFT_RESOLVE;
-    const ROW_WIDEST: f32 = 1.09, as in SOFT_RESOLVE;
-    const GAUSS: f32 = 0.288_675_13, as in SOFT_RESOLVE;
+    const ROW_SPREAD: f32 = 1.2, as in SUMMED_RESOLVE;
+    const ROW_SHORTER: f32 = 0.75, as in SUMMED_RESOLVE;
+    const ROW_WIDER: f32 = 0.38, as in SUMMED_RESOLVE;
+    const ROW_SHORTEST: f32 = 0.866_025_4, as in SUMMED_RESOLVE;
+    const ROW_WIDEST: f32 = 1.09, as in SUMMED_RESOLVE;
+    const GAUSS: f32 = 0.288_675_13, as in SUMMED_RESOLVE;
 }
 
 /// The loop over rows in `wide_lit` ends after as many iterations as there are rows, and one for each tile border: cuts lie
@@ -435,7 +435,7 @@ impl CpuReference<'_> {
 fn mean_blocker_depths_are_those_of_every_texel() {
     let Some(gpu) = gpu() else { return };
     const MAP: u32 = 1024;
-    let mut filter = filter_of::<EssmParams>(gpu, Some(shaders::SOFT_RESOLVE_BLOCKERS));
+    let mut filter = filter_of::<EssmParams>(gpu, Some(shaders::SUMMED_RESOLVE_BLOCKERS));
     for (spec, blocker_mean, bound) in [
         ("builtin:leaning-plank", "width", 0.03),
         ("builtin:overlap", "width", 0.03),

@@ -22,7 +22,7 @@ pub(super) use kept::MeshPlace;
 use kept::{KeptMeshes, MeshKey, Outdated, UsedMesh};
 
 bindings! {
-    struct Kept = "kept triangles", COMPUTE, group 0 of [RAY_GATHER, RAY_PLACE, RAY_RECALL] {
+    struct Kept = "kept triangles", COMPUTE, group 0 of [MESH_GATHER, MESH_PLACE, MESH_RECALL] {
         0 shape: Uniform,
         1 segments: Storage,
         2 items: ReadWrite,
@@ -30,7 +30,7 @@ bindings! {
         4 triangles: ReadWrite,
     }
 
-    struct Source = "mesh source", COMPUTE, group 1 of [RAY_GATHER, RAY_PLACE] {
+    struct Source = "mesh source", COMPUTE, group 1 of [MESH_GATHER, MESH_PLACE] {
         0 source_range: Uniform,
         1 mesh_positions: Storage,
         2 mesh_indices: Storage,
@@ -40,7 +40,7 @@ bindings! {
 
 shared_constants! {
     /// Largest position that a leaf can encode.
-    const FIRST_MASK: u32 = 0x1ff_ffff, as in RAY_TRACE;
+    const FIRST_MASK: u32 = 0x1ff_ffff, as in RAY_TRACED_TRACE;
 }
 
 /// Pipelines of the passes over meshes.
@@ -76,9 +76,9 @@ impl Meshes {
         let program = |wgsl, layouts: &[&wgpu::BindGroupLayout]| compute_pipeline(gpu, "kept triangles", wgsl, layouts);
         Self {
             programs: Programs {
-                gather: program(shaders::RAY_GATHER, &[&kept, &source]),
-                place: program(shaders::RAY_PLACE, &[&kept, &source]),
-                recall: program(shaders::RAY_RECALL, &[&kept]),
+                gather: program(shaders::MESH_GATHER, &[&kept, &source]),
+                place: program(shaders::MESH_PLACE, &[&kept, &source]),
+                recall: program(shaders::MESH_RECALL, &[&kept]),
                 kept_layout: kept,
                 source_layout: source,
             },

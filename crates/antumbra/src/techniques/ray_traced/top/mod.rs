@@ -8,14 +8,14 @@ use crate::gpu::{Bindings, Gpu, Recorder, Span, Stage, bindings, compute_pipelin
 use crate::shaders;
 
 bindings! {
-    struct Listed = "instances", COMPUTE, group 0 of [RAY_INSTANCES] {
+    struct Listed = "instances", COMPUTE, group 0 of [TOP_INSTANCES] {
         0 instance_runs: Storage,
         1 nodes: Storage,
         2 items: ReadWrite,
         3 instances: ReadWrite,
     }
 
-    struct Source = "instance source", COMPUTE, group 1 of [RAY_INSTANCES] {
+    struct Source = "instance source", COMPUTE, group 1 of [TOP_INSTANCES] {
         0 instance_range: Uniform,
         1 mesh_instances: Storage,
     }
@@ -45,7 +45,7 @@ impl Top {
     pub(super) fn new(gpu: &Gpu) -> Self {
         let (listed, source) = (Listed::layout(gpu), Source::layout(gpu));
         Self {
-            program: compute_pipeline(gpu, "instances", shaders::RAY_INSTANCES, &[&listed, &source]),
+            program: compute_pipeline(gpu, "instances", shaders::TOP_INSTANCES, &[&listed, &source]),
             listed_layout: listed,
             source_layout: source,
             forest: Forest::new(gpu),

@@ -58,7 +58,7 @@ impl Technique for Hard {
     }
 
     fn embeddable(&self) -> Option<Embeddable> {
-        self.resolve.embeddable(shaders::HARD_FUNCTION)
+        self.resolve.embeddable(shaders::HARD_SHADER_FUNCTION)
     }
 
     fn memory_bytes(&self) -> u64 {

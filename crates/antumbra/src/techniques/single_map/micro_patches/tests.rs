@@ -21,7 +21,7 @@ fn the_reference_hides_what_lies_on_the_segment() {
 }
 
 bindings! {
-    struct Probe = "patch probe", COMPUTE, group 0 of [PATCH_PROBE] {
+    struct Probe = "patch probe", COMPUTE, group 0 of [MICRO_PATCHES_PROBE] {
         0 inputs: Storage,
         1 outputs: ReadWrite,
     }
@@ -44,7 +44,7 @@ fn probed(gpu: &Gpu, squares: &[ProbedSquare]) -> Vec<[Patch; 3]> {
     let output = buffer(48 * squares.len(), wgpu::BufferUsages::COPY_SRC);
     gpu.queue().write_buffer(&input, 0, bytemuck::cast_slice(squares));
     let layout = Probe::layout(gpu);
-    let pipeline = compute_pipeline(gpu, "test probe", shaders::PATCH_PROBE, &[&layout]);
+    let pipeline = compute_pipeline(gpu, "test probe", shaders::MICRO_PATCHES_PROBE, &[&layout]);
     let group = Probe { inputs: &input, outputs: &output }.cached_group(gpu, &layout);
     let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

@@ -93,7 +93,7 @@ impl Technique for Pcf {
     }
 
     fn embeddable(&self) -> Option<Embeddable> {
-        self.resolve.embeddable(shaders::PCF_FUNCTION)
+        self.resolve.embeddable(shaders::PCF_SHADER_FUNCTION)
     }
 
     fn memory_bytes(&self) -> u64 {

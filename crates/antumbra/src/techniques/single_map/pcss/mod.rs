@@ -130,7 +130,7 @@ impl Technique for Pcss {
     }
 
     fn embeddable(&self) -> Option<Embeddable> {
-        self.resolve.embeddable(shaders::PCSS_FUNCTION)
+        self.resolve.embeddable(shaders::PCSS_SHADER_FUNCTION)
     }
 
     fn memory_bytes(&self) -> u64 {

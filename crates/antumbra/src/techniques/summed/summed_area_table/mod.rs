@@ -34,16 +34,16 @@ use gpu_types::{DoublingUniform, TableUniform};
 
 shared_constants! {
     /// Side of a block, texels; a workgroup sums one block.
-    pub(crate) const BLOCK: u32 = 16, as in SUMMED_AREA_TABLE_INTEGER;
+    pub(crate) const BLOCK: u32 = 16, as in SUMMED_AREA_TABLE;
 
     /// Largest side of a tile, texels, that a workgroup still sums in one pass.
-    pub(crate) const MAX_TILE: u32 = 256, as in SUMMED_AREA_TABLE_INTEGER;
+    pub(crate) const MAX_TILE: u32 = 256, as in SUMMED_AREA_TABLE;
 
     /// Side of the area that a workgroup of the pass over tiles sums if tiles are not larger, texels.
-    const PANEL: u32 = 64, as in SUMMED_AREA_TABLE_INTEGER;
+    const PANEL: u32 = 64, as in SUMMED_AREA_TABLE;
 
     /// Number of sums that a step of recursive doubling adds up.
-    const DOUBLING_READS: u32 = 8, as in SUMMED_AREA_DOUBLING_INTEGER;
+    const DOUBLING_READS: u32 = 8, as in SUMMED_AREA_TABLE_DOUBLING;
 }
 
 /// Threads of a workgroup that carries sums from block to block.
@@ -62,19 +62,19 @@ bindings! {
 
     /// Bindings of passes that sum a texture.
     struct TextureTable = "summed-area table of a texture",
-        COMPUTE, group 0 of [SUMMED_AREA_TABLE_INTEGER, SUMMED_AREA_DOUBLING_INTEGER], with made: TableBindings
+        COMPUTE, group 0 of [SUMMED_AREA_TABLE, SUMMED_AREA_TABLE_DOUBLING], with made: TableBindings
     {
         0 source: Texture(texels::UINT),
     }
 
     /// Dispatch arguments of the last steps of doubling, for a chosen tile.
-    struct LateSteps = "late steps of doubling", COMPUTE, group 1 of [SUMMED_AREA_DOUBLING_INTEGER] {
+    struct LateSteps = "late steps of doubling", COMPUTE, group 1 of [SUMMED_AREA_TABLE_DOUBLING] {
         0 late_dispatch: ReadWrite,
     }
 
     /// Bindings of passes that encode values when they read them.
     struct EncodedTable = "summed-area table of encoded values",
-        COMPUTE, group 3 of [SOFT_TABLE], with made: TableBindings
+        COMPUTE, group 3 of [SUMMED_AREA_TABLE_ENCODED], with made: TableBindings
     {
         7 tiles: WrittenTexture(wgpu::TextureFormat::Rgba32Float),
     }
@@ -190,8 +190,8 @@ impl SummedAreaTable {
         let layout =
             if is_encoded { EncodedTable::layout_with(gpu, adapt) } else { TextureTable::layout_with(gpu, adapt) };
         let (texture, doubling) = match sums {
-            Sums::Float => (shaders::SUMMED_AREA_TABLE_FLOAT, shaders::SUMMED_AREA_DOUBLING_FLOAT),
-            Sums::Integer => (shaders::SUMMED_AREA_TABLE_INTEGER, shaders::SUMMED_AREA_DOUBLING_INTEGER),
+            Sums::Float => (shaders::SUMMED_AREA_TABLE_FLOAT, shaders::SUMMED_AREA_TABLE_DOUBLING_FLOAT),
+            Sums::Integer => (shaders::SUMMED_AREA_TABLE, shaders::SUMMED_AREA_TABLE_DOUBLING),
         };
         let entry = |name| match source {
             Source::Texture => compute_entry(gpu, "summed-area table", texture, Some(name), &[], &[&layout]),
