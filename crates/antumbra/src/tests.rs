@@ -132,7 +132,7 @@ fn parameters_say_what_they_take() {
     use crate::contract::Params;
     let mut params = techniques::single_map::pcf::PcfParams::default();
     let message = |result: Result<(), crate::contract::ParamError>| result.unwrap_err().to_string();
-    assert!(message(params.set("pcf", "size", "3")).contains("it has: map_size, kernel"));
+    assert!(message(params.set("pcf", "size", "3")).contains("available: map_size, kernel"));
     assert!(message(params.set("pcf", "map_size", "7")).contains("a whole number from 16 to 8192"));
     assert!(message(params.set("pcf", "map_size", "-7")).contains("a whole number"));
     assert!(message(params.set("pcf", "kernel_size", "NaN")).contains("a number from 1 to 127"));

@@ -68,7 +68,7 @@ pub fn linked_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
                 if path.file_name().is_some_and(|name| name != "test") {
                     folders.push(path);
                 }
-            } else {
+            } else if path.extension().is_some_and(|ending| ending == "wgsl") {
                 files.push(path);
             }
         }

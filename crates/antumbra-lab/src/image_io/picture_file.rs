@@ -21,7 +21,7 @@ enum Kind {
 
 /// Returns the format of a file extension.
 fn kind_of(path: &Path) -> Result<Kind, FileError> {
-    Ok(match check_ending(path, "a picture", &["png", "jpg", "jpeg"])? {
+    Ok(match check_ending(path, "an image", &["png", "jpg", "jpeg"])? {
         "png" => Kind::Png,
         _ => Kind::Jpeg,
     })
@@ -92,7 +92,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let gif = folder.path().join("a.gif");
         let why = check_picture_path(&gif).unwrap_err();
-        assert!(why.is_bad_input && why.to_string().contains("not written as .gif; name it .png or .jpg"), "{why}");
+        assert!(
+            why.is_bad_input && why.to_string().contains("an image cannot be written as .gif; name it .png or .jpg"),
+            "{why}"
+        );
         assert!(check_picture_path(&folder.path().join("a")).is_err());
         assert!(write_picture(&gif, &RgbImage::new(1, 1)).is_err());
         assert!(check_visibility_path(&folder.path().join("v.png")).unwrap_err().to_string().ends_with("name it .exr"));

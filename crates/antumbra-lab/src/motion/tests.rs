@@ -102,7 +102,7 @@ fn a_scene_without_a_caster_apart_moves_the_rest() {
     let mut case = Case::new("builtin:hall", 1, 0.1);
     let (motions, left_out) = case.moving(lab).unwrap().motions();
     assert_eq!(motions, [Motion::Camera, Motion::Light]);
-    assert!(left_out.unwrap().contains("`--caster` names one of hall"));
+    assert!(left_out.unwrap().contains("Choose one with `--caster`: hall"));
     case.options.caster = Some("hall".into());
     assert_eq!(case.moving(lab).unwrap().motions(), (Motion::ALL.to_vec(), None));
     case.options.caster = Some("roof".into());

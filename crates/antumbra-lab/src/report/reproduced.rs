@@ -501,7 +501,7 @@ mod tests {
             };
             let asked = [has(&|row| row.is_timed_too), has(&|row| row.plotted.is_some())];
             let shown =
-                ["Error over time", "Error over what the rows differ in"].map(|text| page.matches(text).count());
+                ["Error against time", "Error against the varied quantity"].map(|text| page.matches(text).count());
             assert_eq!(shown, asked, "{}", paper.id);
             assert!(page.matches("<svg").count() >= asked[0] + asked[1], "{}", paper.id);
             for result in &results {
