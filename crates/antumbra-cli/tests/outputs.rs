@@ -220,7 +220,7 @@ fn each_light_has_its_visibility() {
     assert_eq!(one.status.code(), Some(0), "{}", String::from_utf8_lossy(&one.stderr));
     assert_eq!(names_in(dir.path()), ["one.exr", "r.png", "two.toml"]);
     let all = run(dir.path(), &[&words[..], &["--visibility", "v.exr"]].concat());
-    assert!(String::from_utf8_lossy(&all.stderr).contains("light fill is in v.fill.exr"));
+    assert!(String::from_utf8_lossy(&all.stderr).contains("visibility of light `fill` to v.fill.exr"));
     assert_eq!(names_in(dir.path()), ["one.exr", "r.png", "two.toml", "v.exr", "v.fill.exr"]);
     let bytes = |name: &str| fs::read(dir.path().join(name)).unwrap();
     assert_eq!(bytes("one.exr"), bytes("v.fill.exr"));
@@ -363,7 +363,7 @@ fn bench_measures_the_light_and_the_camera_that_it_is_given() {
     let output = run(dir.path(), &words.split_whitespace().collect::<Vec<_>>());
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(0), "{told}");
-    assert!(told.contains("2 techniques of 1 scene at 64x36") && told.contains("within 10 minutes"), "{told}");
+    assert!(told.contains("2 techniques on 1 scene at 64x36") && told.contains("at most 10 minutes"), "{told}");
     let json: serde_json::Value = serde_json::from_slice(&fs::read(dir.path().join("t.json")).unwrap()).unwrap();
     assert_eq!(json["rows"].as_array().unwrap().len(), 2);
     for row in json["rows"].as_array().unwrap() {

@@ -423,6 +423,6 @@ fn what_cannot_be_is_refused() {
     fs::write(dir.path().join("t.json"), "{}").unwrap();
     let resume = "bench builtin:overlap --json t.json --resume";
     if adapter().is_some() {
-        refuses(dir.path(), &format!("{resume} --quiet"), &["t.json", "no file of the format antumbra-bench"]);
+        refuses(dir.path(), &format!("{resume} --quiet"), &["t.json", "not a file of the format antumbra-bench"]);
     }
 }
