@@ -57,7 +57,7 @@ pub fn relink(library: &Path) -> Result<(), String> {
 
 /// Returns every shader's linked text and the library's list of them, by their paths under `linked/`.
 fn link_all(sources: &Path) -> Result<BTreeMap<String, String>, String> {
-    let shaders = shaders(sources)?;
+    let shaders = shaders(&texts_in(sources)?)?;
     let mut files = BTreeMap::from([(LIST.to_owned(), shaders::list(&shaders))]);
     let mut plain = String::new();
     for shader in &shaders {
@@ -149,7 +149,10 @@ fn order(linked: &mut CompileResult) {
 }
 
 /// Returns the text of every file under a folder, by its path with `/` separators.
-fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, String> {
+///
+/// # Errors
+/// A file or folder that cannot be read. A folder that does not exist is empty.
+pub fn texts_in(folder: &Path) -> Result<BTreeMap<String, String>, String> {
     let mut texts = BTreeMap::new();
     let mut folders = vec![String::new()];
     while let Some(inner) = folders.pop() {

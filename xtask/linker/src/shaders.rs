@@ -2,9 +2,6 @@
 //! at its head adds one for each set of features, joined by `+`, which compiles what is marked `@if(feature)`.
 
 use std::collections::BTreeMap;
-use std::path::Path;
-
-use crate::texts_in;
 
 /// Lines at the head of a shader that name its variants, and those that only tests use.
 const VARIANTS: &str = "// Variants: ";
@@ -45,13 +42,13 @@ impl Shader {
     }
 }
 
-/// Returns the shaders of the modules under `sources`, by path.
+/// Returns the shaders among the texts of sources by path, in that order.
 ///
 /// # Errors
-/// A file that cannot be read, a head that cannot be understood, or two shaders with the same constant.
-pub fn shaders(sources: &Path) -> Result<Vec<Shader>, String> {
+/// A head that cannot be understood, or two shaders with the same constant.
+pub fn shaders(texts: &BTreeMap<String, String>) -> Result<Vec<Shader>, String> {
     let mut shaders = Vec::new();
-    for (file, text) in &texts_in(sources)? {
+    for (file, text) in texts {
         if let Some(path) = file.strip_suffix(".wesl")
             && has_entry_point(text)
         {
@@ -147,7 +144,8 @@ mod tests {
     /// Probes print a block's values for its tests.
     #[test]
     fn probes_are_of_tests() {
-        let shaders = shaders(&crate::library().join("src")).unwrap_or_else(|fault| panic!("{fault}"));
+        let texts = crate::texts_in(&crate::library().join("src"));
+        let shaders = texts.and_then(|texts| shaders(&texts)).unwrap_or_else(|fault| panic!("{fault}"));
         let of_tests = shaders.iter().filter(|shader| shader.is_of_tests);
         assert!(of_tests.clone().count() >= 10, "{:?}", of_tests.collect::<Vec<_>>());
         assert!(shaders.iter().filter(|shader| shader.path.ends_with("probe")).all(|shader| shader.is_of_tests));

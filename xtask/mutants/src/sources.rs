@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use antumbra_linker::{Shader, library, link, shaders};
+use antumbra_linker::{Shader, library, link, shaders, texts_in};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 use crate::places::Change;
@@ -33,22 +33,9 @@ impl Sources {
     /// A file that cannot be read, or a shader that does not link.
     pub fn read() -> Result<Self, String> {
         let root = library().join("src");
-        let mut texts = BTreeMap::new();
-        let mut folders = vec![root.clone()];
-        while let Some(folder) = folders.pop() {
-            let unreadable = |error| format!("{}: {error}", folder.display());
-            for entry in std::fs::read_dir(&folder).map_err(unreadable)? {
-                let path = entry.map_err(unreadable)?.path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else if path.extension().is_some_and(|ending| ending == "wesl") {
-                    let text = std::fs::read_to_string(&path).map_err(unreadable)?;
-                    let name = path.strip_prefix(&root).expect("below the root").to_string_lossy().replace('\\', "/");
-                    texts.insert(name, text);
-                }
-            }
-        }
-        let shaders = shaders(&root)?;
+        let mut texts = texts_in(&root)?;
+        let shaders = shaders(&texts)?;
+        texts.retain(|file, _| file.ends_with(".wesl"));
         let linked = shaders.iter().map(|shader| link(&root, shader)).collect::<Result<_, _>>()?;
         let parts = shaders.iter().map(|shader| parts_of(&texts, &format!("{}.wesl", shader.path))).collect();
         Ok(Self { texts, shaders, linked, parts })

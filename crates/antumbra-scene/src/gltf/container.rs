@@ -81,9 +81,6 @@ fn split_binary(bytes: &[u8]) -> Result<Container<'_>> {
 fn chunk_at<'b>(bytes: &'b [u8], at: usize, what: &str) -> Result<(u32, &'b [u8])> {
     let (chunk_bytes, kind) = (u32_at(bytes, at, what)? as usize, u32_at(bytes, at + 4, what)?);
     let start = at + CHUNK_HEADER_BYTES;
-    if start > bytes.len() {
-        return Err(truncated(bytes.len(), what));
-    }
     if !chunk_bytes.is_multiple_of(4) {
         return Err(Fault::new(
             format!("byte {at}"),

@@ -294,19 +294,20 @@ fn figures() -> Vec<(&'static str, Outcome)> {
     let truth = truth();
     let judged = vec![true; truth.size_px.element_product() as usize];
     let images = images();
-    let flat_rmse = compare_visibility(&truth, &images[9].1, &judged).unwrap().rmse;
-    let outcome = |image: &Visibility| {
-        let metrics = compare_visibility(&truth, image, &judged).unwrap();
-        Outcome::Measured(Measured {
-            rmse: metrics.rmse,
-            umbra_leak: metrics.umbra_leak,
-            lit_loss: metrics.lit_loss,
-            noise: metrics.roughness,
-            flat_rmse,
-            ..Measured::default()
-        })
-    };
-    images.iter().map(|(name, image)| (*name, outcome(image))).collect()
+    images.iter().map(|(name, image)| (*name, outcome_of(image, &truth, &images[9].1, &judged))).collect()
+}
+
+/// Returns the figures of an image, and the error of one without any shadow.
+fn outcome_of(image: &Visibility, truth: &Visibility, flat: &Visibility, judged: &[bool]) -> Outcome {
+    let metrics = compare_visibility(truth, image, judged).unwrap();
+    Outcome::Measured(Measured {
+        rmse: metrics.rmse,
+        umbra_leak: metrics.umbra_leak,
+        lit_loss: metrics.lit_loss,
+        noise: metrics.roughness,
+        flat_rmse: compare_visibility(truth, flat, judged).unwrap().rmse,
+        ..Measured::default()
+    })
 }
 
 /// Returns sequences of masks in motion: the truth, which moves by a column per frame; nearly the truth; the truth with growing noise that
@@ -511,18 +512,8 @@ fn figures_of_techniques() -> Vec<(&'static str, Outcome)> {
     let count = SIZE_PX.element_product() as usize;
     let judged = vec![true; count];
     let mean = (0..count).map(|i| truth.at(i, 0)).sum::<f32>() / count as f32;
-    let flat_rmse = compare_visibility(&truth, &Visibility::one(SIZE_PX, vec![mean; count]), &judged).unwrap().rmse;
-    let outcome = |technique: &str| {
-        let metrics = compare_visibility(&truth, &mask(technique), &judged).unwrap();
-        Outcome::Measured(Measured {
-            rmse: metrics.rmse,
-            umbra_leak: metrics.umbra_leak,
-            lit_loss: metrics.lit_loss,
-            noise: metrics.roughness,
-            flat_rmse,
-            ..Measured::default()
-        })
-    };
+    let flat = Visibility::one(SIZE_PX, vec![mean; count]);
+    let outcome = |technique: &str| outcome_of(&mask(technique), &truth, &flat, &judged);
     TECHNIQUES.iter().map(|technique| (*technique, outcome(technique))).collect()
 }
 
